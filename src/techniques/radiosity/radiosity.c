@@ -41,32 +41,33 @@ static bool create(void *state, const struct technique_create *how)
     return ok;
 }
 
-static bool make_buffers(struct radiosity *s)
+// What shaders write.
+static bool make_tables(struct radiosity *s)
 {
-    enum { VEC3_BYTES = 12, VEC4_BYTES = 16 };
-    struct radiosity_buffers *b = &s->buffers;
+    struct radiosity_tables *t = &s->tables;
     const size_t texels = s->map.texel_count, nodes = s->map.tree.count;
     const struct {
         const char *name;
-        size_t bytes;
-        gpu_buffer *out;
+        enum gpu_format format;
+        size_t count;
+        gpu_image *out;
     } rows[] = {
-        { "flux", texels * VEC3_BYTES, &b->flux },
-        { "light", texels * 3 * VEC4_BYTES, &b->light },
-        { "smoothed", texels * 3 * VEC4_BYTES, &b->smoothed },
-        { "sent", nodes * VEC3_BYTES, &b->sent },
-        { "radiosity", nodes * VEC3_BYTES, &b->radiosity[0] },
-        { "radiosity", nodes * VEC3_BYTES, &b->radiosity[1] },
+        { "flux", GPU_RGBA32F, texels, &t->flux },
+        { "light", GPU_RG32U, 3 * texels, &t->light },
+        { "smoothed", GPU_RG32U, 3 * texels, &t->smoothed },
+        { "sent", GPU_RG32U, nodes, &t->sent },
+        { "radiosity", GPU_RG32U, nodes, &t->radiosity[0] },
+        { "radiosity", GPU_RG32U, nodes, &t->radiosity[1] },
+        { "solution", GPU_RG32U, nodes, &t->solution },
     };
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        const size_t bytes = rows[i].bytes > 0 ? rows[i].bytes : VEC4_BYTES;
-        const struct gpu_buffer_desc desc = { rows[i].name, bytes, GPU_BUFFER_STORAGE };
-        if (!gpu_buffer_create(s->gpu, &desc, rows[i].out)) return false;
-    }
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (!radiosity_table_create(s->host, s->gpu, rows[i].name, rows[i].format, rows[i].count,
+                                    rows[i].out))
+            return false;
     return true;
 }
 
-static bool make_light_map(struct radiosity *s)
+static bool make_light_maps(struct radiosity *s)
 {
     const struct gpu_image_desc desc = { .name = "light_map",
                                          .dimension = GPU_2D_ARRAY,
@@ -81,7 +82,8 @@ static bool make_light_map(struct radiosity *s)
                                              .wrap_u = GPU_CLAMP,
                                              .wrap_v = GPU_CLAMP,
                                              .wrap_w = GPU_CLAMP };
-    return gpu_image_create(s->gpu, &desc, &s->buffers.light_map) &&
+    return gpu_image_create(s->gpu, &desc, &s->tables.light_maps[0]) &&
+           gpu_image_create(s->gpu, &desc, &s->tables.light_maps[1]) &&
            gpu_sampler_get(s->gpu, &linear, &s->linear);
 }
 
@@ -117,9 +119,9 @@ static bool load(void *state, const struct tensors *bake)
 {
     struct radiosity *s = state;
     const struct radiosity_probes_create how = { s->host, s->gpu, &s->map, &s->options };
-    if (!radiosity_upload(s, bake) || !make_buffers(s)) return false;
+    if (!radiosity_upload(s, bake) || !make_tables(s)) return false;
     return radiosity_probes_init(&s->probes, &how, bake) &&
-           (s->map.texel_count == 0 || (make_light_map(s) && make_pipelines(s)));
+           (s->map.texel_count == 0 || (make_light_maps(s) && make_pipelines(s)));
 }
 
 static void set_options(void *state, const void *options)
@@ -127,21 +129,24 @@ static void set_options(void *state, const void *options)
     struct radiosity *s = state;
     option_copy_live(&technique_radiosity.options, options, &s->options);
     s->inputs.valid = false;
+    s->update.at_once = true;
 }
 
 static void invalidate(void *state, uint32_t changes)
 {
     struct radiosity *s = state;
     if (changes & ~(uint32_t)CHANGED_CAMERA) s->inputs.valid = false;
+    if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL | CHANGED_OPTIONS)) s->update.at_once = true;
 }
 
-// Whether the light map has the light of this frame.
+// Whether this frame has the light of the one before.
 static bool is_kept(struct radiosity *s, const struct frame_view *view)
 {
     const uint64_t light = light_hash(view);
-    const bool same = view->keep && s->inputs.valid && view->index > 0 &&
-                      view->index == s->inputs.index + 1 && light == s->inputs.light &&
+    const bool next = view->index > 0 && view->index == s->inputs.index + 1;
+    const bool same = view->keep && s->inputs.valid && next && light == s->inputs.light &&
                       !view->geometry_moved && !view->lights_changed;
+    if (!next) s->update.at_once = true;
     s->inputs.valid = true;
     s->inputs.index = view->index;
     s->inputs.light = light;
@@ -158,17 +163,18 @@ static void follow(void *state, const struct scene_pose *pose, bool wait)
 static void gather_probes(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     if (!s->probes.fresh)
-        radiosity_probes_record_gather(&s->probes, cmd, view, s->solution, s->options.emitters);
+        radiosity_probes_record_gather(&s->probes, cmd, view, s->tables.solution,
+                                       s->options.emitters);
 }
 
 static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct radiosity *s = state;
-    if (!is_kept(s, view)) {
-        s->probes.fresh = false;
-        s->solution = s->buffers.sent;
-        if (s->map.texel_count > 0) radiosity_record_light(s, cmd, view);
-    }
+    if (!is_kept(s, view)) s->update.changed = true;
+    if (s->map.texel_count > 0)
+        radiosity_record_update(s, cmd, view);
+    else if (s->update.changed)
+        s->update.changed = s->probes.fresh = false;
     if (s->options.probes) gather_probes(s, cmd, view);
 }
 
@@ -193,7 +199,7 @@ static bool charts(const struct scene_pose *statics, const void *options, struct
 static gpu_image light_map(void *state)
 {
     const struct radiosity *s = state;
-    return s->buffers.light_map;
+    return s->tables.light_maps[s->shown_map];
 }
 
 static bool probes(void *state, struct probe_volume *out)
@@ -214,18 +220,21 @@ static void debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view
         gpu_clear_image(cmd, out, (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
 }
 
-static void destroy_buffers(struct radiosity *s)
+static void destroy_tables(struct radiosity *s)
 {
-    struct radiosity_buffers *b = &s->buffers;
-    gpu_buffer *const buffers[] = {
-        &b->texels, &b->factors,      &b->clusters,     &b->members,        &b->nodes,
-        &b->owners, &b->instances,    &b->triangles,    &b->places,         &b->seams,
-        &b->flux,   &b->light,        &b->points,       &b->labels,         &b->smoothed,
-        &b->sent,   &b->radiosity[0], &b->radiosity[1], &b->cluster_factors
+    struct radiosity_tables *t = &s->tables;
+    gpu_image *const images[] = {
+        &t->texels,       &t->neighbours,   &t->clusters,  &t->spans,         &t->members,
+        &t->groups,       &t->owners,       &t->instances, &t->triangles,     &t->places,
+        &t->seams,        &t->flux,         &t->light,     &t->smoothed,      &t->sent,
+        &t->radiosity[0], &t->radiosity[1], &t->solution,  &t->light_maps[0], &t->light_maps[1]
     };
-    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
-        gpu_buffer_destroy(s->gpu, buffers[i]);
-    gpu_image_destroy(s->gpu, &b->light_map);
+    for (size_t i = 0; i < sizeof images / sizeof *images; i++)
+        gpu_image_destroy(s->gpu, images[i]);
+    gpu_buffer_destroy(s->gpu, &t->labels);
+    gpu_buffer_destroy(s->gpu, &t->owner_of_place);
+    radiosity_destroy_rows(s, &t->factors);
+    radiosity_destroy_rows(s, &t->cluster_factors);
 }
 
 static void destroy(void *state)
@@ -237,7 +246,7 @@ static void destroy(void *state)
                                         &p->smooth, &p->map,      &p->seams, &p->apply, &p->view };
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(s->gpu, pipelines[i]);
-    destroy_buffers(s);
+    destroy_tables(s);
     radiosity_probes_finish(&s->probes, s->gpu);
     radiosity_followed_finish(&s->followed);
     radiosity_map_finish(&s->map);
@@ -259,9 +268,11 @@ static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t he
     (void)width;
     (void)height;
     const uint64_t label = sizeof(struct radiosity_gpu_label);
-    return texels * (sizeof(struct radiosity_gpu_texel) + label + 8 * sources + 12 + 48 + 4) +
-           clusters * (sizeof(struct radiosity_gpu_cluster) + 8 * sources + 8 + 6 * 12) +
-           (uint64_t)o->texels * (4 + 8 * RADIOSITY_LAYERS) + radiosity_probes_memory(o);
+    const uint64_t light = 16 + 8 * (3 + 3); // flux, light, smoothed
+    return texels * (16 * RADIOSITY_TEXEL_PARTS + 8 * (sources + RADIOSITY_NEIGHBOURS) + light +
+                     label + 8) +
+           clusters * (16 + 8 + 4 + 8 * sources + 2 * (8 + 4 * 8)) +
+           (uint64_t)o->texels * (4 + 8 + 2 * 8 * RADIOSITY_LAYERS) + radiosity_probes_memory(o);
 }
 
 const struct technique technique_radiosity = {

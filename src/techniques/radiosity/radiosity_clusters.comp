@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "techniques/radiosity/radiosity_shared.h"
+#include "techniques/radiosity/radiosity_table.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
 
@@ -11,29 +11,23 @@ layout(push_constant, scalar) uniform push_block
 {
     radiosity_clusters_push push;
 };
-layout(set = 0, binding = 0, scalar) readonly buffer radiosity_clusters
-{
-    radiosity_gpu_cluster cluster_table[];
-};
-layout(set = 0, binding = 1, scalar) readonly buffer radiosity_members
-{
-    uint member_table[];
-};
-layout(set = 0, binding = 2, scalar) readonly buffer radiosity_flux
-{
-    vec3 flux_table[];
-};
-layout(set = 0, binding = 3, scalar) writeonly buffer radiosity_sent
-{
-    vec3 sent_table[];
-};
+layout(set = 0, binding = 0) uniform sampler2D radiosity_clusters; // reflectance, area in m²
+layout(set = 0, binding = 1) uniform usampler2D radiosity_spans;   // first member, number
+layout(set = 0, binding = 2) uniform usampler2D radiosity_members; // texels
+layout(set = 0, binding = 3, rgba32f) uniform readonly image2D radiosity_flux;
+layout(set = 0, binding = 4, rg32ui) uniform writeonly uimage2D radiosity_sent;
 
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.clusters) return;
-    radiosity_gpu_cluster cluster = cluster_table[i];
+    float area = texelFetch(radiosity_clusters, radiosity_at(i), 0).w;
+    uvec2 span = texelFetch(radiosity_spans, radiosity_at(i), 0).xy;
     vec3 sum = vec3(0.0);
-    for (uint k = 0; k < cluster.count; k++) sum += flux_table[member_table[cluster.first + k]];
-    sent_table[i] = cluster.area_m2 > 0.0 ? sum / cluster.area_m2 : vec3(0.0);
+    for (uint k = 0; k < span.y; k++) {
+        uint texel = texelFetch(radiosity_members, radiosity_at(span.x + k), 0).x;
+        sum += imageLoad(radiosity_flux, radiosity_at(texel)).rgb;
+    }
+    vec3 sent = area > 0.0 ? sum / area : vec3(0.0);
+    imageStore(radiosity_sent, radiosity_at(i), uvec4(radiosity_pack(sent), 0u, 0u));
 }

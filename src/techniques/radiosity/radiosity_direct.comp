@@ -24,24 +24,23 @@ layout(set = 0, binding = 5, scalar) readonly buffer frame_lights
 {
     frame_light frame_light_table[];
 };
-layout(set = 0, binding = 6, scalar) writeonly buffer radiosity_flux
-{
-    vec3 flux_table[];
-};
+layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D radiosity_flux;
 
 void main()
 {
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= push.texels) return;
-    radiosity_gpu_texel texel = texel_table[i];
+    if (gl_GlobalInvocationID.x >= push.count) return;
+    uint i = push.first + gl_GlobalInvocationID.x;
+    vec4 place = radiosity_texel_part(i, push.texels, RADIOSITY_POSITION); // w: area
+    vec3 normal = radiosity_texel_part(i, push.texels, RADIOSITY_NORMAL).xyz;
+    vec3 reflectance = radiosity_texel_part(i, push.texels, RADIOSITY_REFLECTANCE).rgb;
     vec3 irradiance = vec3(0.0);
-    if (texel.area_m2 > 0.0) {
+    if (place.w > 0.0) {
+        float emitters = push.emitters * frame.radiance_scale;
         for (int c = 0; c < 3; c++)
-            irradiance[c] =
-                radiosity_unbounced(texel, c, frame.sky, push.emitters * frame.radiance_scale).x;
+            irradiance[c] = radiosity_unbounced(i, push.texels, c, frame.sky, emitters).x;
         for (uint k = 0; k < frame.light_count; k++)
-            irradiance += texel_irradiance(texel.position, texel.normal, texel.area_m2,
-                                           frame_light_table[k], push.shadow_radius);
+            irradiance += texel_irradiance(place.xyz, normal, place.w, frame_light_table[k],
+                                           push.shadow_radius);
     }
-    flux_table[i] = texel.area_m2 * texel.reflectance * irradiance;
+    imageStore(radiosity_flux, radiosity_at(i), vec4(place.w * reflectance * irradiance, 0.0));
 }

@@ -1,97 +1,191 @@
-// Form factors on the GPU, in blocks of rows that a binding can have. In a block entries of all
-// rows are side by side, so that neighbouring invocations read neighbouring words.
+// Form factors on the GPU, in tiles of rows. The entries of a tile are one after another, those of
+// its rows side by side: invocations of neighbouring rows read neighbouring words, and a processor
+// reads them in the order of memory.
 #include "techniques/radiosity/radiosity_state.h"
 
-// A block begins at a multiple of 256 bytes, which is enough for all devices.
-enum { ROW_STEP = 64, TEXEL_WORDS = 2, CLUSTER_WORDS = 1 };
+#include <stdlib.h>
 
-static struct radiosity_block block_at(const struct radiosity *s, uint32_t first, uint32_t rows,
-                                       size_t row_bytes)
-{
-    const uint64_t fit = gpu_limits(s->gpu)->max_storage_bytes / row_bytes;
-    const uint64_t most = fit < ROW_STEP ? ROW_STEP : fit / ROW_STEP * ROW_STEP;
-    const uint32_t count = rows - first < most ? rows - first : (uint32_t)most;
-    return (struct radiosity_block){ first, count, first * row_bytes, count * row_bytes };
-}
+// Texels of a block's table: 256 MB. Rows are put in order within windows.
+enum { BLOCK_TEXELS = 1 << 24, TEXEL_WORDS = 4, WINDOW = 64 * RADIOSITY_TILE };
 
-static size_t texel_row_bytes(const struct radiosity *s)
-{
-    return (size_t)s->options.sources * TEXEL_WORDS * sizeof(uint32_t);
-}
-
-static size_t cluster_row_bytes(const struct radiosity *s)
-{
-    return 2 * (size_t)s->options.sources * CLUSTER_WORDS * sizeof(uint32_t);
-}
-
-struct radiosity_block radiosity_texel_block(const struct radiosity *s, uint32_t first)
-{
-    return block_at(s, first, s->map.texel_count, texel_row_bytes(s));
-}
-
-struct radiosity_block radiosity_cluster_block(const struct radiosity *s, uint32_t first)
-{
-    return block_at(s, first, s->map.cluster_count, cluster_row_bytes(s));
-}
+// Rows to upload. pack: writes the words of an entry.
+struct source_rows {
+    const char *name;
+    const uint32_t *source;
+    const uint16_t *factor;
+    size_t sources, in_texel; // entries of a row, of a texel
+    size_t stride;            // halves of an entry
+    uint32_t rows;
+    void (*pack)(const struct source_rows *from, size_t entry, uint32_t *words);
+};
 
 static uint32_t pack(uint32_t node, uint16_t factor)
 {
     return node | (uint32_t)factor << RADIOSITY_NODE_BITS;
 }
 
-// A table to upload. pack: writes the words of a block.
-struct table {
-    const char *name;
-    const uint32_t *source;
-    const uint16_t *factor;
-    size_t sources, row_bytes;
-    uint32_t rows;
-    void (*pack)(const struct table *table, const struct radiosity_block *block, uint32_t *words);
-    gpu_buffer *out;
+static void pack_texel(const struct source_rows *from, size_t entry, uint32_t *words)
+{
+    const uint16_t *factor = from->factor + 3 * entry;
+    words[0] = pack(from->source[entry], factor[0]);
+    words[1] = factor[1] | (uint32_t)factor[2] << 16;
+}
+
+static void pack_cluster(const struct source_rows *from, size_t entry, uint32_t *words)
+{
+    words[0] = pack(from->source[entry], from->factor[entry]);
+}
+
+// ---- the order of rows
+
+struct row {
+    uint32_t index, entries;
 };
 
-static void pack_texels(const struct table *of, const struct radiosity_block *block,
-                        uint32_t *words)
+struct tile {
+    uint32_t first, texels; // in the table of its block; of a row
+};
+
+struct layout {
+    struct row *rows; // [tiles][RADIOSITY_TILE], beyond the last one without entries
+    struct tile *tiles;
+    uint32_t tile_count;
+};
+
+static uint32_t entries_of(const struct source_rows *from, size_t row)
 {
-    for (size_t row = 0; row < block->count; row++)
-        for (size_t k = 0; k < of->sources; k++) {
-            const size_t from = (block->first + row) * of->sources + k;
-            uint32_t *to = &words[TEXEL_WORDS * (k * block->count + row)];
-            to[0] = pack(of->source[from], of->factor[3 * from]);
-            to[1] = of->factor[3 * from + 1] | (uint32_t)of->factor[3 * from + 2] << 16;
-        }
+    size_t count = from->sources;
+    while (count > 0 && from->factor[(row * from->sources + count - 1) * from->stride] == 0)
+        count--;
+    return (uint32_t)count;
 }
 
-static void pack_clusters(const struct table *of, const struct radiosity_block *block,
-                          uint32_t *words)
+static int by_entries(const void *a, const void *b)
 {
-    for (size_t row = 0; row < block->count; row++)
-        for (size_t k = 0; k < of->sources; k++) {
-            const size_t from = (block->first + row) * of->sources + k;
-            words[k * block->count + row] = pack(of->source[from], of->factor[from]);
-        }
+    const struct row *p = a, *q = b;
+    if (p->entries != q->entries) return p->entries > q->entries ? -1 : 1;
+    return p->index < q->index ? -1 : p->index > q->index;
 }
 
-static bool upload_block(struct radiosity *s, const struct table *of,
-                         const struct radiosity_block *block)
+static void order_rows(const struct source_rows *from, struct row *rows)
 {
-    uint32_t *words = host_alloc(s->host, block->bytes, 1);
-    if (words) of->pack(of, block, words);
-    const bool ok =
-        words && gpu_buffer_upload(s->gpu, *of->out, block->offset, words, block->bytes);
-    host_free(s->host, words);
+    for (uint32_t i = 0; i < from->rows; i++) rows[i] = (struct row){ i, entries_of(from, i) };
+    for (uint32_t i = 0; i < from->rows; i += WINDOW)
+        qsort(rows + i, from->rows - i < WINDOW ? from->rows - i : WINDOW, sizeof *rows,
+              by_entries);
+}
+
+static bool layout_init(struct layout *out, struct radiosity *s, const struct source_rows *from)
+{
+    out->tile_count = (from->rows + RADIOSITY_TILE - 1) / RADIOSITY_TILE;
+    out->rows = host_alloc(s->host, (size_t)out->tile_count * RADIOSITY_TILE, sizeof *out->rows);
+    out->tiles = host_alloc(s->host, radiosity_table_room(out->tile_count), sizeof *out->tiles);
+    if (!out->rows || !out->tiles) return false;
+    order_rows(from, out->rows);
+    return true;
+}
+
+static const struct row *rows_of(const struct layout *l, size_t tile)
+{
+    return &l->rows[tile * RADIOSITY_TILE];
+}
+
+// ---- blocks
+
+static void pack_row(const struct source_rows *from, const struct row *row, uint32_t *words)
+{
+    const size_t entry_words = TEXEL_WORDS / from->in_texel;
+    for (size_t k = 0; k < row->entries; k++) {
+        const size_t texel = k / from->in_texel * RADIOSITY_TILE;
+        from->pack(from, row->index * from->sources + k,
+                   words + TEXEL_WORDS * texel + k % from->in_texel * entry_words);
+    }
+}
+
+static uint32_t texels_of(const struct source_rows *from, const struct layout *l, size_t tile)
+{
+    uint32_t most = 0;
+    for (size_t r = 0; r < RADIOSITY_TILE; r++) {
+        const uint32_t entries = rows_of(l, tile)[r].entries;
+        most = entries > most ? entries : most;
+    }
+    return (most + (uint32_t)from->in_texel - 1) / (uint32_t)from->in_texel;
+}
+
+// The tiles of a block from the first one on; returns its texels.
+static size_t find_block(const struct source_rows *from, struct layout *l, uint32_t first,
+                         uint32_t *end)
+{
+    size_t texels = 0;
+    for (*end = first; *end < l->tile_count; ++*end) {
+        const uint32_t row = texels_of(from, l, *end);
+        if (*end > first && texels + row * RADIOSITY_TILE > BLOCK_TEXELS) break;
+        l->tiles[*end] = (struct tile){ (uint32_t)texels, row };
+        texels += row * RADIOSITY_TILE;
+    }
+    return texels;
+}
+
+static bool upload_block(struct radiosity *s, const struct source_rows *from, struct layout *l,
+                         uint32_t first, struct radiosity_block *block)
+{
+    uint32_t end;
+    const size_t texels = find_block(from, l, first, &end);
+    uint32_t *words =
+        host_alloc(s->host, radiosity_table_room(texels), TEXEL_WORDS * sizeof *words);
+    for (uint32_t t = first; words && t < end; t++)
+        for (uint32_t r = 0; r < RADIOSITY_TILE; r++)
+            pack_row(from, &rows_of(l, t)[r], words + TEXEL_WORDS * (l->tiles[t].first + r));
+    block->first = first * RADIOSITY_TILE;
+    block->count = end < l->tile_count ? (end - first) * RADIOSITY_TILE : from->rows - block->first;
+    return radiosity_table_upload(s->host, s->gpu, from->name, GPU_RGBA32U, words, texels,
+                                  &block->table);
+}
+
+static bool upload_blocks(struct radiosity *s, const struct source_rows *from, struct layout *l,
+                          struct radiosity_rows *out)
+{
+    const size_t row = (from->sources + from->in_texel - 1) / from->in_texel;
+    const size_t most = from->rows * row / (BLOCK_TEXELS - row * RADIOSITY_TILE) + 2;
+    out->blocks = host_alloc(s->host, most, sizeof *out->blocks);
+    bool ok = out->blocks != NULL;
+    for (uint32_t first = 0; ok && first < from->rows;) {
+        struct radiosity_block *block = &out->blocks[out->count++];
+        ok = upload_block(s, from, l, first / RADIOSITY_TILE, block);
+        first += block->count;
+    }
     return ok;
 }
 
-static bool upload_table(struct radiosity *s, const struct table *of)
+static bool upload_order(struct radiosity *s, const struct source_rows *from,
+                         const struct layout *l, gpu_image *out)
 {
-    const struct gpu_buffer_desc desc = { of->name, of->rows * of->row_bytes, GPU_BUFFER_STORAGE };
-    bool ok = gpu_buffer_create(s->gpu, &desc, of->out);
-    for (uint32_t first = 0; ok && first < of->rows;) {
-        const struct radiosity_block block = block_at(s, first, of->rows, of->row_bytes);
-        ok = upload_block(s, of, &block);
-        first += block.count;
+    uint32_t *order = host_alloc(s->host, radiosity_table_room(from->rows), sizeof *order);
+    for (size_t i = 0; order && i < from->rows; i++) order[i] = l->rows[i].index;
+    return radiosity_table_upload(s->host, s->gpu, "order", GPU_R32U, order, from->rows, out);
+}
+
+static float mean_entries(const struct source_rows *from, const struct layout *l)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < from->rows; i++) sum += l->rows[i].entries;
+    return (float)(sum / from->rows);
+}
+
+static bool upload_rows(struct radiosity *s, const struct source_rows *from,
+                        struct radiosity_rows *out)
+{
+    struct layout l = { 0 };
+    bool ok = layout_init(&l, s, from) && upload_blocks(s, from, &l, out) &&
+              upload_order(s, from, &l, &out->order);
+    if (ok) {
+        out->mean_entries = mean_entries(from, &l);
+        ok = radiosity_table_upload(s->host, s->gpu, "tiles", GPU_RG32U, l.tiles, l.tile_count,
+                                    &out->tiles);
+        l.tiles = NULL;
     }
+    host_free(s->host, l.tiles);
+    host_free(s->host, l.rows);
     return ok;
 }
 
@@ -99,17 +193,31 @@ bool radiosity_upload_factors(struct radiosity *s, const uint32_t *source, const
                               const uint32_t *cluster_source, const uint16_t *cluster_factor)
 {
     const size_t sources = (size_t)s->options.sources;
-    const struct table texels = { "factors",
-                                  source,
-                                  factor,
-                                  sources,
-                                  texel_row_bytes(s),
-                                  s->map.texel_count,
-                                  pack_texels,
-                                  &s->buffers.factors };
-    const struct table clusters = { "cluster_factors",    cluster_source,
-                                    cluster_factor,       2 * sources,
-                                    cluster_row_bytes(s), s->map.cluster_count,
-                                    pack_clusters,        &s->buffers.cluster_factors };
-    return upload_table(s, &texels) && upload_table(s, &clusters);
+    const struct source_rows texels = { .name = "factors",
+                                        .source = source,
+                                        .factor = factor,
+                                        .sources = sources,
+                                        .in_texel = RADIOSITY_PAIR,
+                                        .stride = 3,
+                                        .rows = s->map.texel_count,
+                                        .pack = pack_texel };
+    const struct source_rows clusters = { .name = "cluster_factors",
+                                          .source = cluster_source,
+                                          .factor = cluster_factor,
+                                          .sources = 2 * sources,
+                                          .in_texel = RADIOSITY_QUAD,
+                                          .stride = 1,
+                                          .rows = s->map.cluster_count,
+                                          .pack = pack_cluster };
+    return upload_rows(s, &texels, &s->tables.factors) &&
+           upload_rows(s, &clusters, &s->tables.cluster_factors);
+}
+
+void radiosity_destroy_rows(struct radiosity *s, struct radiosity_rows *rows)
+{
+    for (uint32_t i = 0; i < rows->count; i++) gpu_image_destroy(s->gpu, &rows->blocks[i].table);
+    gpu_image_destroy(s->gpu, &rows->order);
+    gpu_image_destroy(s->gpu, &rows->tiles);
+    host_free(s->host, rows->blocks);
+    *rows = (struct radiosity_rows){ 0 };
 }

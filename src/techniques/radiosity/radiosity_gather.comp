@@ -15,44 +15,48 @@ layout(push_constant, scalar) uniform push_block
 {
     radiosity_gather_push push;
 };
-// [entry][texel of the block]: source and form factor; components along the tangents (halves).
-layout(set = 0, binding = 2, scalar) readonly buffer radiosity_factors
+layout(set = 0, binding = 2) uniform usampler2D radiosity_order; // [row] texel
+layout(set = 0, binding = 3) uniform usampler2D radiosity_tiles; // first texel, texels of a row
+// Pairs of source and form factor; components along the tangents (halves).
+layout(set = 0, binding = 4, rgba32ui) uniform readonly uimage2D radiosity_factors;
+layout(set = 0, binding = 5, rg32ui) uniform readonly uimage2D radiosity_sent;
+layout(set = 0, binding = 6, rg32ui) uniform writeonly uimage2D radiosity_light; // [colour][texel]
+
+vec3 irradiance = vec3(0.0), by_u = vec3(0.0), by_v = vec3(0.0);
+
+void add_entry(uvec2 word)
 {
-    uvec2 factor_table[];
-};
-layout(set = 0, binding = 3, scalar) readonly buffer radiosity_sent
-{
-    vec3 sent_table[];
-};
-layout(set = 0, binding = 4, scalar) writeonly buffer radiosity_light
-{
-    vec4 light_table[]; // [texel][colour]
-};
+    uvec2 sent = imageLoad(radiosity_sent, radiosity_at(radiosity_source(word.x))).xy;
+    vec3 light = radiosity_form_factor(word.x) * radiosity_unpack(sent);
+    vec2 along = unpackHalf2x16(word.y);
+    irradiance += light;
+    by_u += along.x * light;
+    by_v += along.y * light;
+}
 
 void main()
 {
-    uint row = gl_GlobalInvocationID.x;
-    if (row >= push.count) return;
-    uint i = push.first + row;
-    radiosity_gpu_texel texel = texel_table[i];
-    vec3 irradiance = vec3(0.0), by_u = vec3(0.0), by_v = vec3(0.0);
-    for (uint k = 0; k < push.entries; k++) {
-        uvec2 word = factor_table[k * push.count + row];
-        if (radiosity_has_ended(word.x)) break;
-        vec3 light = radiosity_form_factor(word.x) * sent_table[radiosity_source(word.x)];
-        vec2 along = unpackHalf2x16(word.y);
-        irradiance += light;
-        by_u += along.x * light;
-        by_v += along.y * light;
+    if (gl_GlobalInvocationID.x >= push.count) return;
+    uint row = push.first + gl_GlobalInvocationID.x;
+    uvec2 tile = texelFetch(radiosity_tiles, radiosity_at(row / RADIOSITY_TILE), 0).xy;
+    for (uint k = 0; k < tile.y; k++) {
+        uvec4 pair =
+            imageLoad(radiosity_factors, radiosity_at(radiosity_row_texel(tile.x, k, row)));
+        add_entry(pair.xy);
+        add_entry(pair.zw);
     }
+    uint i = texelFetch(radiosity_order, radiosity_at(row), 0).x;
     // The tangents of basis_of (core/vec.h).
-    vec3 n = texel.normal;
+    vec3 n = radiosity_texel_part(i, push.texels, RADIOSITY_NORMAL).xyz;
     float side = n.z < 0.0 || (n.z == 0.0 && floatBitsToUint(n.z) != 0u) ? -1.0 : 1.0;
     float a = -1.0 / (side + n.z), b = n.x * n.y * a;
     vec3 u = vec3(1.0 + side * n.x * n.x * a, side * b, -side * n.x);
     vec3 v = vec3(b, side + n.y * n.y * a, -n.y);
-    for (int c = 0; c < 3; c++)
-        light_table[3u * i + c] =
-            vec4(irradiance[c], irradiance[c] * n + by_u[c] * u + by_v[c] * v) +
-            radiosity_unbounced(texel, c, frame.sky, push.emitters * frame.radiance_scale);
+    float emitters = push.emitters * frame.radiance_scale;
+    for (int c = 0; c < 3; c++) {
+        vec4 light = vec4(irradiance[c], irradiance[c] * n + by_u[c] * u + by_v[c] * v) +
+                     radiosity_unbounced(i, push.texels, c, frame.sky, emitters);
+        imageStore(radiosity_light, radiosity_at(c * push.texels + i),
+                   uvec4(radiosity_pack_light(light), 0u, 0u));
+    }
 }

@@ -3,32 +3,27 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "core/half.glsl"
-#include "techniques/radiosity/radiosity_shared.h"
+#include "techniques/radiosity/radiosity_table.glsl"
 
-layout(local_size_x = RADIOSITY_LOCAL_2D, local_size_y = RADIOSITY_LOCAL_2D) in;
+layout(local_size_x = RADIOSITY_LOCAL) in;
 
 layout(push_constant, scalar) uniform push_block
 {
     radiosity_map_push push;
 };
-layout(set = 0, binding = 0, scalar) readonly buffer radiosity_owners
-{
-    uint owner_table[]; // [side][y][x]; all bits set: none
-};
-layout(set = 0, binding = 1, scalar) readonly buffer radiosity_light
-{
-    vec4 light_table[];
-};
+layout(set = 0, binding = 0) uniform usampler2D radiosity_owners; // places and their owners
+layout(set = 0, binding = 1, rg32ui) uniform readonly uimage2D radiosity_light; // [colour][texel]
 layout(set = 0, binding = 2, rgba16f) uniform writeonly image2DArray light_map;
 
 void main()
 {
-    uvec3 at = gl_GlobalInvocationID;
-    if (at.x >= push.width || at.y >= push.height) return;
-    uint owner = owner_table[(at.z * push.height + at.y) * push.width + at.x];
-    if (owner == 0xffffffffu) return;
-    for (int c = 0; c < 3; c++)
+    if (gl_GlobalInvocationID.x >= push.count) return;
+    uint i = push.first + gl_GlobalInvocationID.x;
+    uvec2 owner = texelFetch(radiosity_owners, radiosity_at(i), 0).xy;
+    uvec3 at = radiosity_place(owner.x);
+    for (int c = 0; c < 3; c++) {
+        uvec2 words = imageLoad(radiosity_light, radiosity_at(c * push.texels + owner.y)).xy;
         imageStore(light_map, ivec3(at.xy, RADIOSITY_LAYERS * at.z + c),
-                   clamp(light_table[3u * owner + c], -HALF_MAX, HALF_MAX));
+                   radiosity_unpack_light(words));
+    }
 }

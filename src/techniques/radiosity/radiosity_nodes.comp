@@ -1,9 +1,9 @@
-// Radiosity of the nodes above the clusters: the mean of their clusters by area.
+// Radiosity of groups, nodes of the tree above the clusters: the mean of their clusters by area.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "techniques/radiosity/radiosity_shared.h"
+#include "techniques/radiosity/radiosity_table.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
 
@@ -11,29 +11,23 @@ layout(push_constant, scalar) uniform push_block
 {
     radiosity_nodes_push push;
 };
-layout(set = 0, binding = 0, scalar) readonly buffer radiosity_clusters
-{
-    radiosity_gpu_cluster cluster_table[];
-};
-layout(set = 0, binding = 1, scalar) readonly buffer radiosity_nodes
-{
-    radiosity_gpu_node node_table[];
-};
-layout(set = 0, binding = 2, scalar) buffer radiosity_sent
-{
-    vec3 sent_table[]; // clusters, then nodes
-};
+layout(set = 0, binding = 0) uniform usampler2D radiosity_groups; // node; first cluster and number
+layout(set = 0, binding = 1, rgba32f) uniform readonly image2D radiosity_clusters; // w: area
+layout(set = 0, binding = 2, rg32ui) uniform uimage2D radiosity_sent; // clusters, then nodes
 
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= push.nodes) return;
-    radiosity_gpu_node node = node_table[i];
+    if (i >= push.groups) return;
+    uvec2 group = texelFetch(radiosity_groups, radiosity_at(i), 0).xy;
+    uint first = group.y & ((1u << RADIOSITY_GROUP_SHIFT) - 1u);
     vec3 sum = vec3(0.0);
     float area = 0.0;
-    for (uint c = node.first; c < node.first + node.count; c++) {
-        sum += cluster_table[c].area_m2 * sent_table[c];
-        area += cluster_table[c].area_m2;
+    for (uint c = first; c < first + (group.y >> RADIOSITY_GROUP_SHIFT); c++) {
+        float weight = imageLoad(radiosity_clusters, radiosity_at(c)).w;
+        sum += weight * radiosity_unpack(imageLoad(radiosity_sent, radiosity_at(c)).xy);
+        area += weight;
     }
-    sent_table[push.clusters + i] = area > 0.0 ? sum / area : vec3(0.0);
+    vec3 mean = area > 0.0 ? sum / area : vec3(0.0);
+    imageStore(radiosity_sent, radiosity_at(group.x), uvec4(radiosity_pack(mean), 0u, 0u));
 }

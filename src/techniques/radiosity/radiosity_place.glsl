@@ -2,28 +2,27 @@
 #ifndef AG_RADIOSITY_PLACE_GLSL
 #define AG_RADIOSITY_PLACE_GLSL
 
-#include "techniques/radiosity/radiosity_shared.h"
+#include "techniques/radiosity/radiosity_table.glsl"
 
-layout(set = 0, binding = RADIOSITY_INSTANCES_BINDING, scalar) readonly buffer radiosity_instances
-{
-    uint first_table[]; // [instances + 1] first triangle
-};
-layout(set = 0, binding = RADIOSITY_TRIANGLES_BINDING, scalar) readonly buffer radiosity_triangles
-{
-    radiosity_gpu_triangle triangle_table[];
-};
+// First triangle, number; u, v, normal and sides of each triangle.
+layout(set = 0, binding = RADIOSITY_INSTANCES_BINDING) uniform usampler2D radiosity_instances;
+layout(set = 0, binding = RADIOSITY_TRIANGLES_BINDING,
+       rgba32f) uniform readonly image2D radiosity_triangles;
 
 // In texels; z: the side, 0 or 1, negative where there is none. ids: of FRAME_ID; instances: of the
 // map.
 vec3 radiosity_place_of(uvec2 ids, uint instances, vec3 position)
 {
     if (ids.x == 0u || ids.x > instances) return vec3(-1.0);
-    uint triangle = first_table[ids.x - 1u] + ids.y - 1u;
-    if (triangle >= first_table[ids.x]) return vec3(-1.0);
-    radiosity_gpu_triangle t = triangle_table[triangle];
-    if (t.sides == 0u) return vec3(-1.0);
-    bool back = t.sides == 2u && dot(t.normal, frame.camera_position - position) < 0.0;
-    return vec3(dot(t.u, vec4(position, 1.0)), dot(t.v, vec4(position, 1.0)), back ? 1.0 : 0.0);
+    uvec2 instance = texelFetch(radiosity_instances, radiosity_at(ids.x - 1u), 0).xy;
+    if (ids.y - 1u >= instance.y) return vec3(-1.0);
+    uint first = RADIOSITY_TRIANGLE_PARTS * (instance.x + ids.y - 1u);
+    vec4 u = imageLoad(radiosity_triangles, radiosity_at(first));
+    vec4 v = imageLoad(radiosity_triangles, radiosity_at(first + 1u));
+    vec4 front = imageLoad(radiosity_triangles, radiosity_at(first + 2u)); // w: sides
+    if (front.w == 0.0) return vec3(-1.0);
+    bool back = front.w == 2.0 && dot(front.xyz, frame.camera_position - position) < 0.0;
+    return vec3(dot(u, vec4(position, 1.0)), dot(v, vec4(position, 1.0)), back ? 1.0 : 0.0);
 }
 
 #endif

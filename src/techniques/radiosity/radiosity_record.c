@@ -1,9 +1,16 @@
 // The passes of a frame.
 #include "techniques/radiosity/radiosity_state.h"
 
-static void record_direct(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view)
+// Rows of a stage.
+struct span {
+    uint32_t first, count;
+};
+
+static void record_direct(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view,
+                          struct span rows)
 {
-    const struct radiosity_direct_push push = { s->map.texel_count, view->shadow_radius,
+    const struct radiosity_direct_push push = { rows.first, rows.count, s->map.texel_count,
+                                                view->shadow_radius,
                                                 s->options.emitters ? 1.0f : 0.0f };
     gpu_dispatch(
         cmd, s->pipelines.direct,
@@ -13,175 +20,228 @@ static void record_direct(struct radiosity *s, struct gpu_cmd *cmd, const struct
             { .name = "shadow_sun_maps",
               .image = view->shadow_sun_maps,
               .sampler = view->shadow_sampler },
-            { .name = "radiosity_texels", .buffer = s->buffers.texels },
-            { .name = "radiosity_flux", .buffer = s->buffers.flux }),
-        &push, sizeof push, gpu_groups(push.texels, RADIOSITY_LOCAL), 1, 1);
+            { .name = "radiosity_texels", .image = s->tables.texels },
+            { .name = "radiosity_flux", .image = s->tables.flux }),
+        &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
 static void record_clusters(struct radiosity *s, struct gpu_cmd *cmd)
 {
     const struct radiosity_clusters_push push = { s->map.cluster_count };
     gpu_dispatch(cmd, s->pipelines.clusters,
-                 GPU_BIND({ .name = "radiosity_clusters", .buffer = s->buffers.clusters },
-                          { .name = "radiosity_members", .buffer = s->buffers.members },
-                          { .name = "radiosity_flux", .buffer = s->buffers.flux },
-                          { .name = "radiosity_sent", .buffer = s->buffers.sent }),
+                 GPU_BIND({ .name = "radiosity_clusters", .image = s->tables.clusters },
+                          { .name = "radiosity_spans", .image = s->tables.spans },
+                          { .name = "radiosity_members", .image = s->tables.members },
+                          { .name = "radiosity_flux", .image = s->tables.flux },
+                          { .name = "radiosity_sent", .image = s->tables.sent }),
                  &push, sizeof push, gpu_groups(push.clusters, RADIOSITY_LOCAL), 1, 1);
 }
 
-static void record_nodes(struct radiosity *s, struct gpu_cmd *cmd, gpu_buffer radiosity)
+static void record_nodes(struct radiosity *s, struct gpu_cmd *cmd, gpu_image radiosity)
 {
-    const struct radiosity_nodes_push push = { s->map.cluster_count,
-                                               s->map.tree.count - s->map.cluster_count };
+    const struct radiosity_nodes_push push = { s->group_count };
+    if (push.groups == 0) return;
     gpu_dispatch(cmd, s->pipelines.nodes,
-                 GPU_BIND({ .name = "radiosity_clusters", .buffer = s->buffers.clusters },
-                          { .name = "radiosity_nodes", .buffer = s->buffers.nodes },
-                          { .name = "radiosity_sent", .buffer = radiosity }),
-                 &push, sizeof push, gpu_groups(push.nodes, RADIOSITY_LOCAL), 1, 1);
+                 GPU_BIND({ .name = "radiosity_groups", .image = s->tables.groups },
+                          { .name = "radiosity_clusters", .image = s->tables.clusters },
+                          { .name = "radiosity_sent", .image = radiosity }),
+                 &push, sizeof push, gpu_groups(push.groups, RADIOSITY_LOCAL), 1, 1);
 }
 
-static void record_step_of(struct radiosity *s, struct gpu_cmd *cmd, float over, gpu_buffer last,
-                           gpu_buffer next, const struct radiosity_block *block)
+// The part of some rows that is in a block.
+static struct span rows_in(const struct radiosity_block *block, struct span rows)
 {
-    const struct radiosity_solve_push push = { block->first, block->count,
-                                               2 * (uint32_t)s->options.sources, over };
+    const uint32_t first = rows.first > block->first ? rows.first : block->first;
+    const uint32_t end = rows.first + rows.count, block_end = block->first + block->count;
+    const uint32_t last = end < block_end ? end : block_end;
+    return (struct span){ first, last > first ? last - first : 0 };
+}
+
+static void record_step_of(struct radiosity *s, struct gpu_cmd *cmd, float over, gpu_image last,
+                           gpu_image next, const struct radiosity_block *block, struct span rows)
+{
+    const struct radiosity_solve_push push = { rows.first, rows.count, over };
     gpu_dispatch(cmd, s->pipelines.solve,
-                 GPU_BIND({ .name = "radiosity_clusters", .buffer = s->buffers.clusters },
-                          { .name = "radiosity_cluster_factors",
-                            .buffer = s->buffers.cluster_factors,
-                            .offset = block->offset,
-                            .bytes = block->bytes },
-                          { .name = "radiosity_sent", .buffer = s->buffers.sent },
-                          { .name = "radiosity_last", .buffer = last },
-                          { .name = "radiosity_next", .buffer = next }),
+                 GPU_BIND({ .name = "radiosity_clusters", .image = s->tables.clusters },
+                          { .name = "radiosity_order", .image = s->tables.cluster_factors.order },
+                          { .name = "radiosity_tiles", .image = s->tables.cluster_factors.tiles },
+                          { .name = "radiosity_factors", .image = block->table },
+                          { .name = "radiosity_sent", .image = s->tables.sent },
+                          { .name = "radiosity_last", .image = last },
+                          { .name = "radiosity_next", .image = next }),
                  &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
-static void record_step(struct radiosity *s, struct gpu_cmd *cmd, float over, gpu_buffer last,
-                        gpu_buffer next)
+static gpu_image after_step(const struct radiosity *s, int step)
 {
-    for (uint32_t first = 0; first < s->map.cluster_count;) {
-        const struct radiosity_block block = radiosity_cluster_block(s, first);
-        record_step_of(s, cmd, over, last, next, &block);
-        first += block.count;
-    }
+    return step < 0 ? s->tables.sent : s->tables.radiosity[step & 1];
 }
 
-// Returns the buffer with the radiosity of all bounces. The relaxation factors of the Chebyshev
-// method are those of eigenvalues in ± the spectral radius σ: 1, 1/(1 − σ²/2), 1/(1 − σ²ω/4), …
-static gpu_buffer record_solution(struct radiosity *s, struct gpu_cmd *cmd)
+// The relaxation factors of the Chebyshev method are those of eigenvalues in ± the spectral radius
+// σ: 1, 1/(1 − σ²/2), 1/(1 − σ²ω/4), …
+static float over_of(const struct radiosity *s, int step)
 {
     const float square = s->spectral_radius * s->spectral_radius;
-    gpu_buffer last = s->buffers.sent;
     float over = 1.0f;
-    record_nodes(s, cmd, last);
-    // The second step starts from it and the first step's result.
-    gpu_copy_buffer(cmd, s->buffers.radiosity[1], 0, s->buffers.sent, 0,
-                    s->map.cluster_count * sizeof(vec3s));
-    for (int i = 0; i < s->options.bounces; i++) {
-        if (i == 1) over = 1.0f / (1.0f - 0.5f * square);
-        if (i > 1) over = 1.0f / (1.0f - 0.25f * square * over);
-        record_step(s, cmd, over, last, s->buffers.radiosity[i & 1]);
-        last = s->buffers.radiosity[i & 1];
-        record_nodes(s, cmd, last);
+    for (int i = 1; i <= step; i++) over = 1.0f / (1.0f - (i == 1 ? 0.5f : 0.25f * over) * square);
+    return over;
+}
+
+static void record_step(struct radiosity *s, struct gpu_cmd *cmd, int step, struct span rows)
+{
+    const struct radiosity_rows *all = &s->tables.cluster_factors;
+    for (uint32_t i = 0; i < all->count; i++) {
+        const struct span part = rows_in(&all->blocks[i], rows);
+        if (part.count > 0)
+            record_step_of(s, cmd, over_of(s, step), after_step(s, step - 1), after_step(s, step),
+                           &all->blocks[i], part);
     }
-    return last;
 }
 
 static void record_gather_of(struct radiosity *s, struct gpu_cmd *cmd,
-                             const struct frame_view *view, gpu_buffer radiosity,
-                             const struct radiosity_block *block)
+                             const struct frame_view *view, const struct radiosity_block *block,
+                             struct span rows)
 {
-    const struct radiosity_gather_push push = { block->first, block->count,
-                                                (uint32_t)s->options.sources,
+    const struct radiosity_gather_push push = { rows.first, rows.count, s->map.texel_count,
                                                 s->options.emitters ? 1.0f : 0.0f };
     gpu_dispatch(cmd, s->pipelines.gather,
                  GPU_BIND(view->constants_binding,
-                          { .name = "radiosity_texels", .buffer = s->buffers.texels },
-                          { .name = "radiosity_factors",
-                            .buffer = s->buffers.factors,
-                            .offset = block->offset,
-                            .bytes = block->bytes },
-                          { .name = "radiosity_sent", .buffer = radiosity },
-                          { .name = "radiosity_light", .buffer = s->buffers.light }),
+                          { .name = "radiosity_texels", .image = s->tables.texels },
+                          { .name = "radiosity_order", .image = s->tables.factors.order },
+                          { .name = "radiosity_tiles", .image = s->tables.factors.tiles },
+                          { .name = "radiosity_factors", .image = block->table },
+                          { .name = "radiosity_sent", .image = s->tables.solution },
+                          { .name = "radiosity_light", .image = s->tables.light }),
                  &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
 static void record_gather(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view,
-                          gpu_buffer radiosity)
+                          struct span rows)
 {
-    for (uint32_t first = 0; first < s->map.texel_count;) {
-        const struct radiosity_block block = radiosity_texel_block(s, first);
-        record_gather_of(s, cmd, view, radiosity, &block);
-        first += block.count;
+    const struct radiosity_rows *all = &s->tables.factors;
+    for (uint32_t i = 0; i < all->count; i++) {
+        const struct span part = rows_in(&all->blocks[i], rows);
+        if (part.count > 0) record_gather_of(s, cmd, view, &all->blocks[i], part);
     }
 }
 
-static void record_smooth(struct radiosity *s, struct gpu_cmd *cmd)
+static void record_smooth(struct radiosity *s, struct gpu_cmd *cmd, struct span rows)
 {
-    const struct radiosity_smooth_push push = { s->map.texel_count, s->map.charts.width };
+    const struct radiosity_smooth_push push = { rows.first, rows.count, s->map.texel_count };
     gpu_dispatch(cmd, s->pipelines.smooth,
-                 GPU_BIND({ .name = "radiosity_points", .buffer = s->buffers.points },
-                          { .name = "radiosity_owners", .buffer = s->buffers.owners },
-                          { .name = "radiosity_light", .buffer = s->buffers.light },
-                          { .name = "radiosity_smoothed", .buffer = s->buffers.smoothed }),
-                 &push, sizeof push, gpu_groups(push.texels, RADIOSITY_LOCAL), 1, 1);
+                 GPU_BIND({ .name = "radiosity_neighbours", .image = s->tables.neighbours },
+                          { .name = "radiosity_light", .image = s->tables.light },
+                          { .name = "radiosity_smoothed", .image = s->tables.smoothed }),
+                 &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
 // Of the texels whose light is shown.
-static gpu_buffer shown_light(const struct radiosity *s)
+static gpu_image shown_light(const struct radiosity *s)
 {
-    return s->options.smooth ? s->buffers.smoothed : s->buffers.light;
+    return s->options.smooth ? s->tables.smoothed : s->tables.light;
 }
 
-static void record_map(struct radiosity *s, struct gpu_cmd *cmd)
+// The one that is not shown: a map appears whole.
+static gpu_image next_map(const struct radiosity *s)
 {
-    const struct radiosity_map_push push = { s->map.charts.width, s->map.charts.height };
+    return s->tables.light_maps[1 - s->shown_map];
+}
+
+static void record_map(struct radiosity *s, struct gpu_cmd *cmd, struct span rows)
+{
+    const struct radiosity_map_push push = { rows.first, rows.count, s->map.texel_count };
     gpu_dispatch(cmd, s->pipelines.map,
-                 GPU_BIND({ .name = "radiosity_owners", .buffer = s->buffers.owners },
-                          { .name = "radiosity_light", .buffer = shown_light(s) },
-                          { .name = "light_map", .image = s->buffers.light_map }),
-                 &push, sizeof push, gpu_groups(push.width, RADIOSITY_LOCAL_2D),
-                 gpu_groups(push.height, RADIOSITY_LOCAL_2D), s->sides);
+                 GPU_BIND({ .name = "radiosity_owners", .image = s->tables.owners },
+                          { .name = "radiosity_light", .image = shown_light(s) },
+                          { .name = "light_map", .image = next_map(s) }),
+                 &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
-static void record_seams(struct radiosity *s, struct gpu_cmd *cmd)
+static void record_seams(struct radiosity *s, struct gpu_cmd *cmd, struct span rows)
 {
-    const struct radiosity_seams_push push = { s->seam_places, RADIOSITY_SEAM_ENTRIES,
-                                               s->map.charts.width, s->map.charts.height };
+    const struct radiosity_seams_push push = { rows.first, rows.count, s->seam_places,
+                                               RADIOSITY_SEAM_ENTRIES / RADIOSITY_PAIR,
+                                               s->map.texel_count };
     gpu_dispatch(cmd, s->pipelines.seams,
-                 GPU_BIND({ .name = "radiosity_places", .buffer = s->buffers.places },
-                          { .name = "radiosity_seam_rows", .buffer = s->buffers.seams },
-                          { .name = "radiosity_light", .buffer = shown_light(s) },
-                          { .name = "light_map", .image = s->buffers.light_map }),
-                 &push, sizeof push, gpu_groups(push.places, RADIOSITY_LOCAL), 1, 1);
+                 GPU_BIND({ .name = "radiosity_places", .image = s->tables.places },
+                          { .name = "radiosity_seam_rows", .image = s->tables.seams },
+                          { .name = "radiosity_light", .image = shown_light(s) },
+                          { .name = "light_map", .image = next_map(s) }),
+                 &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
-void radiosity_record_light(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view)
+uint32_t radiosity_stage_rows(const struct radiosity *s, enum radiosity_stage stage)
 {
-    gpu_scope_begin(cmd, "direct");
-    record_direct(s, cmd, view);
-    record_clusters(s, cmd);
-    gpu_scope_end(cmd);
-    gpu_scope_begin(cmd, "bounces");
-    const gpu_buffer radiosity = record_solution(s, cmd);
-    gpu_scope_end(cmd);
-    s->solution = radiosity;
-    gpu_scope_begin(cmd, "gather");
-    record_gather(s, cmd, view, radiosity);
-    gpu_scope_end(cmd);
-    if (s->options.smooth) {
-        gpu_scope_begin(cmd, "smooth");
-        record_smooth(s, cmd);
-        gpu_scope_end(cmd);
+    switch (stage) {
+    case RADIOSITY_DIRECT:
+    case RADIOSITY_GATHER:
+        return s->map.texel_count;
+    case RADIOSITY_BOUNCES:
+        return s->map.cluster_count;
+    case RADIOSITY_SMOOTH:
+        return s->options.smooth ? s->map.texel_count : 0;
+    case RADIOSITY_LIGHT_MAP:
+        return s->owner_places;
+    case RADIOSITY_SEAMS:
+        return s->options.seams ? s->seam_places : 0;
+    default:
+        return 0;
     }
-    gpu_scope_begin(cmd, "light_map");
-    record_map(s, cmd);
-    gpu_scope_end(cmd);
-    if (!s->options.seams || s->seam_places == 0) return;
-    gpu_scope_begin(cmd, "seams");
-    record_seams(s, cmd);
-    gpu_scope_end(cmd);
+}
+
+const char *radiosity_stage_name(enum radiosity_stage stage)
+{
+    static const char *const names[] = { "direct", "bounces",   "gather",
+                                         "smooth", "light_map", "seams" };
+    return names[stage];
+}
+
+static void record_rows(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view,
+                        const struct radiosity_part *part)
+{
+    const struct span rows = { part->first, part->count };
+    switch (part->stage) {
+    case RADIOSITY_DIRECT:
+        record_direct(s, cmd, view, rows);
+        break;
+    case RADIOSITY_BOUNCES:
+        record_step(s, cmd, part->step, rows);
+        break;
+    case RADIOSITY_GATHER:
+        record_gather(s, cmd, view, rows);
+        break;
+    case RADIOSITY_SMOOTH:
+        record_smooth(s, cmd, rows);
+        break;
+    case RADIOSITY_LIGHT_MAP:
+        record_map(s, cmd, rows);
+        break;
+    default:
+        record_seams(s, cmd, rows);
+    }
+}
+
+// What follows the last row of a stage.
+static void record_end(struct radiosity *s, struct gpu_cmd *cmd, const struct radiosity_part *part)
+{
+    if (part->stage == RADIOSITY_DIRECT) {
+        record_clusters(s, cmd);
+        record_nodes(s, cmd, s->tables.sent);
+        // The second step starts from it and the first step's result.
+        gpu_copy_image(cmd, s->tables.radiosity[1], s->tables.sent);
+        if (part->steps == 0) gpu_copy_image(cmd, s->tables.solution, s->tables.sent);
+    }
+    if (part->stage != RADIOSITY_BOUNCES) return;
+    record_nodes(s, cmd, after_step(s, part->step));
+    if (part->step + 1 == part->steps)
+        gpu_copy_image(cmd, s->tables.solution, after_step(s, part->step));
+}
+
+void radiosity_record_part(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view,
+                           const struct radiosity_part *part)
+{
+    if (part->count > 0) record_rows(s, cmd, view, part);
+    if (part->first + part->count == radiosity_stage_rows(s, part->stage)) record_end(s, cmd, part);
 }
 
 void radiosity_record_apply(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -191,22 +251,23 @@ void radiosity_record_apply(struct radiosity *s, struct gpu_cmd *cmd, const stru
     const struct radiosity_apply_push push = { s->map.charts.width, s->map.charts.height,
                                                s->instances, dielectric.id != 0 };
     gpu_scope_begin(cmd, "apply");
-    gpu_dispatch(
-        cmd, s->pipelines.apply,
-        GPU_BIND(
-            view->constants_binding, view->ggx_albedo_binding,
-            { .name = "depth", .image = layers[FRAME_DEPTH] },
-            { .name = "normal", .image = layers[FRAME_NORMAL] },
-            { .name = "albedo", .image = layers[FRAME_ALBEDO] },
-            { .name = "material", .image = layers[FRAME_MATERIAL] },
-            { .name = "dielectric", .image = dielectric.id ? dielectric : layers[FRAME_MATERIAL] },
-            { .name = "id", .image = layers[FRAME_ID] },
-            { .name = "radiosity_instances", .buffer = s->buffers.instances },
-            { .name = "radiosity_triangles", .buffer = s->buffers.triangles },
-            { .name = "light_map", .image = s->buffers.light_map, .sampler = s->linear },
-            { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
-            { .name = "specular", .image = layers[FRAME_SPECULAR] }),
-        &push, sizeof push, gpu_groups(view->width, RADIOSITY_LOCAL_2D),
-        gpu_groups(view->height, RADIOSITY_LOCAL_2D), 1);
+    gpu_dispatch(cmd, s->pipelines.apply,
+                 GPU_BIND(view->constants_binding, view->ggx_albedo_binding,
+                          { .name = "depth", .image = layers[FRAME_DEPTH] },
+                          { .name = "normal", .image = layers[FRAME_NORMAL] },
+                          { .name = "albedo", .image = layers[FRAME_ALBEDO] },
+                          { .name = "material", .image = layers[FRAME_MATERIAL] },
+                          { .name = "dielectric",
+                            .image = dielectric.id ? dielectric : layers[FRAME_MATERIAL] },
+                          { .name = "id", .image = layers[FRAME_ID] },
+                          { .name = "radiosity_instances", .image = s->tables.instances },
+                          { .name = "radiosity_triangles", .image = s->tables.triangles },
+                          { .name = "light_map",
+                            .image = s->tables.light_maps[s->shown_map],
+                            .sampler = s->linear },
+                          { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
+                          { .name = "specular", .image = layers[FRAME_SPECULAR] }),
+                 &push, sizeof push, gpu_groups(view->width, RADIOSITY_LOCAL_2D),
+                 gpu_groups(view->height, RADIOSITY_LOCAL_2D), 1);
     gpu_scope_end(cmd);
 }

@@ -4,8 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "core/half.glsl"
-#include "techniques/radiosity/radiosity_shared.h"
+#include "techniques/radiosity/radiosity_table.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
 
@@ -13,32 +12,33 @@ layout(push_constant, scalar) uniform push_block
 {
     radiosity_seams_push push;
 };
-layout(set = 0, binding = 0, scalar) readonly buffer radiosity_places
-{
-    uint place_table[]; // (side · height + y) · width + x
-};
-layout(set = 0, binding = 1, scalar) readonly buffer radiosity_seam_rows
-{
-    radiosity_gpu_seam row_table[]; // [entry][place]
-};
-layout(set = 0, binding = 2, scalar) readonly buffer radiosity_light
-{
-    vec4 light_table[];
-};
+layout(set = 0, binding = 0) uniform usampler2D radiosity_places;
+// [pair][place]: texels and weights; zeros at the end.
+layout(set = 0, binding = 1, rgba32ui) uniform readonly uimage2D radiosity_seam_rows;
+layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D radiosity_light; // [colour][texel]
 layout(set = 0, binding = 3, rgba16f) uniform writeonly image2DArray light_map;
+
+vec4 light_of(uint texel, int colour)
+{
+    uvec2 words = imageLoad(radiosity_light, radiosity_at(colour * push.texels + texel)).xy;
+    return radiosity_unpack_light(words);
+}
 
 void main()
 {
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= push.places) return;
+    if (gl_GlobalInvocationID.x >= push.count) return;
+    uint i = push.first + gl_GlobalInvocationID.x;
     vec4 light[3] = vec4[](vec4(0.0), vec4(0.0), vec4(0.0));
-    for (uint k = 0; k < push.entries; k++) {
-        radiosity_gpu_seam entry = row_table[k * push.places + i];
-        if (entry.weight == 0.0) break; // rows end with zeros
-        for (int c = 0; c < 3; c++) light[c] += entry.weight * light_table[3u * entry.texel + c];
+    for (uint k = 0; k < push.pairs; k++) {
+        uvec4 pair = imageLoad(radiosity_seam_rows, radiosity_at(k * push.places + i));
+        vec2 weight = uintBitsToFloat(pair.yw);
+        if (weight.x == 0.0) break;
+        for (int c = 0; c < 3; c++) {
+            light[c] += weight.x * light_of(pair.x, c);
+            light[c] += weight.y * light_of(pair.z, c);
+        }
     }
-    uint place = place_table[i], line = place / push.width;
-    ivec3 at = ivec3(place % push.width, line % push.height, line / push.height);
+    uvec3 at = radiosity_place(texelFetch(radiosity_places, radiosity_at(i), 0).x);
     for (int c = 0; c < 3; c++)
         imageStore(light_map, ivec3(at.xy, RADIOSITY_LAYERS * at.z + c),
                    clamp(light[c], -HALF_MAX, HALF_MAX));

@@ -15,50 +15,40 @@
 // upper two bits are zero: it is below 2.
 #define RADIOSITY_NODE_BITS 18
 
-struct radiosity_gpu_texel {
-    vec3s position; // world
-    float area_m2;  // 0: hidden inside of something
-    vec3s normal;   // unit, of its side
-    vec3s reflectance;
-    vec4s sky;        // irradiance along the normal, vector irradiance: of a sky of radiance 1
-    vec4s emitted[3]; // the same by colour, lux
-};
+// Tables are images of this width (radiosity_table.h).
+#define RADIOSITY_TABLE_WIDTH 4096u
 
-// Where a texel is sampled, and what it sees.
-struct radiosity_gpu_point {
-    vec3s position;         // world
-    float inverse_distance; // mean over its rays, 1/m
-    uint32_t place;         // in the light map: (side · height + y) · width + x
-};
+// Of a texel in the table of texels: entry part · texels + texel.
+#define RADIOSITY_POSITION    0 // world; w: area, m²; 0: hidden inside of something
+#define RADIOSITY_NORMAL      1 // unit, of its side
+#define RADIOSITY_REFLECTANCE 2
+#define RADIOSITY_SKY_LIGHT   3 // irradiance along the normal, vector irradiance: radiance 1
+#define RADIOSITY_EMITTED_0   4 // the same by colour, lux
+#define RADIOSITY_TEXEL_PARTS 7
 
-struct radiosity_gpu_cluster {
-    vec3s reflectance;     // mean by area
-    float area_m2;         // of texels that are not hidden
-    uint32_t first, count; // in the list of members
-};
+// Of a triangle of the scene: entry RADIOSITY_TRIANGLE_PARTS · triangle + part.
+// In the light map it is at x = u · (position, 1), y = v · (position, 1), in texels.
+#define RADIOSITY_TRIANGLE_PARTS 3 // u; v; normal of the front, number of sides in the map
 
-// A node of the tree above the clusters.
-struct radiosity_gpu_node {
-    uint32_t first, count; // clusters; count 0: it is no source
-};
+// Of a place of the light map: y above x, above both the side.
+#define RADIOSITY_PLACE_BITS 15
 
-// Where a triangle of the scene is in the light map: x = u · (position, 1), y = v · (position, 1),
-// in texels.
-struct radiosity_gpu_triangle {
-    vec4s u, v;
-    vec3s normal;   // unit, of the front
-    uint32_t sides; // 0: it is not in the map; 1: its front is; 2: both are
-};
+// Clusters of a group: their number is above the first one.
+#define RADIOSITY_GROUP_SHIFT RADIOSITY_NODE_BITS
 
-// A texel's share of the light of a place beside a seam.
-struct radiosity_gpu_seam {
-    uint32_t texel;
-    float weight;
-};
+// Rows of a tile.
+#define RADIOSITY_TILE 8
+
+// Entries of rows side by side in a texel of a table: of texels two words each, of clusters one.
+#define RADIOSITY_PAIR 2
+#define RADIOSITY_QUAD 4
+
+// Neighbours of a texel, in pairs of (texel, weight).
+#define RADIOSITY_NEIGHBOURS 8
 
 // What debug views show of a texel.
 struct radiosity_gpu_label {
-    uint32_t place; // in the light map, as of points
+    uint32_t place; // (side · height + y) · width + x in the light map
     uint32_t chart, cluster;
     uint32_t state; // RADIOSITY_SAMPLED_…
 };
@@ -71,8 +61,9 @@ struct radiosity_gpu_label {
 #define RADIOSITY_VIEW_CLUSTERS 2
 #define RADIOSITY_VIEW_VALIDITY 3
 
+// Passes over rows `first` … `first` + `count` − 1: of texels, clusters or places.
 struct radiosity_direct_push {
-    uint32_t texels;
+    uint32_t first, count, texels;
     int32_t shadow_radius; // texels of the shadow map
     float emitters;        // 1: emissive surfaces are sources, 0: they are not
 };
@@ -81,33 +72,30 @@ struct radiosity_clusters_push {
     uint32_t clusters;
 };
 
-// Rows of clusters `first` … `first` + `count` − 1.
 struct radiosity_solve_push {
-    uint32_t first, count, entries; // entries: of a row
-    float over;                     // relaxation factor
+    uint32_t first, count;
+    float over; // relaxation factor
 };
 
 struct radiosity_nodes_push {
-    uint32_t clusters, nodes;
+    uint32_t groups;
 };
 
-// Rows of texels `first` … `first` + `count` − 1.
 struct radiosity_gather_push {
-    uint32_t first, count, entries;
+    uint32_t first, count, texels;
     float emitters;
 };
 
 struct radiosity_smooth_push {
-    uint32_t texels, width; // width: of the light map
+    uint32_t first, count, texels;
 };
 
 struct radiosity_map_push {
-    uint32_t width, height; // of the light map
+    uint32_t first, count, texels;
 };
 
 struct radiosity_seams_push {
-    uint32_t places, entries; // entries: of a row
-    uint32_t width, height;   // of the light map
+    uint32_t first, count, places, pairs, texels; // pairs: of a row
 };
 
 struct radiosity_apply_push {
@@ -123,22 +111,16 @@ struct radiosity_view_push {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct radiosity_gpu_texel) == 104, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_gpu_point) == 20, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_smooth_push) == 8, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_gpu_cluster) == 24, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_gpu_triangle) == 48, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_gpu_seam) == 8, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_seams_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gpu_label) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_view_push) == 16, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_direct_push) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_direct_push) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_clusters_push) == 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_solve_push) == 16, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_gpu_node) == 8, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_nodes_push) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_solve_push) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_nodes_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gather_push) == 16, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_map_push) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_smooth_push) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_map_push) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_seams_push) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_apply_push) == 16, "layout is shared with GLSL");
 #endif
 

@@ -1,15 +1,11 @@
 // The light of a texel: the mean of its own and that of its neighbours in the chart, as far as
 // nothing is near. Each texel's row is a choice of its own among the clusters that its rays met;
 // neighbours choose others, and see nearly the same.
-//
-// With R the harmonic mean of the distances of what a texel sees, irradiance at distance d differs
-// by about d/R (Ward, Rubinstein & Clear 1988, "A Ray Tracing Solution for Diffuse
-// Interreflection"): weights fall to 0 where that is ¼.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "techniques/radiosity/radiosity_shared.h"
+#include "techniques/radiosity/radiosity_table.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
 
@@ -17,43 +13,35 @@ layout(push_constant, scalar) uniform push_block
 {
     radiosity_smooth_push push;
 };
-layout(set = 0, binding = 0, scalar) readonly buffer radiosity_points
-{
-    radiosity_gpu_point point_table[];
-};
-layout(set = 0, binding = 1, scalar) readonly buffer radiosity_owners
-{
-    uint owner_table[]; // [side][y][x]
-};
-layout(set = 0, binding = 2, scalar) readonly buffer radiosity_light
-{
-    vec4 light_table[];
-};
-layout(set = 0, binding = 3, scalar) writeonly buffer radiosity_smoothed
-{
-    vec4 smoothed_table[];
-};
+// [pair][texel]: texels and weights; zeros at the end.
+layout(set = 0, binding = 0, rgba32ui) uniform readonly uimage2D radiosity_neighbours;
+layout(set = 0, binding = 1, rg32ui) uniform readonly uimage2D radiosity_light; // [colour][texel]
+layout(set = 0, binding = 2, rg32ui) uniform writeonly uimage2D radiosity_smoothed;
 
-float weight_of(radiosity_gpu_point a, radiosity_gpu_point b)
+vec4 light_of(uint texel, int colour)
 {
-    float per_m = max(a.inverse_distance, b.inverse_distance);
-    return max(1.0 - 4.0 * distance(a.position, b.position) * per_m, 0.0);
+    uvec2 words = imageLoad(radiosity_light, radiosity_at(colour * push.texels + texel)).xy;
+    return radiosity_unpack_light(words);
 }
 
 void main()
 {
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= push.texels) return;
-    radiosity_gpu_point own = point_table[i];
-    vec4 sum[3] = vec4[3](light_table[3u * i], light_table[3u * i + 1u], light_table[3u * i + 2u]);
+    if (gl_GlobalInvocationID.x >= push.count) return;
+    uint i = push.first + gl_GlobalInvocationID.x;
+    vec4 sum[3] = vec4[3](light_of(i, 0), light_of(i, 1), light_of(i, 2));
     float weights = 1.0;
-    for (int k = 0; k < 9; k++) {
-        int to = int(own.place) + (k / 3 - 1) * int(push.width) + k % 3 - 1;
-        uint other = owner_table[to];
-        if (other == 0xffffffffu || other == i) continue;
-        float weight = weight_of(own, point_table[other]);
-        weights += weight;
-        for (int c = 0; c < 3; c++) sum[c] += weight * light_table[3u * other + c];
+    for (uint k = 0; k < RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR; k++) {
+        uvec4 pair = imageLoad(radiosity_neighbours, radiosity_at(k * push.texels + i));
+        if (pair.y == 0u) break;
+        vec2 weight = uintBitsToFloat(pair.yw);
+        weights += weight.x;
+        weights += weight.y;
+        for (int c = 0; c < 3; c++) {
+            sum[c] += weight.x * light_of(pair.x, c);
+            sum[c] += weight.y * light_of(pair.z, c);
+        }
     }
-    for (int c = 0; c < 3; c++) smoothed_table[3u * i + c] = sum[c] / weights;
+    for (int c = 0; c < 3; c++)
+        imageStore(radiosity_smoothed, radiosity_at(c * push.texels + i),
+                   uvec4(radiosity_pack_light(sum[c] / weights), 0u, 0u));
 }

@@ -12,40 +12,35 @@ layout(push_constant, scalar) uniform push_block
 {
     radiosity_solve_push push;
 };
-layout(set = 0, binding = 0, scalar) readonly buffer radiosity_clusters
+layout(set = 0, binding = 0) uniform sampler2D radiosity_clusters; // reflectance, area in m²
+layout(set = 0, binding = 1) uniform usampler2D radiosity_order;   // [row] cluster
+layout(set = 0, binding = 2) uniform usampler2D radiosity_tiles;   // first texel, texels of a row
+layout(set = 0, binding = 3, rgba32ui) uniform readonly uimage2D radiosity_factors;
+layout(set = 0, binding = 4) uniform usampler2D radiosity_sent;                // B0
+layout(set = 0, binding = 5, rg32ui) uniform readonly uimage2D radiosity_last; // B
+layout(set = 0, binding = 6, rg32ui) uniform uimage2D radiosity_next; // B_before, then B′
+
+vec3 light_of(uint word)
 {
-    radiosity_gpu_cluster cluster_table[];
-};
-// [entry][cluster of the block]
-layout(set = 0, binding = 1, scalar) readonly buffer radiosity_cluster_factors
-{
-    uint factor_table[];
-};
-layout(set = 0, binding = 2, scalar) readonly buffer radiosity_sent
-{
-    vec3 sent_table[]; // B0
-};
-layout(set = 0, binding = 3, scalar) readonly buffer radiosity_last
-{
-    vec3 last_table[]; // B
-};
-layout(set = 0, binding = 4, scalar) buffer radiosity_next
-{
-    vec3 next_table[]; // B_before, then B′
-};
+    uvec2 sent = imageLoad(radiosity_last, radiosity_at(radiosity_source(word))).xy;
+    return radiosity_form_factor(word) * radiosity_unpack(sent);
+}
 
 void main()
 {
-    uint row = gl_GlobalInvocationID.x;
-    if (row >= push.count) return;
+    if (gl_GlobalInvocationID.x >= push.count) return;
+    uint row = push.first + gl_GlobalInvocationID.x;
+    uvec2 tile = texelFetch(radiosity_tiles, radiosity_at(row / RADIOSITY_TILE), 0).xy;
     vec3 sum = vec3(0.0);
-    for (uint k = 0; k < push.entries; k++) {
-        uint word = factor_table[k * push.count + row];
-        if (radiosity_has_ended(word)) break;
-        sum += radiosity_form_factor(word) * last_table[radiosity_source(word)];
+    for (uint k = 0; k < tile.y; k++) {
+        uvec4 words =
+            imageLoad(radiosity_factors, radiosity_at(radiosity_row_texel(tile.x, k, row)));
+        for (int j = 0; j < RADIOSITY_QUAD; j++) sum += light_of(words[j]);
     }
-    uint i = push.first + row;
-    vec3 bounced = sent_table[i] + cluster_table[i].reflectance * sum;
-    vec3 before = push.over == 1.0 ? vec3(0.0) : next_table[i];
-    next_table[i] = push.over * (bounced - before) + before;
+    ivec2 at = radiosity_at(texelFetch(radiosity_order, radiosity_at(row), 0).x);
+    vec3 reflectance = texelFetch(radiosity_clusters, at, 0).rgb;
+    vec3 bounced = radiosity_unpack(texelFetch(radiosity_sent, at, 0).xy) + reflectance * sum;
+    vec3 before = push.over == 1.0 ? vec3(0.0) : radiosity_unpack(imageLoad(radiosity_next, at).xy);
+    vec3 next = push.over * (bounced - before) + before;
+    imageStore(radiosity_next, at, uvec4(radiosity_pack(next), 0u, 0u));
 }

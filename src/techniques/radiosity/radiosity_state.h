@@ -5,28 +5,64 @@
 #include "techniques/radiosity/radiosity_follow.h"
 #include "techniques/radiosity/radiosity_seams.h"
 #include "techniques/radiosity/radiosity_shared.h"
+#include "techniques/radiosity/radiosity_table.h"
 #include "techniques/radiosity/radiosity_tensors.h"
 
-struct radiosity_buffers {
-    gpu_buffer texels, factors;                           // of texels
-    gpu_buffer clusters, members, nodes, cluster_factors; // of clusters
-    gpu_buffer points;                                    // of texels, for `smooth`
-    gpu_buffer owners, instances, triangles;              // of the light map
-    gpu_buffer places, seams;                             // beside seams
-    gpu_buffer labels;                                    // of texels, for debug views
-    gpu_buffer flux, light, smoothed;                     // [texels] of the newest light
-    gpu_buffer sent, radiosity[2];                        // [clusters and nodes] likewise
-    gpu_image light_map;
+// Tiles of rows of form factors in one table: all may be more than a table has.
+struct radiosity_block {
+    gpu_image table;
+    uint32_t first, count; // rows
 };
 
-// Rows of form factors in one binding: a table may have more bytes than a binding.
-struct radiosity_block {
-    uint32_t first, count; // rows
-    size_t offset, bytes;
+// Rows of texels or clusters that are near to each other, by decreasing number of entries: few
+// entries of a tile are zeros.
+struct radiosity_rows {
+    struct radiosity_block *blocks;
+    uint32_t count;         // of blocks
+    float mean_entries;     // of a row
+    gpu_image order, tiles; // [row] texel or cluster; [tile] first texel in its block, of a row
+};
+
+struct radiosity_tables {
+    gpu_image texels, neighbours;               // of texels
+    gpu_image clusters, spans, members, groups; // of clusters
+    gpu_image owners, instances, triangles;     // of the light map
+    gpu_image places, seams;                    // beside seams
+    gpu_image flux, light, smoothed;            // [texels] of the newest light
+    gpu_image sent, radiosity[2];               // [clusters and nodes] likewise
+    gpu_image solution;                         // [clusters and nodes] of all bounces
+    gpu_image light_maps[2];
+    gpu_buffer labels, owner_of_place; // of texels, of places: for debug views
+    struct radiosity_rows factors, cluster_factors;
 };
 
 struct radiosity_pipelines {
     gpu_pipeline direct, clusters, nodes, solve, gather, smooth, map, seams, apply, view;
+};
+
+// Stages of an update, in their order.
+enum radiosity_stage {
+    RADIOSITY_DIRECT, // until the radiosity of clusters before any bounce
+    RADIOSITY_BOUNCES,
+    RADIOSITY_GATHER,
+    RADIOSITY_SMOOTH,
+    RADIOSITY_LIGHT_MAP,
+    RADIOSITY_SEAMS,
+    RADIOSITY_STAGES,
+};
+
+// Rows of a stage.
+struct radiosity_part {
+    enum radiosity_stage stage;
+    int step, steps; // of RADIOSITY_BOUNCES
+    uint32_t first, count;
+};
+
+struct radiosity_update {
+    bool running;
+    bool changed;             // light has changed since it started
+    bool at_once;             // to be completed in this frame
+    struct radiosity_part at; // what it goes on with
 };
 
 struct radiosity {
@@ -35,12 +71,14 @@ struct radiosity {
     struct radiosity_options options;
     struct radiosity_map map; // without texels: an empty scene
     uint32_t instances, sides;
-    uint32_t seam_places;
+    uint32_t owner_places, seam_places; // of the light map
+    uint32_t group_count;
     float spectral_radius; // of ρ F, at least
-    struct radiosity_buffers buffers;
+    struct radiosity_tables tables;
     struct radiosity_pipelines pipelines;
     gpu_sampler linear;
-    gpu_buffer solution; // one of the buffers: the radiosity of all bounces
+    int shown_map; // of the light maps
+    struct radiosity_update update;
     struct radiosity_probes probes;
     struct radiosity_followed followed;
     // What the light of the newest frame was computed from.
@@ -50,30 +88,42 @@ struct radiosity {
     } inputs;
 };
 
-// ---- radiosity_upload.c, radiosity_factors.c
+// ---- radiosity_upload.c, radiosity_factors.c, radiosity_places.c
 
 // Tables of the light map and of a bake on the GPU.
 bool radiosity_upload(struct radiosity *state, const struct tensors *bake);
-// Both tables of form factors, block after block. Rows are those of a bake.
+// The form factors of texels and of clusters, block after block. Rows are those of a bake.
 bool radiosity_upload_factors(struct radiosity *state, const uint32_t *source,
                               const uint16_t *factor, const uint32_t *cluster_source,
                               const uint16_t *cluster_factor);
+void radiosity_destroy_rows(struct radiosity *state, struct radiosity_rows *rows);
 
-// The block that begins with a row.
-struct radiosity_block radiosity_texel_block(const struct radiosity *state, uint32_t first);
-struct radiosity_block radiosity_cluster_block(const struct radiosity *state, uint32_t first);
+// Where light is shown. shown: [texels] whose light each one shows.
+bool radiosity_upload_owners(struct radiosity *state, const uint32_t *shown);
+bool radiosity_upload_triangles(struct radiosity *state);
+// The word of a place of the light map, (side · height + y) · width + x, in a table.
+uint32_t radiosity_place_word(const struct radiosity *state, size_t place);
+
+// ---- radiosity_update.c
+
+// This frame's share of the light that `update` asks for.
+void radiosity_record_update(struct radiosity *state, struct gpu_cmd *cmd,
+                             const struct frame_view *view);
 
 // ---- radiosity_record.c
 
-void radiosity_record_light(struct radiosity *state, struct gpu_cmd *cmd,
-                            const struct frame_view *view);
+uint32_t radiosity_stage_rows(const struct radiosity *state, enum radiosity_stage stage);
+const char *radiosity_stage_name(enum radiosity_stage stage);
+// The rows of a part, and with the last ones what follows the stage or the step.
+void radiosity_record_part(struct radiosity *state, struct gpu_cmd *cmd,
+                           const struct frame_view *view, const struct radiosity_part *part);
 void radiosity_record_apply(struct radiosity *state, struct gpu_cmd *cmd,
                             const struct frame_view *view);
 
 // ---- radiosity_view.c
 
 extern const struct technique_debug_view radiosity_views[];
-// points: [texels] position (m), share, of a bake.
-bool radiosity_view_init(struct radiosity *state, const float *points);
+// points: [texels] position (m), share, of a bake; shown: [texels] whose light each one shows.
+bool radiosity_view_init(struct radiosity *state, const float *points, const uint32_t *shown);
 void radiosity_view_record(struct radiosity *state, struct gpu_cmd *cmd,
                            const struct frame_view *view, const char *name, gpu_image out);

@@ -2,18 +2,22 @@
 #ifndef AG_RADIOSITY_TEXELS_GLSL
 #define AG_RADIOSITY_TEXELS_GLSL
 
-#include "techniques/radiosity/radiosity_shared.h"
+#include "techniques/radiosity/radiosity_table.glsl"
 
-layout(set = 0, binding = RADIOSITY_TEXELS_BINDING, scalar) readonly buffer radiosity_texels
+layout(set = 0, binding = RADIOSITY_TEXELS_BINDING,
+       rgba32f) uniform readonly image2D radiosity_texels;
+
+vec4 radiosity_texel_part(uint texel, uint texels, int part)
 {
-    radiosity_gpu_texel texel_table[];
-};
+    return imageLoad(radiosity_texels, radiosity_at(part * texels + texel));
+}
 
 // Irradiance and vector irradiance of the sky and of emissive surfaces, by colour. xyz of a column
 // pair are not normalised: x is the irradiance, yzw the vector.
-vec4 radiosity_unbounced(radiosity_gpu_texel texel, int colour, vec3 sky, float emitters)
+vec4 radiosity_unbounced(uint texel, uint texels, int colour, vec3 sky, float emitters)
 {
-    return texel.sky * sky[colour] + texel.emitted[colour] * emitters;
+    return radiosity_texel_part(texel, texels, RADIOSITY_SKY_LIGHT) * sky[colour] +
+           radiosity_texel_part(texel, texels, RADIOSITY_EMITTED_0 + colour) * emitters;
 }
 
 #endif

@@ -102,27 +102,6 @@ static bool check_sources(struct radiosity *s, const struct content *c)
                      nodes);
 }
 
-static bool fits(struct radiosity *s, const char *name, size_t bytes)
-{
-    const uint64_t most = gpu_limits(s->gpu)->max_storage_bytes;
-    if (bytes <= most) return true;
-    return host_fail(s->host, FAIL_UNSUPPORTED,
-                     "radiosity: its %s have %.0f MB, above the limit of %s, %.0f MB: give fewer "
-                     "texels or sources",
-                     name, (double)bytes * 1e-6, gpu_info(s->gpu)->name, (double)most * 1e-6);
-}
-
-static bool upload(struct radiosity *s, const char *name, void *items, size_t count, size_t size,
-                   gpu_buffer *out)
-{
-    const size_t bytes = count * size;
-    const struct gpu_buffer_desc desc = { name, bytes > 0 ? bytes : 16, GPU_BUFFER_STORAGE };
-    const bool ok = items && fits(s, name, bytes) && gpu_buffer_create(s->gpu, &desc, out) &&
-                    (bytes == 0 || gpu_buffer_upload(s->gpu, *out, 0, items, bytes));
-    host_free(s->host, items);
-    return ok;
-}
-
 // ---- texels
 
 static float area_of(const struct radiosity *s, const struct content *c, uint32_t texel)
@@ -130,60 +109,103 @@ static float area_of(const struct radiosity *s, const struct content *c, uint32_
     return c->point[4 * (size_t)texel + 3] * radiosity_chart_texel(&s->map, texel)->area_m2;
 }
 
-static bool upload_texels(struct radiosity *s, const struct content *c)
+static void fill_texel(const struct radiosity *s, const struct content *c, uint32_t i, vec4s *parts)
 {
-    const uint32_t count = s->map.texel_count;
-    struct radiosity_gpu_texel *texels = host_alloc(s->host, count, sizeof *texels);
-    for (uint32_t i = 0; texels && i < count; i++) {
-        texels[i] = (struct radiosity_gpu_texel){ .area_m2 = area_of(s, c, i),
-                                                  .normal = s->map.texels[i].normal };
-        memcpy(&texels[i].position, c->point + 4 * (size_t)i, 3 * sizeof(float));
-        memcpy(&texels[i].reflectance, c->reflectance + 3 * (size_t)i, 3 * sizeof(float));
-        memcpy(&texels[i].sky, c->sky + 4 * (size_t)i, 4 * sizeof(float));
-        memcpy(texels[i].emitted, c->emitted + 12 * (size_t)i, 12 * sizeof(float));
-    }
-    return upload(s, "texels", texels, count, sizeof *texels, &s->buffers.texels);
+    const size_t count = s->map.texel_count;
+    const float *point = c->point + 4 * (size_t)i, *reflectance = c->reflectance + 3 * (size_t)i;
+    parts[RADIOSITY_POSITION * count + i] =
+        vec4_of(vec3_of(point[0], point[1], point[2]), area_of(s, c, i));
+    parts[RADIOSITY_NORMAL * count + i] = vec4_of(s->map.texels[i].normal, 0.0f);
+    parts[RADIOSITY_REFLECTANCE * count + i] =
+        vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), 0.0f);
+    memcpy(&parts[RADIOSITY_SKY_LIGHT * count + i], c->sky + 4 * (size_t)i, sizeof *parts);
+    for (size_t k = 0; k < 3; k++)
+        memcpy(&parts[(RADIOSITY_EMITTED_0 + k) * count + i], c->emitted + 12 * (size_t)i + 4 * k,
+               sizeof *parts);
 }
 
-static bool upload_points(struct radiosity *s, const struct content *c)
+static bool upload_texels(struct radiosity *s, const struct content *c)
 {
-    const uint32_t count = s->map.texel_count, width = s->map.charts.width;
-    struct radiosity_gpu_point *points = host_alloc(s->host, count, sizeof *points);
-    for (uint32_t i = 0; points && i < count; i++) {
-        const struct chart_texel *t = radiosity_chart_texel(&s->map, i);
-        const uint32_t row = (s->map.texels[i].back ? s->map.charts.height : 0) + t->y;
-        points[i].inverse_distance = c->inverse_distance[i];
-        points[i].place = row * width + t->x;
-        memcpy(&points[i].position, c->point + 4 * (size_t)i, 3 * sizeof(float));
+    const size_t count = (size_t)s->map.texel_count * RADIOSITY_TEXEL_PARTS;
+    vec4s *parts = host_alloc(s->host, radiosity_table_room(count), sizeof *parts);
+    for (uint32_t i = 0; parts && i < s->map.texel_count; i++) fill_texel(s, c, i, parts);
+    return radiosity_table_upload(s->host, s->gpu, "texels", GPU_RGBA32F, parts, count,
+                                  &s->tables.texels);
+}
+
+// An entry of a sum over texels.
+struct share {
+    uint32_t texel;
+    float weight;
+};
+
+// Entries of rows in pairs: [pair][row][2].
+static struct share *share_at(struct share *table, size_t rows, size_t row, size_t entry)
+{
+    return &table[RADIOSITY_PAIR * (entry / RADIOSITY_PAIR * rows + row) + entry % RADIOSITY_PAIR];
+}
+
+// With R the harmonic mean of the distances of what a texel sees, irradiance at distance d differs
+// by about d/R (Ward, Rubinstein & Clear 1988, "A Ray Tracing Solution for Diffuse
+// Interreflection"): weights fall to 0 where that is 1/4.
+static float weight_of(const struct content *c, uint32_t a, uint32_t b)
+{
+    const float *p = c->point + 4 * (size_t)a, *q = c->point + 4 * (size_t)b;
+    const float distance = hypotf(hypotf(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
+    const float per_m = fmaxf(c->inverse_distance[a], c->inverse_distance[b]);
+    return fmaxf(1.0f - 4.0f * distance * per_m, 0.0f);
+}
+
+static void fill_neighbours(const struct radiosity *s, const struct content *c, uint32_t i,
+                            struct share *table)
+{
+    const struct chart_texel *t = radiosity_chart_texel(&s->map, i);
+    const uint32_t width = s->map.charts.width, height = s->map.charts.height;
+    const uint32_t top = s->map.texels[i].back ? height : 0;
+    size_t count = 0;
+    for (uint32_t k = 0; k < 9; k++) {
+        if (k == 4) continue;                                      // itself
+        const uint32_t x = t->x + k % 3 - 1, y = t->y + k / 3 - 1; // below 0: beyond the size
+        if (x >= width || y >= height) continue;
+        const uint32_t texel = radiosity_texel_of_place(&s->map, (size_t)(top + y) * width + x);
+        if (texel == CHART_NONE || c->shown[texel] == i) continue;
+        const struct share share = { c->shown[texel], weight_of(c, i, c->shown[texel]) };
+        if (share.weight > 0.0f) *share_at(table, s->map.texel_count, i, count++) = share;
     }
-    return upload(s, "points", points, count, sizeof *points, &s->buffers.points);
+}
+
+static bool upload_neighbours(struct radiosity *s, const struct content *c)
+{
+    const size_t count = (size_t)s->map.texel_count * RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR;
+    struct share *table =
+        host_alloc(s->host, radiosity_table_room(count), RADIOSITY_PAIR * sizeof *table);
+    for (uint32_t i = 0; table && i < s->map.texel_count; i++) fill_neighbours(s, c, i, table);
+    return radiosity_table_upload(s->host, s->gpu, "neighbours", GPU_RGBA32U, table, count,
+                                  &s->tables.neighbours);
 }
 
 // ---- clusters
 
-static struct radiosity_gpu_cluster cluster_of(const struct radiosity *s, const struct content *c,
-                                               uint32_t cluster)
+// Mean reflectance, and area of texels that are not hidden.
+static vec4s cluster_of(const struct radiosity *s, const struct content *c, uint32_t cluster)
 {
     const struct radiosity_map *map = &s->map;
-    struct radiosity_gpu_cluster out = { .first = map->first[cluster],
-                                         .count = map->first[cluster + 1] - map->first[cluster] };
+    vec3s reflected = vec3_of(0, 0, 0);
     float sum = 0.0f;
-    for (uint32_t m = out.first; m < out.first + out.count; m++) {
+    for (uint32_t m = map->first[cluster]; m < map->first[cluster + 1]; m++) {
         const uint32_t texel = map->members[m];
         const float area = area_of(s, c, texel);
         const float *reflectance = c->reflectance + 3 * (size_t)texel;
         sum += area;
-        for (int k = 0; k < 3; k++) out.reflectance.raw[k] += area * reflectance[k];
+        for (int k = 0; k < 3; k++) reflected.raw[k] += area * reflectance[k];
     }
-    out.area_m2 = sum;
-    if (sum > 0.0f) out.reflectance = glms_vec3_divs(out.reflectance, sum);
-    return out;
+    return vec4_of(sum > 0.0f ? glms_vec3_divs(reflected, sum) : reflected, sum);
 }
 
 struct power {
     const struct content *content;
     const struct radiosity_tree *tree;
-    const struct radiosity_gpu_cluster *clusters;
+    const vec4s *clusters;
     float *from, *to; // [nodes]
 };
 
@@ -194,8 +216,8 @@ static void fill_nodes(const struct power *p, float *x)
         float sum = 0.0f, area = 0.0f;
         if (node->count > RADIOSITY_GROUP) continue;
         for (uint32_t c = node->first; c < node->first + node->count; c++) {
-            sum += p->clusters[c].area_m2 * x[c];
-            area += p->clusters[c].area_m2;
+            sum += p->clusters[c].w * x[c];
+            area += p->clusters[c].w;
         }
         x[n] = area > 0.0f ? sum / area : 0.0f;
     }
@@ -216,7 +238,7 @@ static float power_step(const struct power *p)
             sum += float_from_half(c->cluster_factor[at]) * p->from[c->cluster_source[at]];
         }
         // Clusters that reflect nothing would end with the ratio 0/0.
-        p->to[i] = fmaxf(sum * glms_vec3_max(p->clusters[i].reflectance), 1e-30f);
+        p->to[i] = fmaxf(sum * glms_vec3_max(glms_vec3(p->clusters[i])), 1e-30f);
         most = fmaxf(most, p->to[i] / p->from[i]);
     }
     return most;
@@ -226,7 +248,7 @@ enum { POWER_STEPS = 24 };
 static const float MOST_RADIUS = 0.999f;
 
 static bool find_spectral_radius(struct radiosity *s, const struct content *c,
-                                 const struct radiosity_gpu_cluster *clusters)
+                                 const vec4s *clusters)
 {
     struct power p = { c, &s->map.tree, clusters,
                        host_alloc(s->host, s->map.tree.count, sizeof(float)),
@@ -245,103 +267,78 @@ static bool find_spectral_radius(struct radiosity *s, const struct content *c,
     return ok;
 }
 
-// Nodes of several clusters: groups; the others are empty.
-static bool upload_nodes(struct radiosity *s)
+struct pair {
+    uint32_t x, y;
+};
+
+// Nodes of several clusters that are sources.
+static bool upload_groups(struct radiosity *s)
 {
     const struct radiosity_tree *tree = &s->map.tree;
-    const uint32_t count = tree->count - tree->leaves;
-    struct radiosity_gpu_node *nodes = host_alloc(s->host, count, sizeof *nodes);
-    for (uint32_t i = 0; nodes && i < count; i++) {
-        const struct radiosity_node *node = &tree->nodes[tree->leaves + i];
-        nodes[i] = (struct radiosity_gpu_node){ node->first,
-                                                node->count <= RADIOSITY_GROUP ? node->count : 0 };
+    const size_t most = tree->count - tree->leaves;
+    struct pair *groups = host_alloc(s->host, radiosity_table_room(most), sizeof *groups);
+    for (uint32_t i = tree->leaves; groups && i < tree->count; i++) {
+        const struct radiosity_node *node = &tree->nodes[i];
+        if (node->count > RADIOSITY_GROUP) continue;
+        groups[s->group_count++] =
+            (struct pair){ i, node->first | node->count << RADIOSITY_GROUP_SHIFT };
     }
-    return upload(s, "nodes", nodes, count, sizeof *nodes, &s->buffers.nodes);
+    return radiosity_table_upload(s->host, s->gpu, "groups", GPU_RG32U, groups, most,
+                                  &s->tables.groups);
+}
+
+static bool upload_members(struct radiosity *s)
+{
+    const struct radiosity_map *map = &s->map;
+    const size_t texels = map->texel_count, clusters = map->cluster_count;
+    uint32_t *members = host_alloc(s->host, radiosity_table_room(texels), sizeof *members);
+    struct pair *spans = host_alloc(s->host, radiosity_table_room(clusters), sizeof *spans);
+    if (members) memcpy(members, map->members, texels * sizeof *members);
+    for (size_t i = 0; spans && i < clusters; i++)
+        spans[i] = (struct pair){ map->first[i], map->first[i + 1] - map->first[i] };
+    const bool ok = radiosity_table_upload(s->host, s->gpu, "members", GPU_R32U, members, texels,
+                                           &s->tables.members);
+    return radiosity_table_upload(s->host, s->gpu, "spans", GPU_RG32U, spans, clusters,
+                                  &s->tables.spans) &&
+           ok;
 }
 
 static bool upload_clusters(struct radiosity *s, const struct content *c)
 {
     const uint32_t count = s->map.cluster_count;
-    struct radiosity_gpu_cluster *clusters = host_alloc(s->host, count, sizeof *clusters);
-    uint32_t *members = host_alloc(s->host, s->map.texel_count, sizeof *members);
-    bool ok = clusters && members;
-    for (uint32_t i = 0; ok && i < count; i++) clusters[i] = cluster_of(s, c, i);
-    if (ok) memcpy(members, s->map.members, s->map.texel_count * sizeof *members);
-    ok = ok && find_spectral_radius(s, c, clusters);
-    ok &= upload(s, "clusters", clusters, count, sizeof *clusters, &s->buffers.clusters);
-    ok &= upload(s, "members", members, s->map.texel_count, sizeof *members, &s->buffers.members);
-    return ok && upload_nodes(s);
+    vec4s *clusters = host_alloc(s->host, radiosity_table_room(count), sizeof *clusters);
+    for (uint32_t i = 0; clusters && i < count; i++) clusters[i] = cluster_of(s, c, i);
+    const bool ok = clusters && find_spectral_radius(s, c, clusters);
+    return radiosity_table_upload(s->host, s->gpu, "clusters", GPU_RGBA32F, clusters, count,
+                                  &s->tables.clusters) &&
+           ok && upload_members(s) && upload_groups(s);
 }
 
 // ---- the light map
 
-static bool upload_owners(struct radiosity *s, const struct content *c)
+static bool upload_seam_rows(struct radiosity *s, const struct content *c)
 {
-    const struct charts *charts = &s->map.charts;
-    const size_t side = (size_t)charts->width * charts->height;
-    uint32_t *owners = host_alloc(s->host, s->sides * side, sizeof *owners);
-    for (size_t i = 0; owners && i < s->sides * side; i++) {
-        const uint32_t texel = radiosity_texel_of_place(&s->map, i);
-        owners[i] = texel == CHART_NONE ? CHART_NONE : c->shown[texel];
-    }
-    return upload(s, "owners", owners, s->sides * side, sizeof *owners, &s->buffers.owners);
+    const size_t places = c->seams.count, entries = RADIOSITY_SEAM_ENTRIES;
+    const size_t count = places * entries / RADIOSITY_PAIR;
+    struct share *rows =
+        host_alloc(s->host, radiosity_table_room(count), RADIOSITY_PAIR * sizeof *rows);
+    for (size_t i = 0; rows && i < places * entries; i++)
+        *share_at(rows, places, i / entries, i % entries) =
+            (struct share){ c->shown[c->seam_texel[i]], c->seam_weight[i] };
+    return radiosity_table_upload(s->host, s->gpu, "seams", GPU_RGBA32U, rows, count,
+                                  &s->tables.seams);
 }
 
-// Entries of all places side by side.
 static bool upload_seams(struct radiosity *s, const struct content *c)
 {
-    const size_t count = c->seams.count, entries = RADIOSITY_SEAM_ENTRIES;
-    struct radiosity_gpu_seam *rows = host_alloc(s->host, count * entries, sizeof *rows);
-    uint32_t *places = host_alloc(s->host, count, sizeof *places);
-    for (size_t i = 0; rows && i < count * entries; i++)
-        rows[i % entries * count + i / entries] =
-            (struct radiosity_gpu_seam){ c->shown[c->seam_texel[i]], c->seam_weight[i] };
-    if (places) memcpy(places, c->seams.places, count * sizeof *places);
+    const size_t count = c->seams.count;
+    uint32_t *places = host_alloc(s->host, radiosity_table_room(count), sizeof *places);
+    for (size_t i = 0; places && i < count; i++)
+        places[i] = radiosity_place_word(s, c->seams.places[i]);
     s->seam_places = (uint32_t)count;
-    const bool ok = upload(s, "seams", rows, count * entries, sizeof *rows, &s->buffers.seams);
-    return upload(s, "places", places, count, sizeof *places, &s->buffers.places) && ok;
-}
-
-// The affine map from the triangle's plane to one coordinate of the atlas.
-static vec4s gradient_of(const struct chart_triangle *t, int axis)
-{
-    const vec3s a = glms_vec3_sub(t->corner[1], t->corner[0]);
-    const vec3s b = glms_vec3_sub(t->corner[2], t->corner[0]);
-    const vec3s normal = glms_vec3_cross(a, b);
-    const float per_area2 = 1.0f / glms_vec3_norm2(normal);
-    const float to_a = t->place[1].raw[axis] - t->place[0].raw[axis];
-    const float to_b = t->place[2].raw[axis] - t->place[0].raw[axis];
-    vec3s gradient = glms_vec3_scale(glms_vec3_cross(b, normal), to_a);
-    gradient = glms_vec3_muladds(glms_vec3_cross(normal, a), to_b, gradient);
-    gradient = glms_vec3_scale(gradient, per_area2);
-    return vec4_of(gradient, t->place[0].raw[axis] - glms_vec3_dot(gradient, t->corner[0]));
-}
-
-static struct radiosity_gpu_triangle triangle_of(const struct radiosity *s, uint32_t chart_triangle)
-{
-    if (chart_triangle == CHART_NONE) return (struct radiosity_gpu_triangle){ .sides = 0 };
-    const struct chart_triangle *t = &s->map.charts.triangles[chart_triangle];
-    return (struct radiosity_gpu_triangle){
-        .u = gradient_of(t, 0),
-        .v = gradient_of(t, 1),
-        .normal = t->normal,
-        .sides = s->map.back_of[t->chart] == CHART_NONE ? 1 : 2,
-    };
-}
-
-static bool upload_triangles(struct radiosity *s)
-{
-    const size_t count = s->map.triangle_0[s->instances];
-    struct radiosity_gpu_triangle *triangles = host_alloc(s->host, count, sizeof *triangles);
-    uint32_t *first = host_alloc(s->host, (size_t)s->instances + 1, sizeof *first);
-    for (size_t i = 0; triangles && i < count; i++)
-        triangles[i] = triangle_of(s, s->map.chart_triangle[i]);
-    for (uint32_t i = 0; first && i <= s->instances; i++) first[i] = (uint32_t)s->map.triangle_0[i];
-    const bool ok =
-        upload(s, "triangles", triangles, count, sizeof *triangles, &s->buffers.triangles);
-    return upload(s, "instances", first, (size_t)s->instances + 1, sizeof *first,
-                  &s->buffers.instances) &&
-           ok;
+    return radiosity_table_upload(s->host, s->gpu, "places", GPU_R32U, places, count,
+                                  &s->tables.places) &&
+           upload_seam_rows(s, c);
 }
 
 static bool upload_all(struct radiosity *s, const struct content *c)
@@ -349,8 +346,9 @@ static bool upload_all(struct radiosity *s, const struct content *c)
     return upload_texels(s, c) &&
            radiosity_upload_factors(s, c->source, c->factor, c->cluster_source,
                                     c->cluster_factor) &&
-           upload_points(s, c) && upload_clusters(s, c) && upload_owners(s, c) &&
-           upload_seams(s, c) && upload_triangles(s) && radiosity_view_init(s, c->point);
+           upload_neighbours(s, c) && upload_clusters(s, c) &&
+           radiosity_upload_owners(s, c->shown) && upload_seams(s, c) &&
+           radiosity_upload_triangles(s) && radiosity_view_init(s, c->point, c->shown);
 }
 
 bool radiosity_upload(struct radiosity *s, const struct tensors *bake)

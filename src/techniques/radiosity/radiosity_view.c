@@ -23,12 +23,20 @@ static uint32_t state_of(const struct chart_texel *texel, const float point[4])
                : RADIOSITY_SAMPLED_BESIDE;
 }
 
-bool radiosity_view_init(struct radiosity *s, const float *points)
+static bool upload(struct radiosity *s, const char *name, void *items, size_t bytes,
+                   gpu_buffer *out)
+{
+    const struct gpu_buffer_desc desc = { name, bytes, GPU_BUFFER_STORAGE };
+    const bool ok = items && gpu_buffer_create(s->gpu, &desc, out) &&
+                    gpu_buffer_upload(s->gpu, *out, 0, items, bytes);
+    host_free(s->host, items);
+    return ok;
+}
+
+static bool upload_labels(struct radiosity *s, const float *points)
 {
     const struct charts *charts = &s->map.charts;
     struct radiosity_gpu_label *labels = host_alloc(s->host, s->map.texel_count, sizeof *labels);
-    const size_t bytes = s->map.texel_count * sizeof *labels;
-    const struct gpu_buffer_desc desc = { "labels", bytes, GPU_BUFFER_STORAGE };
     for (uint32_t i = 0; labels && i < s->map.texel_count; i++) {
         const struct radiosity_texel *texel = &s->map.texels[i];
         const struct chart_texel *t = &charts->texels[texel->chart_texel];
@@ -38,12 +46,25 @@ bool radiosity_view_init(struct radiosity *s, const float *points)
                                                   .cluster = texel->cluster,
                                                   .state = state_of(t, points + 4 * (size_t)i) };
     }
-    const bool ok = labels && gpu_buffer_create(s->gpu, &desc, &s->buffers.labels) &&
-                    gpu_buffer_upload(s->gpu, s->buffers.labels, 0, labels, bytes) &&
-                    gpu_compute_pipeline_create(s->gpu, "view", &shader_radiosity_view_comp, NULL,
-                                                0, &s->pipelines.view);
-    host_free(s->host, labels);
-    return ok;
+    return upload(s, "labels", labels, s->map.texel_count * sizeof *labels, &s->tables.labels);
+}
+
+static bool upload_owners(struct radiosity *s, const uint32_t *shown)
+{
+    const size_t places = (size_t)s->sides * s->map.charts.width * s->map.charts.height;
+    uint32_t *owners = host_alloc(s->host, places, sizeof *owners);
+    for (size_t i = 0; owners && i < places; i++) {
+        const uint32_t texel = radiosity_texel_of_place(&s->map, i);
+        owners[i] = texel == CHART_NONE ? CHART_NONE : shown[texel];
+    }
+    return upload(s, "owner_of_place", owners, places * sizeof *owners, &s->tables.owner_of_place);
+}
+
+bool radiosity_view_init(struct radiosity *s, const float *points, const uint32_t *shown)
+{
+    return upload_labels(s, points) && upload_owners(s, shown) &&
+           gpu_compute_pipeline_create(s->gpu, "view", &shader_radiosity_view_comp, NULL, 0,
+                                       &s->pipelines.view);
 }
 
 static uint32_t number_of(const char *name)
@@ -65,10 +86,10 @@ void radiosity_view_record(struct radiosity *s, struct gpu_cmd *cmd, const struc
                           { .name = "depth", .image = layers[FRAME_DEPTH] },
                           { .name = "normal", .image = layers[FRAME_NORMAL] },
                           { .name = "id", .image = layers[FRAME_ID] },
-                          { .name = "radiosity_instances", .buffer = s->buffers.instances },
-                          { .name = "radiosity_triangles", .buffer = s->buffers.triangles },
-                          { .name = "radiosity_owners", .buffer = s->buffers.owners },
-                          { .name = "radiosity_labels", .buffer = s->buffers.labels },
+                          { .name = "radiosity_instances", .image = s->tables.instances },
+                          { .name = "radiosity_triangles", .image = s->tables.triangles },
+                          { .name = "radiosity_owners", .buffer = s->tables.owner_of_place },
+                          { .name = "radiosity_labels", .buffer = s->tables.labels },
                           { .name = "target", .image = out }),
                  &push, sizeof push, gpu_groups(view->width, RADIOSITY_LOCAL_2D),
                  gpu_groups(view->height, RADIOSITY_LOCAL_2D), 1);

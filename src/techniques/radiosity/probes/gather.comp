@@ -13,7 +13,7 @@
 #include "core/sh.glsl"
 #include "frame/frame.glsl"
 #include "frame/probes.glsl"
-#include "techniques/radiosity/radiosity_shared.h"
+#include "techniques/radiosity/radiosity_table.glsl"
 #include "techniques/radiosity/probes/probes_shared.h"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
@@ -35,10 +35,7 @@ layout(set = 0, binding = 3, scalar) readonly buffer probe_factors
 {
     uvec3 factor_table[];
 };
-layout(set = 0, binding = 4, scalar) readonly buffer radiosity_sent
-{
-    vec3 sent_table[];
-};
+layout(set = 0, binding = 4) uniform usampler2D radiosity_sent;
 layout(set = 0, binding = 5, rgba16f) uniform writeonly image3D volume;
 
 vec3 coefficients[9];
@@ -46,7 +43,8 @@ vec3 coefficients[9];
 void add_entry(uvec3 word)
 {
     vec2 first = unpackHalf2x16(word.y), second = unpackHalf2x16(word.z);
-    vec3 light = 4.0 * first.x * sent_table[word.x];
+    vec3 light =
+        4.0 * first.x * radiosity_unpack(texelFetch(radiosity_sent, radiosity_at(word.x), 0).xy);
     float x = first.y, y = second.x, z = second.y, r = length(vec3(x, y, z));
     coefficients[0] += SH_Y0 * light;
     coefficients[1] += SH_Y1 * y * light;

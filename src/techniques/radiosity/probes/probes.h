@@ -27,7 +27,7 @@ void radiosity_probes_finish(struct radiosity_probes *probes, struct gpu *gpu);
 
 // The light of these clusters and nodes, and of what is not in them.
 void radiosity_probes_record_gather(struct radiosity_probes *probes, struct gpu_cmd *cmd,
-                                    const struct frame_view *view, gpu_buffer radiosity,
+                                    const struct frame_view *view, gpu_image radiosity,
                                     bool emitters);
 
 // Pixels of instances whose bit is set and of those beyond `instances`; words NULL: all pixels.

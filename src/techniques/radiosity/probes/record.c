@@ -5,7 +5,7 @@
 #include "techniques/radiosity/radiosity_shared.h"
 
 void radiosity_probes_record_gather(struct radiosity_probes *p, struct gpu_cmd *cmd,
-                                    const struct frame_view *view, gpu_buffer radiosity,
+                                    const struct frame_view *view, gpu_image radiosity,
                                     bool emitters)
 {
     const struct radiosity_probe_gather_push push = { p->grid, p->count, p->entries,
@@ -15,7 +15,7 @@ void radiosity_probes_record_gather(struct radiosity_probes *p, struct gpu_cmd *
                  GPU_BIND(view->constants_binding, { .name = "probe_owners", .buffer = p->owners },
                           { .name = "probe_table", .buffer = p->table },
                           { .name = "probe_factors", .buffer = p->factors },
-                          { .name = "radiosity_sent", .buffer = radiosity },
+                          { .name = "radiosity_sent", .image = radiosity },
                           { .name = "volume", .image = p->volume }),
                  &push, sizeof push, gpu_groups(push.probes, RADIOSITY_LOCAL), 1, 1);
     gpu_scope_end(cmd);

@@ -1,0 +1,53 @@
+// Tables of the GPU in images.
+#include "techniques/radiosity/radiosity_table.h"
+
+#include "techniques/radiosity/radiosity_shared.h"
+
+static size_t rows_of(size_t count)
+{
+    return count > 0 ? (count + RADIOSITY_TABLE_WIDTH - 1) / RADIOSITY_TABLE_WIDTH : 1;
+}
+
+size_t radiosity_table_room(size_t count)
+{
+    return rows_of(count) * RADIOSITY_TABLE_WIDTH;
+}
+
+static bool make(struct host *host, struct gpu *gpu, const struct gpu_image_desc *like,
+                 size_t count, gpu_image *out)
+{
+    const size_t rows = rows_of(count), most = gpu_limits(gpu)->max_image_2d;
+    struct gpu_image_desc desc = *like;
+    if (rows > most)
+        return host_fail(host, FAIL_UNSUPPORTED,
+                         "radiosity: its %s have %zu entries, above the limit of %s, %zu: give "
+                         "fewer texels or sources",
+                         desc.name, count, gpu_info(gpu)->name, most * RADIOSITY_TABLE_WIDTH);
+    desc.width = RADIOSITY_TABLE_WIDTH;
+    desc.height = (uint32_t)rows;
+    return gpu_image_create(gpu, &desc, out);
+}
+
+bool radiosity_table_create(struct host *host, struct gpu *gpu, const char *name,
+                            enum gpu_format format, size_t count, gpu_image *out)
+{
+    const struct gpu_image_desc like = { .name = name,
+                                         .format = format,
+                                         .usage = GPU_SAMPLED | GPU_STORAGE };
+    return make(host, gpu, &like, count, out);
+}
+
+bool radiosity_table_upload(struct host *host, struct gpu *gpu, const char *name,
+                            enum gpu_format format, void *entries, size_t count, gpu_image *out)
+{
+    // Those that are loaded the most.
+    const uint32_t storage = gpu_format_bytes(format) == 16 ? (uint32_t)GPU_STORAGE : 0;
+    const struct gpu_image_desc like = { .name = name,
+                                         .format = format,
+                                         .usage = GPU_SAMPLED | storage };
+    const size_t bytes = radiosity_table_room(count) * (size_t)gpu_format_bytes(format);
+    const bool ok = entries && make(host, gpu, &like, count, out) &&
+                    gpu_image_upload(gpu, *out, 0, 0, entries, bytes);
+    host_free(host, entries);
+    return ok;
+}

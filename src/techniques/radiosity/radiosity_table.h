@@ -1,0 +1,16 @@
+// Tables of the GPU in 2D images: entry i is the texel (i mod RADIOSITY_TABLE_WIDTH, i /
+// RADIOSITY_TABLE_WIDTH). A driver on a processor loads the words of a storage buffer one after
+// another, for each invocation, but a texel of 16 bytes at once.
+#pragma once
+
+#include "gpu/gpu.h"
+
+// Entries that the image has, at least `count` and 1: whole rows of it.
+size_t radiosity_table_room(size_t count);
+// One that shaders write, of zeros. false: beyond the limits of the device, or no memory.
+bool radiosity_table_create(struct host *host, struct gpu *gpu, const char *name,
+                            enum gpu_format format, size_t count, gpu_image *out);
+// One with these entries, in memory for radiosity_table_room(count), which is freed with host_free
+// in any case. NULL: false.
+bool radiosity_table_upload(struct host *host, struct gpu *gpu, const char *name,
+                            enum gpu_format format, void *entries, size_t count, gpu_image *out);
