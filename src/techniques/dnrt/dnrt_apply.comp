@@ -59,32 +59,34 @@ struct pixel_quad {
 
 const ivec2 CORNER[4] = ivec2[4](ivec2(0, 0), ivec2(1, 0), ivec2(0, 1), ivec2(1, 1));
 
-ivec2 corner_of(ivec2 first, int i)
+// The corner that the four have in common: a gather returns them in another order than CORNER.
+vec2 middle_of(ivec2 first)
 {
-    return min(first + CORNER[i], ivec2(frame.width, frame.height) - 1);
+    return (vec2(first) + 1.0) / vec2(frame.width, frame.height);
 }
 
 vec4 depths_at(ivec2 first)
 {
-    vec4 z;
-    [[unroll]] for (int i = 0; i < 4; i++) z[i] = texelFetch(depth, corner_of(first, i), 0).r;
-    return z;
+    return textureGather(depth, middle_of(first)).wzxy;
 }
 
 void read_quad(ivec2 first, vec4 z, out pixel_quad q)
 {
+    vec2 middle = middle_of(first);
+    vec4 x = textureGather(normal, middle, 0).wzxy, y = textureGather(normal, middle, 1).wzxy;
+#ifdef DNRT_ID
+    uvec4 instance = textureGather(id, middle, 0).wzxy - 1u;
+#else
+    uvec4 instance = uvec4(~0u);
+#endif
     [[unroll]] for (int i = 0; i < 4; i++)
     {
-        ivec2 pixel = corner_of(first, i);
+        vec2 uv = frame_uv(uvec2(first + CORNER[i]));
         q.counts[i] = z[i] > 0.0;
-        q.position[i] = frame.camera_position + frame_view_distance(max(z[i], 1e-12)) *
-                                                    frame_view_ray(frame_uv(uvec2(pixel)));
-        q.normal[i] = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-#ifdef DNRT_ID
-        q.instance[i] = texelFetch(id, pixel, 0).r - 1u;
-#else
-        q.instance[i] = ~0u;
-#endif
+        q.position[i] =
+            frame.camera_position + frame_view_distance(max(z[i], 1e-12)) * frame_view_ray(uv);
+        q.normal[i] = octahedral_decode(vec2(x[i], y[i]));
+        q.instance[i] = instance[i];
         q.change[i] = vec3(0.0);
     }
 }
