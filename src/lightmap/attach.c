@@ -79,6 +79,27 @@ static uint32_t variant_of(struct unwrapped *u, uint32_t vertex, vec2s uv)
     return u->count++;
 }
 
+// Corners of a spot are all at its texel's centre. Triangles without an area there are no unwrap:
+// in the file each has a cell of the texel, all of which shows the spot's light.
+static vec2s place_in_spot(const struct chart *chart, uint32_t triangle, uint32_t k)
+{
+    static const float CORNER[3][2] = { { 0.1f, 0.1f }, { 0.9f, 0.1f }, { 0.1f, 0.9f } };
+    const uint32_t at = triangle - chart->first_triangle;
+    uint32_t across = 1;
+    while (across * across < chart->triangle_count) across++;
+    const float x = ((float)(at % across) + CORNER[k][0]) / (float)across;
+    const float y = ((float)(at / across) + CORNER[k][1]) / (float)across;
+    return (vec2s){ { (float)(chart->x + CHART_SPOT_GUTTER) + x,
+                      (float)(chart->y + CHART_SPOT_GUTTER) + y } };
+}
+
+static vec2s place_of(const struct charts *charts, uint32_t triangle, uint32_t k)
+{
+    const struct chart_triangle *t = &charts->triangles[triangle];
+    const struct chart *chart = &charts->charts[t->chart];
+    return chart->spot ? place_in_spot(chart, triangle, k) : t->place[k];
+}
+
 // Triangles without an area are in no chart: their corners have the coordinates of others there.
 static void unwrap_corner(const struct attaching *a, struct unwrapped *u, const struct mesh *mesh,
                           uint32_t chart_triangle, uint32_t corner)
@@ -87,7 +108,7 @@ static void unwrap_corner(const struct attaching *a, struct unwrapped *u, const 
     u->indices[corner] = vertex;
     u->kept[vertex] = true;
     if (chart_triangle == CHART_NONE) return;
-    const vec2s place = a->charts->triangles[chart_triangle].place[corner % 3];
+    const vec2s place = place_of(a->charts, chart_triangle, corner % 3);
     const vec2s uv = { { place.x / (float)a->charts->width, place.y / (float)a->charts->height } };
     u->indices[corner] = variant_of(u, vertex, uv);
 }

@@ -4,6 +4,7 @@
 
 #include "lightmap/attach.h"
 #include "scene/charts/charts.h"
+#include "scene/charts/unwrap.h"
 #include "../scene/gltf_maker.h"
 
 #include <math.h>
@@ -17,17 +18,25 @@ static struct scene *written(struct gltf_doc *doc)
     return scene;
 }
 
-// The coordinates of one chart for each triangle, with an atlas that covers all.
-static void attach(struct gltf_doc *doc, const struct scene *scene)
+// With an atlas that covers all. Returns the number of spots.
+static int attach_at(struct gltf_doc *doc, const struct scene *scene,
+                     const struct charts_options *how)
 {
     struct scene_pose pose;
     struct charts charts;
     CHECK(pose_init(&pose, scene, -1, 0));
-    CHECK(charts_init(&charts, test_host(), &pose,
-                      &(struct charts_options){ .texels_per_m = 16, .max_texels = 1 << 20 }));
+    int spots = 0;
+    CHECK(charts_init(&charts, test_host(), &pose, how));
     CHECK(lightmap_attach(doc, &charts, scene));
+    for (uint32_t c = 0; c < charts.count; c++) spots += charts.charts[c].spot;
     charts_finish(&charts);
     pose_finish(&pose);
+    return spots;
+}
+
+static void attach(struct gltf_doc *doc, const struct scene *scene)
+{
+    attach_at(doc, scene, &(struct charts_options){ .texels_per_m = 16, .max_texels = 1 << 20 });
 }
 
 // Corners of all triangles, in their order: the same up to the numbers of vertices.
@@ -181,6 +190,39 @@ static int mark_at(struct gltf_doc *doc, const json_t *primitive, size_t i)
     const json_t *view =
         json_array_get(gltf_doc_array(doc, "bufferViews"), index_of(accessor, "bufferView"));
     return doc->binary[index_of(view, "byteOffset") + i * index_of(view, "byteStride")];
+}
+
+// Also of charts that fit in a texel and share it.
+static void check_unwraps(const char *name)
+{
+    struct gltf_doc doc;
+    struct scene *scene = scene_load(test_host(), name);
+    assert_non_null(scene);
+    CHECK(gltf_doc_of_scene(&doc, test_host(), scene));
+    const int spots = attach_at(&doc, scene,
+                                &(struct charts_options){ .texels_per_m = 1e6f,
+                                                          .max_texels = 1 << 22,
+                                                          .surface_texels = 65536,
+                                                          .join = CHARTS_JOINED_ACROSS });
+    struct scene *copy = written(&doc);
+    print_message("%s: %d spots\n", name, spots);
+    CHECK(spots > 10);
+    for (int m = 0; m < copy->mesh_count; m++) {
+        enum unwrap_fault fault;
+        CHECK(unwrap_check(test_host(), &copy->meshes[m], &fault));
+        if (fault > UNWRAP_ABSENT)
+            fail_msg("%s: TEXCOORD_1 of %s %s", name, copy->meshes[m].name,
+                     unwrap_fault_text(fault));
+    }
+    scene_destroy(copy);
+    scene_destroy(scene);
+    gltf_doc_finish(&doc);
+}
+
+TEST(coordinates_are_a_valid_unwrap_when_read_back)
+{
+    check_unwraps("@atrium");
+    check_unwraps("@planter");
 }
 
 TEST(file_keeps_its_content_and_divided_vertices_all_their_attributes)
