@@ -165,6 +165,26 @@ TEST_GPU(nothing_is_black_beside_a_sunk_block)
     baked_fixture_close(&run, &s);
 }
 
+// A slab over a wall that reaches into it, with a moulding along its edge: rays from inside of the
+// slab meet the front of the wall's top. A third of the moulding's underside is outside of it.
+TEST_GPU(nothing_is_black_under_overlapping_solids)
+{
+    struct frame_fixture s;
+    struct baked_fixture run;
+    room(&s, gpu, 0.5f, 10);
+    const int stone = emissive(&s, 0.5f, 0);
+    fixture_box(&s, vec3_of(-2.1f, 0.8f, -1), vec3_of(2.1f, 1.1f, 0), false, stone);
+    fixture_box(&s, vec3_of(-2.1f, 0.94f, -0.2f), vec3_of(2.1f, 1.16f, 0.1f), false, stone);
+    fixture_box(&s, vec3_of(-2.1f, -0.1f, -0.9f), vec3_of(2.1f, 0.85f, -0.1f), false, stone);
+    fixture_look(&s, vec3_of(0, 0.7f, 0.35f), vec3_of(0.1f, 0.94f, 0.05f));
+    s.input.camera.vertical_fov_rad = 0.2f;
+    baked_fixture_open(&run, &s, "radiosity:density=3.3,rays=256,sources=16");
+    const double mean = mean_irradiance(&s), room_e = GLM_PI * 10 / (1 - 0.5);
+    print_message("under the moulding %.3f of the room's irradiance\n", mean / room_e);
+    CHECK(mean > 0.4 * room_e && mean < room_e);
+    baked_fixture_close(&run, &s);
+}
+
 // ---- specular light
 
 static int metal(struct frame_fixture *s, float roughness)

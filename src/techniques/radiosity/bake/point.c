@@ -5,45 +5,86 @@
 #include "core/rng.h"
 #include "core/sampling.h"
 
+#include <limits.h>
 #include <math.h>
 
-enum { ACROSS = 8, PROBES = 16 };
+// PROBES: rays that find the nearest surface. CROSSINGS: rays that count all surfaces.
+enum { ACROSS = 8, PROBES = 16, CROSSINGS = 6, MOST_CROSSED = 64, MOST_TRIANGLES = 16 };
 
-static bool meets_back(const struct radiosity_scene *scene, vec3s from, vec3s direction)
-{
-    const struct ray ray = { from, direction, 0.0f, INFINITY };
-    struct ray_hit hit;
-    if (!embree_closest(scene->trace->embree, &ray, NULL, false, &hit)) return false;
-    const struct trace_mesh *mesh = &scene->trace->meshes[hit.geometry];
-    return !mesh->material->double_sided &&
-           glms_vec3_dot(mesh->facets[hit.triangle].normal, direction) > 0.0f;
-}
+struct probe {
+    const struct radiosity_scene *scene;
+    vec3s from, normal, u, v;
+};
 
-// Whether more than `most` of the rays from a point meet the back of single-sided surfaces.
-static bool meets_backs(const struct radiosity_scene *scene, uint32_t texel, vec3s at, int most)
+static struct probe probe_at(const struct radiosity_scene *scene, uint32_t texel, vec3s at)
 {
     const struct chart_texel *t = radiosity_chart_texel(&scene->map, texel);
     const struct chart_triangle *of = &scene->map.charts.triangles[t->triangle];
     const struct trace_mesh *mesh = &scene->trace->meshes[scene->mesh_of[of->instance]];
-    const vec3s normal = scene->map.texels[texel].normal;
-    const float reach = mesh->facets[of->triangle].reach;
-    const vec3s from = glms_vec3_muladds(normal, reach, at);
-    vec3s u, v;
+    struct probe p = { .scene = scene, .normal = scene->map.texels[texel].normal };
+    p.from = glms_vec3_muladds(p.normal, mesh->facets[of->triangle].reach, at);
+    basis_of(p.normal, &p.u, &p.v);
+    return p;
+}
+
+static struct ray ray_of(const struct probe *p, uint32_t k)
+{
+    const vec3s local = sample_hemisphere_cosine(sobol_2d(k, 1));
+    struct ray ray = { p->from, glms_vec3_scale(p->normal, local.z), 0.0f, INFINITY };
+    ray.direction = glms_vec3_muladds(p->u, local.x, ray.direction);
+    ray.direction = glms_vec3_muladds(p->v, local.y, ray.direction);
+    return ray;
+}
+
+// 1: the back of a single-sided surface, −1: its front, 0: a double-sided one.
+static int side_of(const struct radiosity_scene *scene, const struct ray *ray,
+                   const struct ray_hit *hit)
+{
+    const struct trace_mesh *mesh = &scene->trace->meshes[hit->geometry];
+    if (mesh->material->double_sided) return 0;
+    return glms_vec3_dot(mesh->facets[hit->triangle].normal, ray->direction) > 0.0f ? 1 : -1;
+}
+
+// How many of the rays from a point meet the back of a single-sided surface first.
+static int count_backs(const struct probe *p)
+{
     int behind = 0;
-    basis_of(normal, &u, &v);
-    for (uint32_t k = 0; k < PROBES && behind <= most; k++) {
-        const vec3s local = sample_hemisphere_cosine(sobol_2d(k, 1));
-        vec3s direction = glms_vec3_scale(normal, local.z);
-        direction = glms_vec3_muladds(u, local.x, direction);
-        direction = glms_vec3_muladds(v, local.y, direction);
-        behind += meets_back(scene, from, direction);
+    for (uint32_t k = 0; k < PROBES; k++) {
+        const struct ray ray = ray_of(p, k);
+        struct ray_hit hit;
+        if (embree_closest(p->scene->trace->embree, &ray, NULL, false, &hit))
+            behind += side_of(p->scene, &ray, &hit) > 0;
     }
-    return behind > most;
+    return behind;
+}
+
+// Backs less fronts that the rays meet up to infinity. Inside of a closed solid each ray meets one
+// back more than outside, whatever else it passes: also where solids overlap, and the nearest
+// surface is the front of another.
+static int count_crossings(const struct probe *p)
+{
+    int sum = 0;
+    for (uint32_t k = 0; k < CROSSINGS; k++) {
+        struct ray ray = ray_of(p, k);
+        struct ray_hit hit;
+        for (int i = 0; i < MOST_CROSSED; i++) {
+            if (!embree_closest(p->scene->trace->embree, &ray, NULL, false, &hit)) break;
+            sum += side_of(p->scene, &ray, &hit);
+            ray.near = hit.distance * (1.0f + 0x1p-18f) + 0x1p-18f;
+        }
+    }
+    return sum;
+}
+
+static bool is_in_solid(const struct probe *p)
+{
+    return count_crossings(p) > CROSSINGS / 2;
 }
 
 bool radiosity_is_inside(const struct radiosity_scene *scene, uint32_t texel, vec3s at)
 {
-    return meets_backs(scene, texel, at, PROBES / 2);
+    const struct probe p = probe_at(scene, texel, at);
+    return count_backs(&p) > PROBES / 2 || is_in_solid(&p);
 }
 
 static vec3s point_of(const struct chart_triangle *t, float u, float v)
@@ -57,28 +98,61 @@ struct search {
     const struct radiosity_scene *scene;
     const struct chart_triangle *triangle;
     uint32_t texel;
-    int most; // rays that may meet backs
-    int tried, open;
-    vec3s found[ACROSS * ACROSS]; // points that are open
+    int tried;
+    int count; // of points in the texel's triangle
+    struct {
+        vec3s at;
+        int crossings;
+    } points[ACROSS * ACROSS];
 };
 
 static void try_point(struct search *s, float u, float v)
 {
     const vec3s at = point_of(s->triangle, u, v);
     s->tried++;
-    if (s->open < ACROSS * ACROSS && !meets_backs(s->scene, s->texel, at, s->most))
-        s->found[s->open++] = at;
+    if (s->count == ACROSS * ACROSS) return;
+    const struct probe p = probe_at(s->scene, s->texel, at);
+    s->points[s->count].at = at;
+    s->points[s->count++].crossings = count_crossings(&p);
 }
 
-static void try_grid(struct search *s, const struct chart_texel *t, int across)
+// Triangles of the texel in the plane of its own one, which is the first. Returns their number.
+static int triangles_of(const struct search *s, const struct chart_texel *t,
+                        const struct chart *chart, const struct chart_triangle *out[MOST_TRIANGLES])
 {
+    static const float COPLANAR = 0.9999f;
+    int count = 0;
+    out[count++] = s->triangle;
+    for (uint32_t i = 0; i < chart->triangle_count && count < MOST_TRIANGLES; i++) {
+        const struct chart_triangle *c = &s->scene->map.charts.triangles[chart->first_triangle + i];
+        const vec2s low = glms_vec2_minv(glms_vec2_minv(c->place[0], c->place[1]), c->place[2]);
+        const vec2s high = glms_vec2_maxv(glms_vec2_maxv(c->place[0], c->place[1]), c->place[2]);
+        if (c == s->triangle || high.x < (float)t->x || low.x > (float)t->x + 1.0f ||
+            high.y < (float)t->y || low.y > (float)t->y + 1.0f ||
+            glms_vec3_dot(c->normal, s->triangle->normal) < COPLANAR)
+            continue;
+        out[count++] = c;
+    }
+    return count;
+}
+
+static void try_grid(struct search *s, const struct chart_texel *t, const struct chart *chart,
+                     int across)
+{
+    const struct chart_triangle *const own = s->triangle, *of[MOST_TRIANGLES];
+    const int count = triangles_of(s, t, chart, of);
     s->tried = 1; // the middle
     for (int i = 0; i < across * across; i++) {
         const float x = (float)t->x + ((float)(i % across) + 0.5f) / (float)across;
         const float y = (float)t->y + ((float)(i / across) + 0.5f) / (float)across;
         float u, v;
-        if (radiosity_weigh(s->triangle, x, y, &u, &v)) try_point(s, u, v);
+        int k = 0;
+        while (k < count && !radiosity_weigh(of[k], x, y, &u, &v)) k++;
+        if (k == count) continue;
+        s->triangle = of[k];
+        try_point(s, u, v);
     }
+    s->triangle = own;
 }
 
 // A spot has no extent in the atlas: the middles of its triangles.
@@ -98,19 +172,38 @@ static void try_texel(struct search *s, const struct chart_texel *t, const struc
     if (chart->spot)
         try_spot(s, chart);
     else
-        try_grid(s, t, across);
+        try_grid(s, t, chart, across);
 }
 
-// The open point nearest to the middle of them all.
-static struct radiosity_point middle_of(const struct search *s, float share)
+static int least_crossings(const struct search *s)
+{
+    int least = INT_MAX;
+    for (int i = 0; i < s->count; i++)
+        if (s->points[i].crossings < least) least = s->points[i].crossings;
+    return least;
+}
+
+// Of the points with at most so many crossings, the one nearest to the middle of them all, and the
+// share of them.
+static struct radiosity_point middle_of(const struct search *s, int most)
 {
     vec3s middle = vec3_of(0, 0, 0);
-    struct radiosity_point point = { s->found[0], share };
-    for (int i = 0; i < s->open; i++) middle = glms_vec3_add(middle, s->found[i]);
-    middle = glms_vec3_divs(middle, (float)s->open);
-    for (int i = 1; i < s->open; i++)
-        if (glms_vec3_distance2(s->found[i], middle) < glms_vec3_distance2(point.position, middle))
-            point.position = s->found[i];
+    struct radiosity_point point = { .share = 0.0f };
+    float nearest = INFINITY;
+    int open = 0;
+    for (int i = 0; i < s->count; i++) {
+        if (s->points[i].crossings > most) continue;
+        middle = glms_vec3_add(middle, s->points[i].at);
+        open++;
+    }
+    middle = glms_vec3_divs(middle, (float)open);
+    for (int i = 0; i < s->count; i++) {
+        const float distance2 = glms_vec3_distance2(s->points[i].at, middle);
+        if (s->points[i].crossings > most || distance2 >= nearest) continue;
+        nearest = distance2;
+        point.position = s->points[i].at;
+    }
+    point.share = (float)open / (float)s->tried;
     return point;
 }
 
@@ -152,20 +245,20 @@ static void try_edge(struct search *s, const struct chart_texel *t, int k, float
 }
 
 // A ledge that is thinner than the grid's steps is open along the edges of its triangles. Returns
-// the open share of the texel.
-static float try_edges(struct search *s, const struct chart_texel *t)
+// the part of the texel that such points stand for; 0: none is open.
+static float try_edges(struct search *s, const struct chart_texel *t, int most)
 {
     static const float INSET[] = { 1.0f / 32, 1.0f / 128 };
     for (int i = 0; i < 2; i++) {
-        s->tried = 0;
+        s->tried = s->count = 0;
         for (int k = 0; k < 3; k++) try_edge(s, t, k, INSET[i]);
-        if (s->open > 0) return 2.0f * INSET[i] * (float)s->open / (float)s->tried;
+        if (least_crossings(s) <= most) return 2.0f * INSET[i];
     }
     return 0.0f;
 }
 
-// Where solids overlap, rays from inside of one meet the front of the other: points that meet no
-// back at all are preferred to those that meet some.
+// Points of a texel are compared with each other: rooms whose walls are single sheets have fewer
+// crossings than the open.
 struct radiosity_point radiosity_find_point(const struct radiosity_scene *scene, uint32_t texel)
 {
     const struct chart_texel *t = radiosity_chart_texel(&scene->map, texel);
@@ -173,15 +266,18 @@ struct radiosity_point radiosity_find_point(const struct radiosity_scene *scene,
                         .triangle = &scene->map.charts.triangles[t->triangle],
                         .texel = texel };
     const struct chart *chart = &scene->map.charts.charts[s.triangle->chart];
-    if (!meets_backs(scene, texel, t->position, 0))
-        return (struct radiosity_point){ t->position, 1.0f };
-    const bool inside = radiosity_is_inside(scene, texel, t->position);
+    const struct radiosity_point middle = { t->position, 1.0f };
+    const struct probe p = probe_at(scene, texel, t->position);
+    const int backs = count_backs(&p), crossings = count_crossings(&p);
+    if (backs == 0 && crossings <= CROSSINGS / 2) return middle;
+    const bool inside = backs > PROBES / 2 || crossings > CROSSINGS / 2;
+    const int most = crossings - CROSSINGS / 2 - 1; // of points that are outside of one solid more
     try_texel(&s, t, chart, inside ? ACROSS : ACROSS / 2);
-    if (s.open == 0 && !inside) return (struct radiosity_point){ t->position, 1.0f };
-    s.most = PROBES / 2;
-    if (s.open == 0) try_texel(&s, t, chart, ACROSS);
-    if (s.open > 0) return middle_of(&s, (float)s.open / (float)s.tried);
-    const float share = chart->spot ? 0.0f : try_edges(&s, t);
-    if (s.open > 0) return middle_of(&s, share);
-    return (struct radiosity_point){ t->position, 0.0f };
+    if (least_crossings(&s) <= most) return middle_of(&s, most);
+    if (!inside) return middle;
+    const float part = chart->spot ? 0.0f : try_edges(&s, t, most);
+    if (part == 0.0f) return (struct radiosity_point){ t->position, 0.0f };
+    struct radiosity_point point = middle_of(&s, most);
+    point.share *= part;
+    return point;
 }
