@@ -45,6 +45,7 @@ struct bake {
     pthread_mutex_t mutex;  // of the state that running tasks change
     pthread_mutex_t memory; // of the host's allocator while tasks run
     double seconds;         // wall time of all runs; NaN: unknown
+    double prepare_seconds; // of the newest run's job.prepare
     char *checkpoint;       // that was read, or would have been; NULL: none
     // The result, once complete: of the plan's outputs, or of a file.
     struct safetensors file;

@@ -325,7 +325,7 @@ static bool is_queued(const struct bake_run *run, const struct planned_stage *st
 
 // About so many rays are traced to find out how long they take. Tasks of few rays have other work,
 // of which one must be enough.
-static const double PROBE_RAYS = 3e5, FEW_RAYS = 1e4;
+static const double PROBE_RAYS = 1e6, FEW_RAYS = 1e4;
 
 // Tasks over all of the stage: rays of its first part may be the shortest.
 static void queue_probes(struct bake_run *run, struct planned_stage *stage)
@@ -391,7 +391,10 @@ static bool run_waves(struct bake_run *run)
 static bool run_job(struct bake_run *run)
 {
     const struct bake_job *job = &run->bake->plan.job;
-    const bool ok = (!job->prepare || job->prepare(job->job, run->bake->host)) && run_waves(run);
+    const double begun = now_s();
+    bool ok = !job->prepare || job->prepare(job->job, run->bake->host);
+    run->bake->prepare_seconds = now_s() - begun;
+    ok = ok && run_waves(run);
     if (job->finish) job->finish(job->job);
     return ok;
 }

@@ -99,6 +99,7 @@ static bool prepare(void *job, struct host *host)
 {
     struct bake_sample *sample = *(struct bake_sample **)job;
     atomic_fetch_add(&sample->prepared, 1);
+    nanosleep(&(struct timespec){ .tv_nsec = (long)(1e9 * sample->prepare_s) }, NULL);
     return !sample->fail_prepare || host_fail(host, FAIL_MEMORY, "cannot prepare the sample");
 }
 

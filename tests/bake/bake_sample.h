@@ -13,6 +13,7 @@ struct bake_sample {
     atomic_int runs;  // tasks run, of all stages
     atomic_int prepared, finished;
     bool fail_prepare;
+    double prepare_s; // least time of preparing
 };
 
 struct bake_sample bake_sample_default(void);

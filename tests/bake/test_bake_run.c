@@ -336,6 +336,18 @@ TEST(bake_estimate_of_time_is_near_after_a_probe_whose_results_are_kept)
     bake_destroy(bake);
 }
 
+TEST(bake_estimate_of_time_has_what_the_run_prepares_again)
+{
+    struct bake_sample sample = bake_sample_default();
+    sample.prepare_s = 0.4;
+    struct bake *bake = bake_sample_create(&sample, NULL);
+    struct bake_estimate estimate;
+    CHECK(bake_estimate(bake, &two, true, &estimate) && sample.prepared == 1);
+    CHECK(estimate.seconds >= sample.prepare_s);
+    CHECK(bake_run(bake, &(struct bake_run_options){ .threads = 2 }) && sample.prepared == 2);
+    bake_destroy(bake);
+}
+
 TEST(bake_estimate_of_a_shard_is_of_its_tasks_alone)
 {
     struct bake_sample sample = bake_sample_default();
