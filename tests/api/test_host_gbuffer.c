@@ -156,6 +156,39 @@ TEST(radiosity_lights_by_probes_without_ids)
     fixture_close(&s);
 }
 
+// Ids tell an object its own pixels, which those of a convex one need not: they face away from it.
+TEST(a_convex_object_of_dnrt_needs_no_ids)
+{
+    static const char gi[] = "lpv:dim=16,cascades=1,probes=true+dnrt:size=16,rays=16";
+    const int block = 6;
+    struct renderer_fixture s = open_with_ids();
+    struct ag_technique_info info = { .needs_bake = true };
+    assert_int_equal(ag_scene_set_instance_mobility(s.scene, block, AG_MOBILITY_MOVABLE), AG_OK);
+    struct ag_bake *bake = fixture_bake(&s, gi, &info);
+    struct ag_renderer *hosted = make(&s, gi, true, bake);
+    struct ag_renderer *source = make(&s, "lpv:dim=16,cascades=1,probes=true", true, NULL);
+    render_both(&s, hosted, s.renderer);
+    struct ag_image *with = fixture_read_from(&s, hosted, "irradiance");
+    struct ag_gbuffer gbuffer = gbuffer_of(&s);
+    struct ag_frame_desc frame = s.frame;
+    gbuffer.id.vk_image = NULL;
+    frame.gbuffer = &gbuffer;
+    assert_int_equal(ag_renderer_render(hosted, &frame), AG_OK);
+    assert_int_equal(ag_renderer_render(source, &frame), AG_OK);
+    struct ag_image *without = fixture_read_from(&s, hosted, "irradiance");
+    struct ag_image *alone = fixture_read_from(&s, source, "irradiance");
+    const size_t bytes = sizeof *with->pixels * 3 * FIXTURE_WIDTH * FIXTURE_HEIGHT;
+    CHECK(memcmp(with->pixels, without->pixels, bytes) == 0);
+    CHECK(fixture_difference(without, alone) > 0.01);
+    ag_image_destroy(s.context, with);
+    ag_image_destroy(s.context, without);
+    ag_image_destroy(s.context, alone);
+    ag_renderer_destroy(source);
+    ag_renderer_destroy(hosted);
+    ag_bake_destroy(bake);
+    fixture_close(&s);
+}
+
 TEST(what_is_missing_or_has_another_form_is_named)
 {
     struct renderer_fixture s = open_with_ids();
