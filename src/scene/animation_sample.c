@@ -105,7 +105,7 @@ void channel_sample(const struct animation_channel *channel, float time_s, int c
 }
 
 // Time within one period. A negative time counts back from the end.
-static float wrap_time(float time_s, float duration_s)
+float animation_time(float time_s, float duration_s)
 {
     if (!(duration_s > 0.0f) || !isfinite(time_s)) return 0.0f;
     float wrapped = fmodf(time_s, duration_s);
@@ -127,7 +127,7 @@ static void animate_weights(const struct scene *scene, const struct animation_ch
 void animate(const struct scene *scene, const struct animation *animation, float time_s,
              struct node_local *local, float *morph_weights, const size_t *morph_offset)
 {
-    float at_s = wrap_time(time_s, animation->duration_s);
+    float at_s = animation_time(time_s, animation->duration_s);
     for (int c = 0; c < animation->channel_count; c++) {
         const struct animation_channel *channel = &animation->channels[c];
         if (channel->key_count < 1) continue;

@@ -15,6 +15,9 @@ struct node_local {
 void rest_pose(const struct scene *scene, struct node_local *local, float *morph_weights,
                const size_t *morph_offset);
 
+// A time within an animation's duration: it wraps around; 0 without a duration.
+float animation_time(float time_s, float duration_s);
+
 // Replaces the animated values. Time wraps around the animation's duration.
 void animate(const struct scene *scene, const struct animation *animation, float time_s,
              struct node_local *local, float *morph_weights, const size_t *morph_offset);

@@ -214,9 +214,10 @@ void pose_update(struct scene_pose *pose, int animation, float time_s)
 {
     const struct scene *scene = pose->scene;
     struct pose_workspace *work = pose->workspace;
+    pose->animation = animation < scene->animation_count ? animation : -1;
     pose->time_s = time_s;
     rest_pose(scene, work->local, pose->morph_weights, pose->morph_offset);
-    if (animation >= 0 && animation < scene->animation_count) {
+    if (pose->animation >= 0) {
         animate(scene, &scene->animations[animation], time_s, work->local, pose->morph_weights,
                 pose->morph_offset);
     }

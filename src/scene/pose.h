@@ -12,6 +12,7 @@ struct deformed_mesh {
 
 struct scene_pose {
     const struct scene *scene;
+    int animation; // index, −1: the rest pose
     float time_s;
     uint64_t layout;                  // scene->revisions.layout that the arrays belong to
     mat4s *world_from_node;           // [node_count]

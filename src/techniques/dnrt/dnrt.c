@@ -5,6 +5,7 @@
 #include "techniques/dnrt/dnrt.h"
 
 #include "techniques/dnrt/dnrt_bake.h"
+#include "techniques/dnrt/dnrt_keys.h"
 #include "techniques/dnrt/dnrt_state.h"
 
 #include "technique_shaders.h"
@@ -43,8 +44,9 @@ static bool create(void *state, const struct technique_create *how)
     s->gpu = how->gpu;
     s->options = *(const struct dnrt_options *)how->options;
     if (!how->pose) return true;
-    if (!dnrt_objects_init(&s->baked, s->host, how->pose)) return false;
-    s->volumes = host_alloc(s->host, (size_t)s->baked.shape_count, sizeof *s->volumes);
+    s->animation = how->pose->animation;
+    if (!dnrt_objects_init(&s->baked, s->host, how->pose, s->options.keys)) return false;
+    s->volumes = host_alloc(s->host, (size_t)s->baked.volume_count, sizeof *s->volumes);
     if (s->baked.count == 0)
         host_log(s->host, LOG_WARNING,
                  "dnrt: %s has no dynamic objects: it changes nothing (docs/library.md: mobility)",
@@ -105,21 +107,46 @@ static uint32_t slot_of(const struct dnrt *s, int object)
     return (uint32_t)(x | y << 10 | object / layer * n << 20);
 }
 
+// Of a shape in the pose: its volumes at the key frames around, and their mean.
+struct shape_now {
+    int volume, next;
+    float part;
+    struct dnrt_volume mean;
+};
+
+static struct shape_now shape_at(const struct dnrt *s, const struct scene_pose *pose, int index)
+{
+    const struct dnrt_shape *shape = &s->baked.shapes[index];
+    struct dnrt_between at = { 0, 0, 0.0f };
+    if (shape->keys > 1 && pose->animation == s->animation)
+        at = dnrt_keys_around(pose, shape->keys);
+    const struct dnrt_volume *a = &s->volumes[shape->volume + at.first];
+    const struct dnrt_volume *b = &s->volumes[shape->volume + at.next];
+    const struct dnrt_volume mean = { glms_vec3_lerp(a->centre, b->centre, at.part),
+                                      a->radius + at.part * (b->radius - a->radius),
+                                      glms_vec3_lerp(a->box_centre, b->box_centre, at.part),
+                                      glms_vec3_lerp(a->box_half, b->box_half, at.part) };
+    return (struct shape_now){ shape->volume + at.first, shape->volume + at.next, at.part, mean };
+}
+
 static void place_object(struct dnrt *s, const struct scene_pose *pose, int object)
 {
     const struct dnrt_object *of = &s->objects.at[object];
-    const struct dnrt_volume *volume = of->shape >= 0 ? &s->volumes[of->shape] : NULL;
     struct dnrt_gpu_object *to = &s->gpu_objects[object];
     struct dnrt_frame frame;
     mat3s stretch;
     *to = (struct dnrt_gpu_object){ .shape = -1 };
-    if (!volume || !dnrt_object_frame(&s->objects, pose, object, &frame, &stretch)) return;
+    if (of->shape < 0 || !dnrt_object_frame(&s->objects, pose, object, &frame, &stretch)) return;
+    const struct shape_now now = shape_at(s, pose, of->shape);
+    const struct dnrt_volume *volume = &now.mean;
     const versors turn = glms_quat_normalize(glms_mat3_quat(frame.rotation));
     *to = (struct dnrt_gpu_object){
         .centre = mat4_point(dnrt_world_from_object(&frame), volume->centre),
         .half_m = volume->radius * s->options.reach * frame.scale,
         .rotation = { turn.x, turn.y, turn.z, turn.w },
-        .shape = volume->radius > 0.0f ? of->shape : -1,
+        .shape = volume->radius > 0.0f ? now.volume : -1,
+        .next = now.next,
+        .part = now.part,
         .slot = slot_of(s, object),
         .first_instance = (uint32_t)s->objects.instances[of->first],
         .instance_count = (uint32_t)of->count,

@@ -68,10 +68,14 @@ vec3 change_at(uint index, dnrt_gpu_object object, vec3 position, vec3 n)
     if (weights == vec3(0.0)) return sum;
     vec3 texel = dnrt_sample_of(object, at, push.size);
     for (uint i = 0; i < LOOKUPS; i++) {
-        uint shape = NORMALS * uint(object.shape) + dnrt_volume_of(at, i);
-        for (uint j = 0; j < COEFFICIENTS; j++)
-            sum += weights[i] * light_table[push.from + index * DNRT_COEFFICIENTS + j] *
-                   transfer_at(shape, j, texel);
+        uint volume = dnrt_volume_of(at, i);
+        for (uint j = 0; j < COEFFICIENTS; j++) {
+            vec3 m = transfer_at(NORMALS * uint(object.shape) + volume, j, texel);
+            if (object.part > 0.0)
+                m = mix(m, transfer_at(NORMALS * uint(object.next) + volume, j, texel),
+                        object.part);
+            sum += weights[i] * light_table[push.from + index * DNRT_COEFFICIENTS + j] * m;
+        }
     }
     return SH_COSINE_0 * sum;
 }

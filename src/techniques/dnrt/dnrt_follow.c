@@ -86,7 +86,7 @@ bool dnrt_find_objects(struct dnrt *s, const struct scene_pose *pose)
 {
     struct dnrt_objects found;
     int without = 0;
-    if (!dnrt_objects_init(&found, s->host, pose)) {
+    if (!dnrt_objects_init(&found, s->host, pose, s->options.keys)) {
         dnrt_objects_finish(&found);
         s->objects.count = 0;
         return false;

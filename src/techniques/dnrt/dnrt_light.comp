@@ -82,12 +82,14 @@ void main()
                 dnrt_world_from_object(object, vec3(0.0, 1.0, 0.0)),
                 dnrt_world_from_object(object, vec3(0.0, 0.0, 1.0))),
            c);
-    bool differs = push.all != 0u || changed.shape[index] != object.shape;
+    bool differs = push.all != 0u || changed.shape[index] != object.shape ||
+                   changed.part[index] != object.part;
     for (int j = 0; j < DNRT_COEFFICIENTS; j++) {
         uint to = index * DNRT_COEFFICIENTS + j;
         differs = differs || light_table[to] != c[j];
         light_table[to] = c[j];
     }
     changed.shape[index] = object.shape;
+    changed.part[index] = object.part;
     if (differs) changed.list[atomicAdd(changed.groups_y, push.normals) / push.normals] = index;
 }

@@ -2,6 +2,7 @@
 #include "techniques/dnrt/dnrt_object.h"
 
 #include "scene/statics.h"
+#include "techniques/dnrt/dnrt_keys.h"
 
 #include <math.h>
 #include <string.h>
@@ -98,30 +99,45 @@ int dnrt_find_shape(const struct dnrt_objects *of, const struct dnrt_objects *ob
     return -1;
 }
 
-static void add_shape(struct dnrt_objects *out, const struct scene_pose *pose, int object,
+static void add_shape(struct dnrt_objects *out, const struct scene_pose *pose, int keys, int object,
                       int *meshes)
 {
     const struct dnrt_object *of = &out->at[object];
     struct dnrt_shape *shape = &out->shapes[out->shape_count++];
     struct dnrt_frame frame;
-    *shape = (struct dnrt_shape){ object, *meshes, of->count, of->deformed, glms_mat3_identity() };
+    *shape = (struct dnrt_shape){ .object = object,
+                                  .first = *meshes,
+                                  .count = of->count,
+                                  .volume = out->volume_count,
+                                  .keys = of->deformed ? dnrt_keys_of(pose, keys) : 1,
+                                  .deformed = of->deformed,
+                                  .stretch = glms_mat3_identity() };
+    out->volume_count += shape->keys;
     dnrt_object_frame(out, pose, object, &frame, &shape->stretch);
     for (int i = 0; i < of->count; i++)
         out->meshes[(*meshes)++] = pose->scene->instances[out->instances[of->first + i]].mesh;
 }
 
-static void find_shapes(struct dnrt_objects *out, const struct scene_pose *pose)
+static void find_shapes(struct dnrt_objects *out, const struct scene_pose *pose, int keys)
 {
     int meshes = 0;
     for (int i = 0; i < out->count; i++) {
         out->at[i].shape = out->at[i].deformed ? -1 : dnrt_find_shape(out, out, pose, i);
         if (out->at[i].shape >= 0) continue;
         out->at[i].shape = out->shape_count;
-        add_shape(out, pose, i, &meshes);
+        add_shape(out, pose, keys, i, &meshes);
     }
 }
 
-bool dnrt_objects_init(struct dnrt_objects *out, struct host *host, const struct scene_pose *pose)
+int dnrt_shape_of_volume(const struct dnrt_objects *objects, int volume)
+{
+    int shape = 0;
+    while (volume >= objects->shapes[shape].volume + objects->shapes[shape].keys) shape++;
+    return shape;
+}
+
+bool dnrt_objects_init(struct dnrt_objects *out, struct host *host, const struct scene_pose *pose,
+                       int keys)
 {
     const size_t most = (size_t)pose->scene->instance_count;
     *out = (struct dnrt_objects){ .host = host };
@@ -131,7 +147,7 @@ bool dnrt_objects_init(struct dnrt_objects *out, struct host *host, const struct
     out->shapes = host_alloc(host, most, sizeof *out->shapes);
     if (!out->instances || !out->meshes || !out->at || !out->shapes || !find_objects(out, pose))
         return false;
-    find_shapes(out, pose);
+    find_shapes(out, pose, keys);
     return true;
 }
 

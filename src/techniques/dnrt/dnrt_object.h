@@ -29,6 +29,7 @@ struct dnrt_object {
 struct dnrt_shape {
     int object;       // stands for it
     int first, count; // in dnrt_objects.meshes
+    int volume, keys; // its first volume, and their number: of the key frames of a deformed one
     bool deformed;
     mat3s stretch;
 };
@@ -41,15 +42,21 @@ struct dnrt_objects {
     int count;
     struct dnrt_shape *shapes;
     int shape_count;
+    int volume_count;
 };
 
 // The objects of a scene: instances that are movable, or that an animation moves or deforms. The
-// same scene gives the same objects and shapes wherever they are. dnrt_objects_finish accepts zero.
-bool dnrt_objects_init(struct dnrt_objects *out, struct host *host, const struct scene_pose *pose);
+// same scene gives the same objects and shapes wherever they are. keys: of dnrt_keys.h.
+// dnrt_objects_finish accepts zero.
+bool dnrt_objects_init(struct dnrt_objects *out, struct host *host, const struct scene_pose *pose,
+                       int keys);
 void dnrt_objects_finish(struct dnrt_objects *objects);
 // The shape of `of` that another scene's, or a later pose's, object has; −1: none.
 int dnrt_find_shape(const struct dnrt_objects *of, const struct dnrt_objects *objects,
                     const struct scene_pose *pose, int object);
+
+// The shape that has a volume.
+int dnrt_shape_of_volume(const struct dnrt_objects *objects, int volume);
 
 // The frame of an object in a pose, and its stretch: the identity for deformed ones. False: its
 // matrix has no inverse.

@@ -21,7 +21,9 @@ struct dnrt_gpu_object {
     vec3s centre;      // of its volume, world, m
     float half_m;      // of an edge of the inner volume
     float rotation[4]; // world from object: a unit quaternion, w last
-    int32_t shape;     // −1: it has no volume
+    int32_t shape;     // its volume; −1: none
+    int32_t next;      // that of the next key frame
+    float part;        // of the way there
     uint32_t slot;     // of its volume among all, in texels: x, y, z of 10 bits
     uint32_t first_instance, instance_count; // its own pixels
     vec3s box_centre, box_half;              // of its bounds, from the centre, along the axes, m
@@ -34,12 +36,13 @@ struct dnrt_gpu_shape {
     float scale[3 * DNRT_COEFFICIENTS]; // of a plane
 };
 
-// Objects whose light or shape differs from that of their volume, a row of workgroups for each, and
-// the shapes of all.
+// Objects whose light, shape or moment between key frames differs from that of their volume, a row
+// of workgroups for each; shapes and moments of all.
 struct dnrt_changed {
     uint32_t groups_x, groups_y, groups_z; // of the pass `volumes`
     uint32_t list[DNRT_MAX_OBJECTS];
     int32_t shape[DNRT_MAX_OBJECTS];
+    float part[DNRT_MAX_OBJECTS];
 };
 
 struct dnrt_light_push {
@@ -73,11 +76,11 @@ struct dnrt_apply_push {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct dnrt_gpu_object) == 18 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct dnrt_gpu_object) == 20 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct dnrt_gpu_object) * DNRT_MAX_OBJECTS <= 16384,
                "each device has uniform blocks of this size");
 _Static_assert(sizeof(struct dnrt_gpu_shape) == 28 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct dnrt_changed) == (3 + 2 * DNRT_MAX_OBJECTS) * 4,
+_Static_assert(sizeof(struct dnrt_changed) == (3 + 3 * DNRT_MAX_OBJECTS) * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct dnrt_apply_push) == 8 * 4, "layout is shared with GLSL");
 #endif

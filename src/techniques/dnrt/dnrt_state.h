@@ -36,7 +36,8 @@ struct dnrt {
     struct dnrt_objects objects; // of the newest pose; shape: in `baked`, −1: none
     struct scene_revisions seen; // of the scene when `objects` were found
     bool warned;                 // of objects without a volume
-    struct dnrt_volume *volumes; // [baked.shape_count]
+    int animation;               // of the key frames
+    struct dnrt_volume *volumes; // [baked.volume_count]
     int slots[3];                // room for objects along x, y, z of the image
     gpu_buffer shapes, samples, light, changed;
     bool stale;      // all volumes of `image`

@@ -1,4 +1,4 @@
-// Names of the tensors of a bake; shape K of dnrt_objects has those of index K.
+// Names of the tensors of a bake; K: a shape's volume (dnrt_shape.volume).
 #pragma once
 
 #define DNRT_VOLUME "shape/%d/volume" // F16 or U8 [normal][coefficient][rgb][z][y][x], of the scale

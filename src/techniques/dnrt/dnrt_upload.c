@@ -70,9 +70,9 @@ static bool make(struct dnrt *s, const char *name, const void *items, size_t byt
 
 static bool take_shapes(struct dnrt *s, const struct tensors *bake, struct content *content)
 {
-    const size_t count = (size_t)s->baked.shape_count * (size_t)dnrt_normals(&s->options);
+    const size_t count = (size_t)s->baked.volume_count * (size_t)dnrt_normals(&s->options);
     if (!content->shapes || !content->samples) return false;
-    for (int i = 0; i < s->baked.shape_count; i++)
+    for (int i = 0; i < s->baked.volume_count; i++)
         if (!take_shape(s, bake, i, content)) return false;
     return make(s, "shapes", content->shapes, count * sizeof *content->shapes, &s->shapes) &&
            make(s, "samples", content->samples, count * content->shape_bytes, &s->samples);
@@ -83,9 +83,9 @@ static bool fits(struct dnrt *s, size_t bytes)
     const uint64_t most = gpu_limits(s->gpu)->max_storage_bytes;
     if (bytes <= most) return true;
     return host_fail(s->host, FAIL_UNSUPPORTED,
-                     "dnrt: volumes of %d objects have %.0f MB, above the limit of %s, %.0f MB: "
-                     "give dnrt:size=16, dnrt:bits=8 or fewer dnrt:normals",
-                     s->baked.shape_count, (double)bytes * 1e-6, gpu_info(s->gpu)->name,
+                     "dnrt: %d volumes have %.0f MB, above the limit of %s, %.0f MB: "
+                     "give dnrt:size=16, dnrt:bits=8, or fewer dnrt:normals or dnrt:keys",
+                     s->baked.volume_count, (double)bytes * 1e-6, gpu_info(s->gpu)->name,
                      (double)most * 1e-6);
 }
 
@@ -106,7 +106,7 @@ static bool make_changed(struct dnrt *s)
 bool dnrt_upload(struct dnrt *s, const struct tensors *bake)
 {
     const size_t n = (size_t)dnrt_size(&s->options);
-    const size_t count = (size_t)s->baked.shape_count * (size_t)dnrt_normals(&s->options);
+    const size_t count = (size_t)s->baked.volume_count * (size_t)dnrt_normals(&s->options);
     struct content content = { .shape_bytes = planes_of(&s->options) * n * n * n *
                                               (s->options.bits == DNRT_BITS_16 ? 2 : 1) };
     if (!fits(s, count * content.shape_bytes)) return false;

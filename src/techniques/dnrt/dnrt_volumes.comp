@@ -43,6 +43,23 @@ layout(set = 0, binding = 5, scalar) readonly buffer dnrt_changed
 
 #include "techniques/dnrt/dnrt_samples.glsl"
 
+// Σ π c_j m_j of four samples in each colour.
+mat3x4 product(uint shape_index, uint light_index, uint first, uint count)
+{
+    dnrt_gpu_shape shape = shape_table[shape_index];
+    uint words = samples_words(count);
+    mat3x4 sum = mat3x4(0.0);
+    for (uint j = 0; j < COEFFICIENTS; j++) {
+        vec3 light = light_table[light_index + j];
+        for (uint c = 0; c < 3; c++) {
+            uint plane = 3u * j + c;
+            sum[c] += (light[c] * shape.scale[plane]) *
+                      samples_of(shape.first_word + plane * words, first);
+        }
+    }
+    return sum;
+}
+
 void main()
 {
     uint first = 4u * gl_GlobalInvocationID.x, n = push.size, count = n * n * n;
@@ -50,16 +67,11 @@ void main()
     uint index = changed.list[row / NORMALS];
     dnrt_gpu_object object = object_table[index];
     if (first >= count || object.shape < 0) return;
-    dnrt_gpu_shape shape = shape_table[NORMALS * uint(object.shape) + normal];
-    uint words = samples_words(count);
-    vec4 sum[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
-    for (uint j = 0; j < COEFFICIENTS; j++) {
-        vec3 light = light_table[push.first + index * DNRT_COEFFICIENTS + j];
-        for (uint c = 0; c < 3; c++) {
-            uint plane = 3u * j + c;
-            sum[c] += (light[c] * shape.scale[plane]) *
-                      samples_of(shape.first_word + plane * words, first);
-        }
+    uint light = push.first + index * DNRT_COEFFICIENTS;
+    mat3x4 sum = product(NORMALS * uint(object.shape) + normal, light, first, count);
+    if (object.part > 0.0) {
+        mat3x4 next = product(NORMALS * uint(object.next) + normal, light, first, count);
+        sum = (1.0 - object.part) * sum + object.part * next;
     }
     ivec3 to =
         ivec3(dnrt_slot(object)) + ivec3(normal * n + first % n, first / n % n, first / (n * n));

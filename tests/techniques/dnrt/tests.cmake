@@ -5,3 +5,4 @@ ag_test(techniques/dnrt/frame USES techniques LIBRARIES ag_test_dnrt ag_test_tec
 ag_test(techniques/dnrt/bake USES techniques LIBRARIES ag_test_dnrt)
 ag_test(techniques/dnrt/intrusion USES techniques LIBRARIES ag_test_dnrt ag_test_techniques ag_test_frame_fixture)
 ag_test(techniques/dnrt/motion USES techniques LIBRARIES ag_test_dnrt ag_test_techniques ag_test_frame_fixture)
+ag_test(techniques/dnrt/keys USES techniques LIBRARIES ag_test_dnrt ag_test_techniques ag_test_frame_fixture)

@@ -6,12 +6,14 @@
 #include "techniques/dnrt/bake/part.h"
 #include "techniques/dnrt/bake/transfer.h"
 #include "techniques/dnrt/bake/volume.h"
+#include "techniques/dnrt/dnrt_keys.h"
 #include "techniques/dnrt/dnrt_options.h"
 #include "techniques/dnrt/dnrt_tensors.h"
 
 #include <string.h>
 
 enum { SAMPLES_PER_TASK = 1024 };
+static const double MOST_BYTES = 2147483648.0; // of all volumes
 
 struct shape_trace {
     struct dnrt_part part;
@@ -22,40 +24,54 @@ struct job {
     struct dnrt_options options;
     const struct scene_pose *pose;
     struct dnrt_objects objects;
-    struct shape_trace *shapes; // [objects.shape_count]
-    struct host *host;          // of `shapes`
+    struct shape_trace *volumes; // [objects.volume_count]: shapes at key frames
+    struct host *host;           // of `volumes`
 };
 
-static bool prepare_shape(const struct job *job, struct host *host, int shape)
+static bool part_of_volume(struct dnrt_part *out, struct host *host,
+                           const struct dnrt_objects *objects, const struct dnrt_key_poses *keys,
+                           int volume)
 {
-    struct shape_trace *of = &job->shapes[shape];
-    if (!dnrt_part_init(&of->part, host, job->pose, &job->objects,
-                        job->objects.shapes[shape].object))
-        return false;
-    of->trace = trace_scene_create(host, &of->part.pose);
-    return of->trace != NULL;
+    const struct dnrt_shape *shape = &objects->shapes[dnrt_shape_of_volume(objects, volume)];
+    const struct scene_pose *pose =
+        shape->keys > 1 ? dnrt_key_pose(keys, volume - shape->volume) : keys->pose;
+    return dnrt_part_init(out, host, pose, objects, shape->object);
+}
+
+static bool prepare_volumes(struct job *job, const struct dnrt_key_poses *keys)
+{
+    for (int v = 0; v < job->objects.volume_count; v++) {
+        struct shape_trace *of = &job->volumes[v];
+        if (!part_of_volume(&of->part, job->host, &job->objects, keys, v)) return false;
+        of->trace = trace_scene_create(job->host, &of->part.pose);
+        if (!of->trace) return false;
+    }
+    return true;
 }
 
 static bool prepare(void *argument, struct host *host)
 {
     struct job *job = argument;
+    struct dnrt_key_poses keys = { .host = NULL };
     job->host = host;
-    if (!dnrt_objects_init(&job->objects, host, job->pose)) return false;
-    job->shapes = host_alloc(host, (size_t)job->objects.shape_count, sizeof *job->shapes);
-    for (int s = 0; job->shapes && s < job->objects.shape_count; s++)
-        if (!prepare_shape(job, host, s)) return false;
-    return job->shapes != NULL;
+    if (!dnrt_objects_init(&job->objects, host, job->pose, job->options.keys)) return false;
+    job->volumes = host_alloc(host, (size_t)job->objects.volume_count, sizeof *job->volumes);
+    const bool ok = job->volumes &&
+                    dnrt_key_poses_init(&keys, host, job->pose, job->options.keys) &&
+                    prepare_volumes(job, &keys);
+    dnrt_key_poses_finish(&keys);
+    return ok;
 }
 
 static void finish(void *argument)
 {
     struct job *job = argument;
-    for (int s = 0; job->shapes && s < job->objects.shape_count; s++) {
-        trace_scene_destroy(job->shapes[s].trace);
-        dnrt_part_finish(&job->shapes[s].part);
+    for (int v = 0; job->volumes && v < job->objects.volume_count; v++) {
+        trace_scene_destroy(job->volumes[v].trace);
+        dnrt_part_finish(&job->volumes[v].part);
     }
-    if (job->host) host_free(job->host, job->shapes);
-    job->shapes = NULL;
+    if (job->host) host_free(job->host, job->volumes);
+    job->volumes = NULL;
     dnrt_objects_finish(&job->objects);
 }
 
@@ -98,7 +114,7 @@ static size_t planes_of(const struct dnrt_options *options)
 static bool run_samples(const struct bake_task *task)
 {
     const struct job *job = task->job;
-    const struct shape_trace *shape = &job->shapes[*(const int *)task->argument];
+    const struct shape_trace *shape = &job->volumes[*(const int *)task->argument];
     const struct dnrt_grid grid = grid_of(job, &shape->part);
     const struct dnrt_sampling how = {
         .trace = shape->trace,
@@ -128,7 +144,7 @@ static bool run_samples(const struct bake_task *task)
 enum { OUT_VOLUME, OUT_SCALE, OUT_SPHERE, OUT_BOX };
 
 struct stage_argument {
-    int shape;
+    int volume;
     const char *transfer, *inside; // tensors of the samples
 };
 
@@ -161,7 +177,7 @@ static bool run_volume(const struct bake_task *task)
 {
     const struct job *job = task->job;
     const struct stage_argument *of = task->argument;
-    const struct dnrt_part *part = &job->shapes[of->shape].part;
+    const struct dnrt_part *part = &job->volumes[of->volume].part;
     const struct tensor *transfer = bake_task_input(task, of->transfer);
     const struct tensor *inside = bake_task_input(task, of->inside);
     if (!transfer || !inside) return false;
@@ -187,12 +203,12 @@ static bool add_samples(struct bake_plan *plan, const struct job *job,
         { of->transfer, TENSOR_F32, 2, { samples, planes_of(&job->options) }, BAKE_ROWS, 1 },
         { of->inside, TENSOR_U8, 1, { samples }, BAKE_ROWS, 1 },
     };
-    const char *name = bake_plan_name(plan, "shape %d samples", of->shape);
+    const char *name = bake_plan_name(plan, "shape %d samples", of->volume);
     return name && bake_plan_add(plan, &(struct bake_stage){ .name = name,
                                                              .wave = 0,
                                                              .task_count = tasks,
                                                              .run = run_samples,
-                                                             .argument = &of->shape,
+                                                             .argument = &of->volume,
                                                              .outputs = out,
                                                              .output_count = 2,
                                                              .rays = (double)SAMPLES_PER_TASK *
@@ -206,32 +222,32 @@ static bool add_volume(struct bake_plan *plan, const struct job *job,
     const uint64_t count = (uint64_t)dnrt_coefficients(&job->options);
     const uint64_t normals = (uint64_t)dnrt_normals(&job->options);
     const struct bake_output out[] = {
-        { bake_plan_name(plan, DNRT_VOLUME, of->shape),
+        { bake_plan_name(plan, DNRT_VOLUME, of->volume),
           job->options.bits == DNRT_BITS_16 ? TENSOR_F16 : TENSOR_U8,
           6,
           { normals, count, 3, n, n, n },
           BAKE_ROWS,
           BAKE_SAVED },
-        { bake_plan_name(plan, DNRT_SCALE, of->shape),
+        { bake_plan_name(plan, DNRT_SCALE, of->volume),
           TENSOR_F32,
           3,
           { normals, count, 3 },
           BAKE_ROWS,
           BAKE_SAVED },
-        { bake_plan_name(plan, DNRT_SPHERE, of->shape),
+        { bake_plan_name(plan, DNRT_SPHERE, of->volume),
           TENSOR_F32,
           1,
           { 4 },
           BAKE_ROWS,
           BAKE_SAVED },
-        { bake_plan_name(plan, DNRT_BOX, of->shape),
+        { bake_plan_name(plan, DNRT_BOX, of->volume),
           TENSOR_F32,
           2,
           { 2, 3 },
           BAKE_ROWS,
           BAKE_SAVED },
     };
-    const char *name = bake_plan_name(plan, "shape %d volume", of->shape);
+    const char *name = bake_plan_name(plan, "shape %d volume", of->volume);
     return name && out[0].name && out[1].name && out[2].name && out[3].name &&
            bake_plan_add(plan,
                          &(struct bake_stage){
@@ -246,37 +262,34 @@ static bool add_volume(struct bake_plan *plan, const struct job *job,
                              .scratch_bytes = (size_t)(n * n * n * (normals * count * 12 + 4)) });
 }
 
-static struct stage_argument *arguments_of(struct bake_plan *plan, int shape)
+static struct stage_argument *arguments_of(struct bake_plan *plan, int volume)
 {
     struct stage_argument *of = bake_plan_alloc(plan, 1, sizeof *of);
     if (!of) return NULL;
-    of->shape = shape;
-    of->transfer = bake_plan_name(plan, "shape/%d/transfer", shape);
-    of->inside = bake_plan_name(plan, "shape/%d/inside", shape);
+    of->volume = volume;
+    of->transfer = bake_plan_name(plan, "shape/%d/transfer", volume);
+    of->inside = bake_plan_name(plan, "shape/%d/inside", volume);
     return of->transfer && of->inside ? of : NULL;
 }
 
-static bool add_stages(struct bake_plan *plan, const struct job *job, int shapes)
+static bool add_stages(struct bake_plan *plan, const struct job *job, int volumes)
 {
-    struct stage_argument *of[2] = { NULL, NULL };
     for (int wave = 0; wave < 2; wave++)
-        for (int s = 0; s < shapes; s++) {
-            of[wave] = arguments_of(plan, s);
-            if (!of[wave]) return false;
-            if (!(wave == 0 ? add_samples : add_volume)(plan, job, of[wave])) return false;
+        for (int v = 0; v < volumes; v++) {
+            const struct stage_argument *of = arguments_of(plan, v);
+            if (!of || !(wave == 0 ? add_samples : add_volume)(plan, job, of)) return false;
         }
     return true;
 }
 
 // Of every shape in its own frame: placing objects elsewhere changes nothing.
-static bool add_key(struct bake_plan *plan, const struct job *job,
-                    const struct dnrt_objects *objects)
+static bool add_key(struct bake_plan *plan, const struct dnrt_objects *objects,
+                    const struct dnrt_key_poses *keys)
 {
     struct hash128 key = hash128_add_text((struct hash128){ 0 }, "dnrt");
-    for (int s = 0; s < objects->shape_count; s++) {
+    for (int v = 0; v < objects->volume_count; v++) {
         struct dnrt_part part;
-        const bool ok = dnrt_part_init(&part, bake_plan_host(plan), job->pose, objects,
-                                       objects->shapes[s].object);
+        const bool ok = part_of_volume(&part, bake_plan_host(plan), objects, keys, v);
         const struct hash128 of =
             ok ? scene_key(&part.pose, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS)
                : (struct hash128){ 0 };
@@ -288,16 +301,34 @@ static bool add_key(struct bake_plan *plan, const struct job *job,
     return true;
 }
 
+// All volumes are in one buffer of the GPU.
+static bool fits(struct bake_plan *plan, const struct job *job, int volumes)
+{
+    const double bytes = (double)planes_of(&job->options) *
+                         dnrt_grid_count(dnrt_size(&job->options)) *
+                         (job->options.bits == DNRT_BITS_16 ? 2 : 1) * volumes;
+    if (bytes <= MOST_BYTES) return true;
+    return host_fail(bake_plan_host(plan), FAIL_UNSUPPORTED,
+                     "dnrt: %d volumes would have %.0f MB, above %.0f MB: give dnrt:size=16, "
+                     "dnrt:bits=8, or fewer dnrt:keys or dnrt:normals",
+                     volumes, bytes * 1e-6, MOST_BYTES * 1e-6);
+}
+
 bool dnrt_bake(struct bake_plan *plan, const struct technique_bake *how)
 {
     struct job *job = bake_plan_alloc(plan, 1, sizeof *job);
+    struct host *host = bake_plan_host(plan);
     struct dnrt_objects objects;
+    struct dnrt_key_poses keys = { .host = NULL };
     if (!job) return false;
     job->pose = how->pose;
     job->options = *(const struct dnrt_options *)how->options;
     bake_plan_set_job(plan, &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish });
-    const bool ok = dnrt_objects_init(&objects, bake_plan_host(plan), how->pose) &&
-                    add_key(plan, job, &objects) && add_stages(plan, job, objects.shape_count);
+    const bool ok = dnrt_objects_init(&objects, host, how->pose, job->options.keys) &&
+                    fits(plan, job, objects.volume_count) &&
+                    dnrt_key_poses_init(&keys, host, how->pose, job->options.keys) &&
+                    add_key(plan, &objects, &keys) && add_stages(plan, job, objects.volume_count);
+    dnrt_key_poses_finish(&keys);
     dnrt_objects_finish(&objects);
     return ok;
 }
