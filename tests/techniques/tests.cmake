@@ -27,4 +27,5 @@ endforeach()
 
 # Every option of every technique, or pipelines of many grids: minutes alone, more beside others.
 set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct.clip_light techniques.light_trials techniques.radiosity_corridor
+  techniques.dnrt.frame
   PROPERTIES TIMEOUT 900)

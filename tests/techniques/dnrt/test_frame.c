@@ -354,24 +354,24 @@ TEST_GPU(objects_get_the_light_that_others_change)
 {
     check_bounce(gpu, "bits=16");
     check_bounce(gpu, "normals=3,coefficients=9,bits=8,grid=quadratic");
-    check_bounce(gpu, "normals=6");
 }
 
 // Of two balls, which reflect light onto each other.
 TEST_GPU(further_bounces_converge)
 {
-    struct pixels of[4];
-    double change[4] = { 0 };
-    for (int b = 0; b < 4; b++) {
+    enum { MOST = 3 };
+    struct pixels of[MOST];
+    double change[MOST] = { 0 };
+    for (int b = 0; b < MOST; b++) {
         char gi[192];
         snprintf(gi, sizeof gi, "%s+dnrt:size=16,rays=64,bounces=%d", SOURCE, b + 1);
         of[b] = pixels_of(gpu, gi, 3);
         for (size_t i = 0; b > 0 && i < 3 * of[b].count; i++)
             change[b] += fabs((double)of[b].irradiance[i] - (double)of[b - 1].irradiance[i]);
     }
-    print_message("changes by bounces 2 to 4: %g %g %g\n", change[1], change[2], change[3]);
-    CHECK(change[1] > 0 && change[2] < 0.5 * change[1] && change[3] < 0.5 * change[2]);
-    for (int b = 0; b < 4; b++) free_pixels(&of[b]);
+    print_message("changes by bounces 2 and 3: %g %g\n", change[1], change[2]);
+    CHECK(change[1] > 0 && change[2] > 0 && change[2] < 0.5 * change[1]);
+    for (int b = 0; b < MOST; b++) free_pixels(&of[b]);
 }
 
 TEST_GPU(pixels_far_from_objects_equal_those_of_the_source_to_the_bit)
