@@ -32,15 +32,18 @@ void main()
     uint i = push.first + gl_GlobalInvocationID.x;
     vec4 place = radiosity_texel_part(i, push.texels, RADIOSITY_POSITION); // w: area
     vec3 normal = radiosity_texel_part(i, push.texels, RADIOSITY_NORMAL).xyz;
-    vec3 reflectance = radiosity_texel_part(i, push.texels, RADIOSITY_REFLECTANCE).rgb;
+    vec4 reflectance = radiosity_texel_part(i, push.texels, RADIOSITY_REFLECTANCE);
     vec3 irradiance = vec3(0.0);
     if (place.w > 0.0) {
         float emitters = push.emitters * frame.radiance_scale;
         for (int c = 0; c < 3; c++)
             irradiance[c] = radiosity_unbounced(i, push.texels, c, frame.sky, emitters).x;
+        // Shading normals n of mean cosine c to the surface's receive c of the light of a direction,
+        // and E(n) = (E + n·V)/2 of light of all: (1 + c)/2.
+        irradiance *= 0.5 + 0.5 * reflectance.w;
         for (uint k = 0; k < frame.light_count; k++)
-            irradiance += texel_irradiance(place.xyz, normal, place.w, frame_light_table[k],
+            irradiance += reflectance.w * texel_irradiance(place.xyz, normal, place.w, frame_light_table[k],
                                            push.shadow_radius);
     }
-    imageStore(radiosity_flux, radiosity_at(i), vec4(place.w * reflectance * irradiance, 0.0));
+    imageStore(radiosity_flux, radiosity_at(i), vec4(place.w * reflectance.rgb * irradiance, 0.0));
 }

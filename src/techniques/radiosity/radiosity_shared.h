@@ -21,7 +21,7 @@
 // Of a texel in the table of texels: entry part · texels + texel.
 #define RADIOSITY_POSITION    0 // world; w: area, m²; 0: hidden inside of something
 #define RADIOSITY_NORMAL      1 // unit, of its side
-#define RADIOSITY_REFLECTANCE 2
+#define RADIOSITY_REFLECTANCE 2 // w: mean cosine between shading normals and the normal
 #define RADIOSITY_SKY_LIGHT   3 // irradiance along the normal, vector irradiance: radiance 1
 #define RADIOSITY_EMITTED_0   4 // the same by colour, lux
 #define RADIOSITY_TEXEL_PARTS 7

@@ -9,7 +9,7 @@
 
 #define RADIOSITY_SOURCE         "texels/source"      // U32 [texels][sources]: nodes of the tree
 #define RADIOSITY_FACTOR         "texels/factor"      // F16 [texels][sources][3]
-#define RADIOSITY_ALBEDO         "texels/reflectance" // F32 [texels][3]
+#define RADIOSITY_ALBEDO         "texels/reflectance" // F32 [texels][4]
 #define RADIOSITY_SKY            "texels/sky"         // F32 [texels][4]
 #define RADIOSITY_EMITTED        "texels/emitted"     // F32 [texels][3][4]
 #define RADIOSITY_POINT          "texels/point"       // F32 [texels][4]

@@ -32,7 +32,7 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
     *out = (struct content){ .sources = k, .cluster_sources = 2 * k };
     return (out->source = EXPECT(RADIOSITY_SOURCE, TENSOR_U32, n, k)) &&
            (out->factor = EXPECT(RADIOSITY_FACTOR, TENSOR_F16, n, k, 3)) &&
-           (out->reflectance = EXPECT(RADIOSITY_ALBEDO, TENSOR_F32, n, 3)) &&
+           (out->reflectance = EXPECT(RADIOSITY_ALBEDO, TENSOR_F32, n, 4)) &&
            (out->sky = EXPECT(RADIOSITY_SKY, TENSOR_F32, n, 4)) &&
            (out->emitted = EXPECT(RADIOSITY_EMITTED, TENSOR_F32, n, 3, 4)) &&
            (out->part = EXPECT(RADIOSITY_PART, TENSOR_U8, n)) &&
@@ -112,12 +112,12 @@ static float area_of(const struct radiosity *s, const struct content *c, uint32_
 static void fill_texel(const struct radiosity *s, const struct content *c, uint32_t i, vec4s *parts)
 {
     const size_t count = s->map.texel_count;
-    const float *point = c->point + 4 * (size_t)i, *reflectance = c->reflectance + 3 * (size_t)i;
+    const float *point = c->point + 4 * (size_t)i, *reflectance = c->reflectance + 4 * (size_t)i;
     parts[RADIOSITY_POSITION * count + i] =
         vec4_of(vec3_of(point[0], point[1], point[2]), area_of(s, c, i));
     parts[RADIOSITY_NORMAL * count + i] = vec4_of(s->map.texels[i].normal, 0.0f);
     parts[RADIOSITY_REFLECTANCE * count + i] =
-        vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), 0.0f);
+        vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), reflectance[3]);
     memcpy(&parts[RADIOSITY_SKY_LIGHT * count + i], c->sky + 4 * (size_t)i, sizeof *parts);
     for (size_t k = 0; k < 3; k++)
         memcpy(&parts[(RADIOSITY_EMITTED_0 + k) * count + i], c->emitted + 12 * (size_t)i + 4 * k,
@@ -195,9 +195,10 @@ static vec4s cluster_of(const struct radiosity *s, const struct content *c, uint
     for (uint32_t m = map->first[cluster]; m < map->first[cluster + 1]; m++) {
         const uint32_t texel = map->members[m];
         const float area = area_of(s, c, texel);
-        const float *reflectance = c->reflectance + 3 * (size_t)texel;
+        const float *reflectance = c->reflectance + 4 * (size_t)texel;
         sum += area;
-        for (int k = 0; k < 3; k++) reflected.raw[k] += area * reflectance[k];
+        const float diffuse = 0.5f + 0.5f * reflectance[3]; // radiosity_direct.comp
+        for (int k = 0; k < 3; k++) reflected.raw[k] += area * diffuse * reflectance[k];
     }
     return vec4_of(sum > 0.0f ? glms_vec3_divs(reflected, sum) : reflected, sum);
 }

@@ -89,5 +89,6 @@ void radiosity_gather(const struct radiosity_scene *scene, uint32_t texel, vec3s
 // Clears what the last call left.
 void radiosity_gather_clear(struct radiosity_gather *gather);
 
-// Mean reflectance of a texel for light that bounces, 0…1 (brdf_bounce_reflectance).
-vec3s radiosity_reflectance(const struct radiosity_scene *scene, uint32_t texel);
+// Mean reflectance of a texel for light that bounces, 0…1 (brdf_bounce_reflectance); w: the mean
+// cosine between its shading normals and the normal of its triangle.
+vec4s radiosity_reflectance(const struct radiosity_scene *scene, uint32_t texel);

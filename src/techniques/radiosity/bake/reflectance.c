@@ -1,5 +1,5 @@
-// Reflectance of texels for light that bounces: brdf_bounce_reflectance (frame/brdf.glsl), the mean
-// of points inside the texel.
+// Reflectance of texels for light that bounces: brdf_bounce_reflectance (frame/brdf.glsl), and the
+// cosine between the shading normal and that of the triangle: the means of points inside the texel.
 #include "techniques/radiosity/bake/gather.h"
 
 #include "trace/reflectance.h"
@@ -19,7 +19,7 @@ bool radiosity_weigh(const struct chart_triangle *t, float x, float y, float *u,
     return *u >= 0.0f && *v >= 0.0f && *u + *v <= 1.0f;
 }
 
-static vec3s reflectance_at(const struct radiosity_scene *scene, const struct chart_triangle *of,
+static vec4s reflectance_at(const struct radiosity_scene *scene, const struct chart_triangle *of,
                             vec3s normal, float u, float v)
 {
     const struct ray_hit hit = { .distance = 1.0f,
@@ -33,23 +33,23 @@ static vec3s reflectance_at(const struct radiosity_scene *scene, const struct ch
     const struct ray ray = { glms_vec3_add(at, normal), glms_vec3_negate(normal), 0.0f, INFINITY };
     struct surface surface;
     surface_at(scene->trace, &ray, &hit, NULL, &surface);
-    return surface_reflectance(&surface);
+    return vec4_of(surface_reflectance(&surface), glms_vec3_dot(surface.normal, normal));
 }
 
 // The mean of the middles of its triangles by area.
-static vec3s reflectance_of_spot(const struct radiosity_scene *scene, const struct chart *chart,
+static vec4s reflectance_of_spot(const struct radiosity_scene *scene, const struct chart *chart,
                                  vec3s normal)
 {
-    vec3s sum = vec3_of(0, 0, 0);
+    vec4s sum = glms_vec4_zero();
     for (uint32_t i = 0; i < chart->triangle_count; i++) {
         const struct chart_triangle *t = &scene->map.charts.triangles[chart->first_triangle + i];
-        sum = glms_vec3_muladds(reflectance_at(scene, t, normal, 1.0f / 3.0f, 1.0f / 3.0f),
+        sum = glms_vec4_muladds(reflectance_at(scene, t, normal, 1.0f / 3.0f, 1.0f / 3.0f),
                                 t->area_m2, sum);
     }
-    return glms_vec3_divs(sum, chart->area_m2);
+    return glms_vec4_divs(sum, chart->area_m2);
 }
 
-vec3s radiosity_reflectance(const struct radiosity_scene *scene, uint32_t texel)
+vec4s radiosity_reflectance(const struct radiosity_scene *scene, uint32_t texel)
 {
     const struct chart_texel *t = radiosity_chart_texel(&scene->map, texel);
     const struct chart_triangle *of = &scene->map.charts.triangles[t->triangle];
@@ -57,7 +57,7 @@ vec3s radiosity_reflectance(const struct radiosity_scene *scene, uint32_t texel)
     const vec3s normal = scene->map.texels[texel].normal;
     const struct trace_mesh *mesh = &scene->trace->meshes[scene->mesh_of[of->instance]];
     const int across = mesh->material->mapped || mesh->mesh->colors ? POINTS_ACROSS : 1;
-    vec3s sum = vec3_of(0, 0, 0);
+    vec4s sum = glms_vec4_zero();
     if (chart->spot) return reflectance_of_spot(scene, chart, normal);
     for (int i = 0; i < across * across; i++) {
         const float x = ((float)(i % across) + 0.5f) / (float)across;
@@ -67,7 +67,7 @@ vec3s radiosity_reflectance(const struct radiosity_scene *scene, uint32_t texel)
             u = t->u;
             v = t->v;
         }
-        sum = glms_vec3_add(sum, reflectance_at(scene, of, normal, u, v));
+        sum = glms_vec4_add(sum, reflectance_at(scene, of, normal, u, v));
     }
-    return glms_vec3_divs(sum, (float)(across * across));
+    return glms_vec4_divs(sum, (float)(across * across));
 }

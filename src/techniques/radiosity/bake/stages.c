@@ -119,8 +119,8 @@ static void gather_texel(const struct bake_task *task, struct room *room, uint64
     memcpy((float *)task->out[OUT_SKY] + 4 * i, &gather->sky, sizeof gather->sky);
     memcpy((float *)task->out[OUT_EMITTED] + 12 * i, gather->emitted, sizeof gather->emitted);
     ((float *)task->out[OUT_DISTANCE])[i] = gather->inverse_distance;
-    const vec3s albedo = radiosity_reflectance(&job->scene, texel);
-    memcpy((float *)task->out[OUT_ALBEDO] + 3 * i, albedo.raw, sizeof albedo.raw);
+    const vec4s albedo = radiosity_reflectance(&job->scene, texel);
+    memcpy((float *)task->out[OUT_ALBEDO] + 4 * i, albedo.raw, sizeof albedo.raw);
 }
 
 static bool run_texels(const struct bake_task *task)
@@ -145,7 +145,7 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
     const struct bake_output out[OUT_COUNT] = {
         { RADIOSITY_SOURCE, TENSOR_U32, 2, { texels, sources }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_FACTOR, TENSOR_F16, 3, { texels, sources, 3 }, BAKE_ROWS, BAKE_SAVED },
-        { RADIOSITY_ALBEDO, TENSOR_F32, 2, { texels, 3 }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_ALBEDO, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_SKY, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_EMITTED, TENSOR_F32, 3, { texels, 3, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_POINT, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
