@@ -38,12 +38,13 @@ void main()
         float emitters = push.emitters * frame.radiance_scale;
         for (int c = 0; c < 3; c++)
             irradiance[c] = radiosity_unbounced(i, push.texels, c, frame.sky, emitters).x;
-        // Shading normals n of mean cosine c to the surface's receive c of the light of a direction,
-        // and E(n) = (E + n·V)/2 of light of all: (1 + c)/2.
+        // Shading normals n of mean cosine c to the surface's receive c of the light of a
+        // direction, and E(n) = (E + n·V)/2 of light of all: (1 + c)/2.
         irradiance *= 0.5 + 0.5 * reflectance.w;
         for (uint k = 0; k < frame.light_count; k++)
-            irradiance += reflectance.w * texel_irradiance(place.xyz, normal, place.w, frame_light_table[k],
-                                           push.shadow_radius);
+            irradiance +=
+                reflectance.w * texel_irradiance(place.xyz, normal, place.w, frame_light_table[k],
+                                                 push.shadow_radius);
     }
     imageStore(radiosity_flux, radiosity_at(i), vec4(place.w * reflectance.rgb * irradiance, 0.0));
 }

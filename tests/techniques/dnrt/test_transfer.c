@@ -133,7 +133,7 @@ static void check_normals(struct ball *ball, int axis, int normals, double d)
     vec3s n_o = glms_vec3_normalize(vec3_of(-0.6f, 0.5f, 0.3f));
     struct dnrt_transfer at[RUNS];
     float along[9];
-    if (normals == 6) n_o = vec3_of(axis == 0, -(axis == 1), axis == 2);
+    if (normals == 6) n_o = vec3_of((float)(axis == 0), -(float)(axis == 1), (float)(axis == 2));
     sh_eval(3, n_o, along);
     ball->how.normals = normals;
     for (int i = 0; i < RUNS; i++)
