@@ -258,21 +258,39 @@ static uint32_t more_needs(const void *options)
     return o->specular ? FRAME_WRITES_SPECULAR : 0;
 }
 
-// Of a light map that charts fill by two thirds, on one side.
+static uint64_t table_bytes(uint64_t entries, uint64_t bytes)
+{
+    return radiosity_table_room((size_t)entries) * bytes;
+}
+
+// Of rows: entries, order and tiles.
+static uint64_t rows_bytes(uint64_t rows, uint64_t bytes)
+{
+    return table_bytes(rows * bytes / 16, 16) + table_bytes(rows, 4) +
+           table_bytes(rows / RADIOSITY_TILE, 8);
+}
+
+// Of a light map that charts fill by two thirds, on one side, with a triangle for each texel.
 static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t height)
 {
     const struct radiosity_options *o = options;
     const uint64_t texels = (uint64_t)o->texels * 2 / 3;
     const uint64_t clusters = texels / (uint64_t)(o->cluster * o->cluster) + 1;
-    const uint64_t sources = (uint64_t)o->sources;
+    const uint64_t nodes = 2 * clusters, sources = (uint64_t)o->sources;
     (void)width;
     (void)height;
-    const uint64_t label = sizeof(struct radiosity_gpu_label);
-    const uint64_t light = 16 + 8 * (3 + 3); // flux, light, smoothed
-    return texels * (16 * RADIOSITY_TEXEL_PARTS + 8 * (sources + RADIOSITY_NEIGHBOURS) + light +
-                     label + 8) +
-           clusters * (16 + 8 + 4 + 8 * sources + 2 * (8 + 4 * 8)) +
-           (uint64_t)o->texels * (4 + 8 + 2 * 8 * RADIOSITY_LAYERS) + radiosity_probes_memory(o);
+    const uint64_t of_texels =
+        table_bytes(RADIOSITY_TEXEL_PARTS * texels, 16) + rows_bytes(texels, 8 * sources) +
+        table_bytes(RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR * texels, 16) + table_bytes(texels, 16) +
+        2 * table_bytes(3 * texels, 8) + texels * sizeof(struct radiosity_gpu_label);
+    const uint64_t of_clusters = rows_bytes(clusters, 8 * sources) + table_bytes(clusters, 16) +
+                                 table_bytes(clusters, 8) + table_bytes(texels, 4) +
+                                 5 * table_bytes(nodes, 8);
+    const uint64_t of_scene = table_bytes(RADIOSITY_TRIANGLE_PARTS * texels, 16) +
+                              table_bytes(1, 8) + table_bytes(1, 16) + table_bytes(1, 4);
+    const uint64_t of_map =
+        table_bytes((uint64_t)o->texels, 8) + 2 * 8 * RADIOSITY_LAYERS * (uint64_t)o->texels;
+    return of_texels + of_clusters + of_scene + of_map + radiosity_probes_memory(o);
 }
 
 const struct technique technique_radiosity = {
