@@ -24,7 +24,7 @@ struct scene_draw {
     bool deformed;      // vertices are uploaded each frame, in world space
     bool mirrored;      // the transform reverses the winding order in this frame
     bool dynamic;       // expected to move (scene/statics.h), or has moved since the scene was set
-    bool left;          // dynamic, and neither sends nor occludes a source's light: a delta does
+    bool left;          // movable, and neither sends nor occludes a source's light: a delta does
     bool moved;         // since the previous frame: its vertices, or its alpha test
     bool recolored;     // its material, or `left`, changed since the previous frame
     bool reshaped;      // its mesh has other vertices than in the previous frame

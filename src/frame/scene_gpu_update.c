@@ -67,7 +67,7 @@ static void mark_changes(struct scene_gpu *s)
         struct scene_draw *draw = &s->draws[i];
         draw->moved = false;
         draw->reshaped = s->scene->meshes[draw->mesh].revision > s->uploaded;
-        const bool left = s->leaves_dynamic && draw->dynamic;
+        const bool left = s->leaves_dynamic && draw->movable;
         draw->recolored =
             s->scene->materials[draw->material].revision > s->uploaded || left != draw->left;
         draw->left = left;

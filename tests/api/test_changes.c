@@ -97,12 +97,17 @@ static void deform(struct ag_scene *scene, struct cube *cube)
     assert_int_equal(ag_scene_update_mesh(scene, cube->mesh, positions, NULL), AG_OK);
 }
 
-static void add(struct ag_scene *scene, struct cube *cube)
+static void add_instance(struct ag_scene *scene, struct cube *cube)
 {
     float matrix[16];
     int instance;
     placed(matrix, 0.0f, -1.2f, 2.5f, 0.5f);
     place(scene, cube, matrix, &instance);
+}
+
+static void add(struct ag_scene *scene, struct cube *cube)
+{
+    add_instance(scene, cube);
     add_cube(scene, 0.8f, cube->movable);
 }
 
@@ -211,16 +216,20 @@ static void check_differences(const char *technique, const struct differences *d
     CHECK(d->settled <= 0.0025);
 }
 
+static void check_change(struct renderer_fixture *s, const char *technique, const char *gi,
+                         const struct ag_bake *bake, struct cube *cube, const struct change *change)
+{
+    const struct differences d = differences_of(s, gi, bake, cube, change);
+    printf("%-8s %-40s %.4f %.5f %.5f\n", technique, change->name, d.change, d.error, d.settled);
+    check_differences(technique, &d);
+}
+
 static void check_changes(struct renderer_fixture *s, const char *technique, const char *gi,
                           const struct ag_bake *bake, struct cube like)
 {
     struct cube cube = add_cube(s->scene, like.size, like.movable);
-    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
-        const struct differences d = differences_of(s, gi, bake, &cube, &changes[i]);
-        printf("%-8s %-40s %.4f %.5f %.5f\n", technique, changes[i].name, d.change, d.error,
-               d.settled);
-        check_differences(technique, &d);
-    }
+    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++)
+        check_change(s, technique, gi, bake, &cube, &changes[i]);
 }
 
 TEST(the_next_frame_is_that_of_a_new_renderer)
@@ -264,6 +273,32 @@ TEST(the_next_frame_is_that_of_a_new_renderer_with_movable_instances)
 {
     check_changes_of_bake("radiosity", "radiosity:texels=4096,rays=64,sources=16",
                           (struct cube){ .size = 1.4f, .movable = true });
+}
+
+// Those for which the bake of an object stays right.
+static const struct change changes_of_place[] = {
+    { "move an instance", move_instance }, { "move a light", move_light },
+    { "add an instance", add_instance },   { "remove an instance", take_away },
+    { "switch a light off", switch_off },
+};
+
+// The bake is that of an equal scene: surfaces of a scene stay while a bake uses it.
+TEST(the_next_frame_is_that_of_a_new_renderer_with_objects_of_dnrt)
+{
+    static const char gi[] = "lpv:dim=16,cascades=1,probes=true+dnrt:size=16,rays=16";
+    struct ag_technique_info info = { .needs_bake = true };
+    struct renderer_fixture s = fixture_open("none", NULL), of_bake = s;
+    struct cube cube = add_cube(s.scene, 1.4f, true);
+    assert_int_equal(ag_scene_load(s.context, "@cornell:light=point", &of_bake.scene), AG_OK);
+    add_cube(of_bake.scene, cube.size, cube.movable);
+    struct ag_bake *bake = fixture_bake(&of_bake, gi, &info);
+    ag_renderer_destroy(s.renderer);
+    s.renderer = new_renderer(&s, gi, bake);
+    for (size_t i = 0; i < sizeof changes_of_place / sizeof *changes_of_place; i++)
+        check_change(&s, "dnrt", gi, bake, &cube, &changes_of_place[i]);
+    ag_bake_destroy(bake);
+    ag_scene_destroy(of_bake.scene);
+    fixture_close(&s);
 }
 
 static void check_warning(struct renderer_fixture *s, const char *expected)

@@ -52,7 +52,7 @@ bool dnrt_frame_of(mat4s world_from_mesh, struct dnrt_frame *frame, mat3s *stret
     for (int i = 0; i < 9; i++) {
         float *entry = &stretch->raw[i / 3][i % 3];
         if (!isfinite(*entry)) return false;
-        *entry = roundf(*entry * STRETCH_STEPS) / STRETCH_STEPS;
+        *entry = roundf(*entry * STRETCH_STEPS) / STRETCH_STEPS + 0.0f; // not −0
     }
     return true;
 }
