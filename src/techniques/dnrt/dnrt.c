@@ -71,17 +71,19 @@ static bool make_apply_pipelines(struct dnrt *s, const struct gpu_constant const
 static bool make_pipelines(struct dnrt *s)
 {
     const struct gpu_constant constants[] = {
-        { 0, s->options.grid == DNRT_GRID_QUADRATIC },
-        { 1, (uint32_t)dnrt_normals(&s->options) },
-        { 2, (uint32_t)dnrt_coefficients(&s->options) },
-        { 3, s->options.bits == DNRT_BITS_8 },
+        { 0, s->options.grid == DNRT_GRID_QUADRATIC },   { 1, (uint32_t)dnrt_normals(&s->options) },
+        { 2, (uint32_t)dnrt_coefficients(&s->options) }, { 3, s->options.bits == DNRT_BITS_8 },
+        { 4, (uint32_t)dnrt_planes(&s->options) },
     };
     return gpu_compute_pipeline_create(s->gpu, "light", &shader_dnrt_light_comp, NULL, 0,
                                        &s->light_pipeline) &&
-           gpu_compute_pipeline_create(s->gpu, "bounce", &shader_dnrt_bounce_comp, constants, 4,
+           gpu_compute_pipeline_create(s->gpu, "bounce", &shader_dnrt_bounce_comp, constants, 5,
                                        &s->bounce_pipeline) &&
            gpu_compute_pipeline_create(s->gpu, "volumes", &shader_dnrt_volumes_comp, constants + 1,
-                                       3, &s->volumes_pipeline) &&
+                                       4, &s->volumes_pipeline) &&
+           (!s->options.direct ||
+            gpu_compute_pipeline_create(s->gpu, "lamps", &shader_dnrt_lamps_comp, NULL, 0,
+                                        &s->lamps_pipeline)) &&
            make_apply_pipelines(s, constants);
 }
 
@@ -173,6 +175,32 @@ static bool has_bounces(const struct dnrt *s)
     return s->objects.count > 1 && s->options.bounces > 1;
 }
 
+static uint32_t lamps_of(const struct dnrt *s)
+{
+    return DNRT_LIGHT_LAMPS * (uint32_t)s->objects.count * DNRT_COEFFICIENTS;
+}
+
+static void record_lamps(struct dnrt *s, struct gpu_cmd *cmd, const struct frame_view *view,
+                         struct gpu_binding objects)
+{
+    const struct dnrt_lamps_push push = { (uint32_t)s->objects.count, lamps_of(s), s->options.reach,
+                                          view->shadow_radius };
+    if (!s->options.direct) return;
+    gpu_scope_begin(cmd, "lamps");
+    gpu_dispatch(
+        cmd, s->lamps_pipeline,
+        GPU_BIND(
+            view->constants_binding, view->lights_binding, view->shadow_faces_binding,
+            { .name = "shadow_maps", .image = view->shadow_maps, .sampler = view->shadow_sampler },
+            { .name = "shadow_sun_maps",
+              .image = view->shadow_sun_maps,
+              .sampler = view->shadow_sampler },
+            objects, { .name = "dnrt_light", .buffer = s->light },
+            { .name = "dnrt_changed", .buffer = s->changed }),
+        &push, sizeof push, gpu_groups(push.objects, DNRT_LOCAL), 1, 1);
+    gpu_scope_end(cmd);
+}
+
 static void record_light(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_binding objects)
 {
     // What other objects change of an object's light is not compared.
@@ -196,6 +224,7 @@ static uint32_t record_bounces(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_b
 {
     const uint32_t count = (uint32_t)s->objects.count, part = count * DNRT_COEFFICIENTS;
     struct dnrt_bounce_push push = { .objects = count,
+                                     .lamps = lamps_of(s),
                                      .size = (uint32_t)dnrt_size(&s->options),
                                      .fade = s->options.fade };
     if (!has_bounces(s)) return 0;
@@ -217,7 +246,7 @@ static uint32_t record_bounces(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_b
 static void record_volumes(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_binding objects,
                            uint32_t light)
 {
-    const struct dnrt_volumes_push push = { (uint32_t)dnrt_size(&s->options), light };
+    const struct dnrt_volumes_push push = { (uint32_t)dnrt_size(&s->options), light, lamps_of(s) };
     gpu_scope_begin(cmd, "volumes");
     gpu_dispatch_indirect(cmd, s->volumes_pipeline,
                           GPU_BIND(objects, { .name = "dnrt_light", .buffer = s->light },
@@ -236,6 +265,7 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     for (int i = 0; i < s->objects.count; i++) place_object(s, view->pose, i);
     if (s->map_count > 0) dnrt_record_maps(s, cmd, view);
     const struct gpu_binding objects = objects_binding(s, cmd);
+    record_lamps(s, cmd, view, objects);
     record_light(s, cmd, objects);
     record_volumes(s, cmd, objects, record_bounces(s, cmd, objects));
 }
@@ -277,9 +307,9 @@ static void destroy(void *state)
     struct dnrt *s = state;
     if (!s->host) return;
     gpu_pipeline *const pipelines[] = { &s->light_pipeline,       &s->bounce_pipeline,
-                                        &s->volumes_pipeline,     &s->apply_pipeline[0][0],
-                                        &s->apply_pipeline[0][1], &s->apply_pipeline[1][0],
-                                        &s->apply_pipeline[1][1] };
+                                        &s->volumes_pipeline,     &s->lamps_pipeline,
+                                        &s->apply_pipeline[0][0], &s->apply_pipeline[0][1],
+                                        &s->apply_pipeline[1][0], &s->apply_pipeline[1][1] };
     gpu_buffer *const buffers[] = { &s->shapes, &s->samples, &s->light, &s->changed };
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(s->gpu, pipelines[i]);
@@ -305,7 +335,9 @@ static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t he
     (void)height;
     const uint64_t maps = o->intrusion == DNRT_INTRUSION_SHADOW ? 6 : 0;
     return samples * (uint64_t)dnrt_normals(o) *
-               (3 * (uint64_t)dnrt_coefficients(o) * (o->bits == DNRT_BITS_16 ? 2 : 1) + 8) +
+               ((uint64_t)(dnrt_planes(o) * dnrt_coefficients(o)) *
+                    (o->bits == DNRT_BITS_16 ? 2 : 1) +
+                8) +
            maps * (uint64_t)o->map_size * (uint64_t)o->map_size * 4;
 }
 
@@ -316,7 +348,7 @@ const struct technique technique_dnrt = {
     .role = ROLE_DELTA,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | NEEDS_BAKE,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID | FRAME_LEAVES_DYNAMIC,
-    .bake_version = 2,
+    .bake_version = 3,
     .options = OPTION_TABLE(struct dnrt_options, option_rows, NULL),
     .presets = presets,
     .state_size = sizeof(struct dnrt),

@@ -41,22 +41,23 @@ layout(set = 0, binding = 3, scalar) readonly buffer dnrt_samples
 
 shared vec3 change[DNRT_COEFFICIENTS][DNRT_LOCAL]; // by the objects of each invocation
 
-// m_j of a volume between its samples, by colour.
-vec3 transfer_at(uint shape_index, uint j, vec3 at)
+// m_j of a volume between its samples, by colour; w: k_j, or 0.
+vec4 transfer_at(uint shape_index, uint j, vec3 at)
 {
     dnrt_gpu_shape shape = shape_table[shape_index];
     uint n = push.size, words = samples_words(n * n * n);
     uvec3 low = min(uvec3(at), uvec3(n - 2u));
-    vec3 part = at - vec3(low), sum = vec3(0.0);
+    vec3 part = at - vec3(low);
+    vec4 sum = vec4(0.0);
     for (uint k = 0; k < 8; k++) {
         uvec3 corner = uvec3(k, k >> 1, k >> 2) & 1u, p = low + corner;
         vec3 weight = mix(1.0 - part, part, vec3(corner));
         uint index = (p.z * n + p.y) * n + p.x;
-        for (uint c = 0; c < 3; c++)
-            sum[c] += weight.x * weight.y * weight.z *
-                      sample_of(shape.first_word + (3u * j + c) * words, index);
+        for (uint c = 0; c < PLANES; c++)
+            sum[c] += shape.scale[PLANES * j + c] * weight.x * weight.y * weight.z *
+                      sample_of(shape.first_word + (PLANES * j + c) * words, index);
     }
-    return sum * vec3(shape.scale[3u * j], shape.scale[3u * j + 1u], shape.scale[3u * j + 2u]);
+    return sum;
 }
 
 // The change of irradiance of a receiver, times π: Σ π c_j m_j is one, and dnrt_light has π c_j.
@@ -70,11 +71,13 @@ vec3 change_at(uint index, dnrt_gpu_object object, vec3 position, vec3 n)
     for (uint i = 0; i < LOOKUPS; i++) {
         uint volume = dnrt_volume_of(at, i);
         for (uint j = 0; j < COEFFICIENTS; j++) {
-            vec3 m = transfer_at(NORMALS * uint(object.shape) + volume, j, texel);
+            vec4 m = transfer_at(NORMALS * uint(object.shape) + volume, j, texel);
             if (object.part > 0.0)
                 m = mix(m, transfer_at(NORMALS * uint(object.next) + volume, j, texel),
                         object.part);
-            sum += weights[i] * light_table[push.from + index * DNRT_COEFFICIENTS + j] * m;
+            uint entry = index * DNRT_COEFFICIENTS + j;
+            vec3 lamps = PLANES == 4u ? light_table[push.lamps + entry] : vec3(0.0);
+            sum += weights[i] * ((light_table[push.from + entry] + lamps) * m.rgb + lamps * m.w);
         }
     }
     return SH_COSINE_0 * sum;

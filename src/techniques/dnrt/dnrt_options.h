@@ -33,6 +33,12 @@ static inline int dnrt_coefficients(const struct dnrt_options *options)
     return dnrt_bands(options) * dnrt_bands(options);
 }
 
+// Volumes of a coefficient: m of red, green and blue, and k for light that is reflected alone.
+static inline int dnrt_planes(const struct dnrt_options *options)
+{
+    return options->direct ? 4 : 3;
+}
+
 // Normals of receivers that a shape has a volume for.
 static inline int dnrt_normals(const struct dnrt_options *options)
 {

@@ -6,6 +6,7 @@
 
 layout(constant_id = 2) const uint COEFFICIENTS = 4;
 layout(constant_id = 3) const bool BYTES = false; // of a sample, else half floats
+layout(constant_id = 4) const uint PLANES = 3;    // of a coefficient; 4: the last one is k
 
 uint samples_words(uint count)
 {

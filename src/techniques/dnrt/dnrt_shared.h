@@ -13,6 +13,8 @@
 #define DNRT_TILE_BITS    2   // words of a tile before its bits
 #define DNRT_MAX_OBJECTS  192 // a tile has a bit for each
 #define DNRT_COEFFICIENTS 9   // of irradiance at an object
+#define DNRT_PLANES       4   // of a coefficient, at most
+#define DNRT_NO_SHAPE     -2  // of no object
 // Near plane of depth maps, over the radius of the bounding sphere.
 #define DNRT_NEAR (1.0 / 64.0)
 
@@ -30,10 +32,10 @@ struct dnrt_gpu_object {
 };
 
 // The baked volume of a shape and a normal of receivers: planes of samples, coefficient after
-// coefficient, red green blue.
+// coefficient, m of red, green and blue, with the option `direct` k.
 struct dnrt_gpu_shape {
-    uint32_t first_word;                // in dnrt_samples
-    float scale[3 * DNRT_COEFFICIENTS]; // of a plane
+    uint32_t first_word;                          // in dnrt_samples
+    float scale[DNRT_PLANES * DNRT_COEFFICIENTS]; // of a plane
 };
 
 // Objects whose light, shape or moment between key frames differs from that of their volume, a row
@@ -43,6 +45,13 @@ struct dnrt_changed {
     uint32_t list[DNRT_MAX_OBJECTS];
     int32_t shape[DNRT_MAX_OBJECTS];
     float part[DNRT_MAX_OBJECTS];
+};
+
+struct dnrt_lamps_push {
+    uint32_t objects;
+    uint32_t to;           // first entry of dnrt_light
+    float reach;           // of the inner volume, radii of the bounding sphere
+    int32_t shadow_radius; // texels of the shadow map
 };
 
 struct dnrt_light_push {
@@ -55,6 +64,7 @@ struct dnrt_light_push {
 struct dnrt_bounce_push {
     uint32_t objects;
     uint32_t from, to; // entries of dnrt_light before those of the objects, read and written
+    uint32_t lamps;    // of lamps
     uint32_t size;
     float fade;
 };
@@ -62,6 +72,7 @@ struct dnrt_bounce_push {
 struct dnrt_volumes_push {
     uint32_t size;  // samples along an edge
     uint32_t first; // entry of dnrt_light
+    uint32_t lamps; // of lamps
 };
 
 struct dnrt_apply_push {
@@ -79,7 +90,7 @@ struct dnrt_apply_push {
 _Static_assert(sizeof(struct dnrt_gpu_object) == 20 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct dnrt_gpu_object) * DNRT_MAX_OBJECTS <= 16384,
                "each device has uniform blocks of this size");
-_Static_assert(sizeof(struct dnrt_gpu_shape) == 28 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct dnrt_gpu_shape) == 37 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct dnrt_changed) == (3 + 3 * DNRT_MAX_OBJECTS) * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct dnrt_apply_push) == 8 * 4, "layout is shared with GLSL");

@@ -17,8 +17,8 @@ struct dnrt_volume {
     vec3s box_centre, box_half;
 };
 
-// Entries of `light`: of the probes, and two that bounces fill by turns.
-enum { DNRT_LIGHT_PARTS = 3 };
+// Entries of `light`: of the probes, two that bounces fill by turns, and of lamps.
+enum { DNRT_LIGHT_LAMPS = 3, DNRT_LIGHT_PARTS };
 
 // The depth maps of an object: six layers, of the directions around its centre.
 struct dnrt_map {
@@ -44,6 +44,7 @@ struct dnrt {
     gpu_image image; // volumes of all objects in their light
     gpu_sampler linear;
     gpu_pipeline light_pipeline, bounce_pipeline, volumes_pipeline;
+    gpu_pipeline lamps_pipeline;       // of the option `direct`
     gpu_pipeline apply_pipeline[2][2]; // [with FRAME_ID][with depth maps]
     struct shadow_casters casters;
     gpu_image map_image;                 // D32F array; empty: intrusion=off

@@ -1,7 +1,8 @@
 // Names of the tensors of a bake; K: a shape's volume (dnrt_shape.volume).
 #pragma once
 
-#define DNRT_VOLUME "shape/%d/volume" // F16 or U8 [normal][coefficient][rgb][z][y][x], of the scale
-#define DNRT_SCALE  "shape/%d/scale"  // F32 [normal][coefficient][rgb]: of m = t − k
+// A plane is m = t − k of red, green or blue; with the option `direct` the fourth one is k.
+#define DNRT_VOLUME "shape/%d/volume" // F16, U8 [normal][coefficient][plane][z][y][x], of the scale
+#define DNRT_SCALE  "shape/%d/scale"  // F32 [normal][coefficient][plane]
 #define DNRT_SPHERE "shape/%d/sphere" // F32 [4]: centre and radius in the object's frame
 #define DNRT_BOX    "shape/%d/box"    // F32 [2][3]: centre and half edges of the bounding box

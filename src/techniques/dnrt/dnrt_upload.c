@@ -35,21 +35,22 @@ static bool take_bounds(struct dnrt *s, int shape, const float *sphere, const fl
 
 static size_t planes_of(const struct dnrt_options *options)
 {
-    return 3 * (size_t)dnrt_coefficients(options);
+    return (size_t)dnrt_planes(options) * (size_t)dnrt_coefficients(options);
 }
 
 static bool take_shape(struct dnrt *s, const struct tensors *bake, int shape, struct content *out)
 {
     const uint64_t n = (uint64_t)dnrt_size(&s->options),
                    c = (uint64_t)dnrt_coefficients(&s->options),
-                   normals = (uint64_t)dnrt_normals(&s->options);
+                   normals = (uint64_t)dnrt_normals(&s->options),
+                   of_coefficient = (uint64_t)dnrt_planes(&s->options);
     const enum tensor_type type = s->options.bits == DNRT_BITS_16 ? TENSOR_F16 : TENSOR_U8;
     const float *sphere = expect(s, bake, DNRT_SPHERE, shape, TENSOR_F32, 1, (uint64_t[]){ 4 });
     const float *box = expect(s, bake, DNRT_BOX, shape, TENSOR_F32, 2, (uint64_t[]){ 2, 3 });
-    const float *scale =
-        expect(s, bake, DNRT_SCALE, shape, TENSOR_F32, 3, (uint64_t[]){ normals, c, 3 });
-    const uint8_t *volume =
-        expect(s, bake, DNRT_VOLUME, shape, type, 6, (uint64_t[]){ normals, c, 3, n, n, n });
+    const float *scale = expect(s, bake, DNRT_SCALE, shape, TENSOR_F32, 3,
+                                (uint64_t[]){ normals, c, of_coefficient });
+    const uint8_t *volume = expect(s, bake, DNRT_VOLUME, shape, type, 6,
+                                   (uint64_t[]){ normals, c, of_coefficient, n, n, n });
     if (!sphere || !box || !scale || !volume || !take_bounds(s, shape, sphere, box)) return false;
     const size_t first = (size_t)shape * normals, planes = planes_of(&s->options);
     for (size_t i = 0; i < normals; i++) {

@@ -77,6 +77,7 @@ TEST(volumes_have_the_bytes_of_the_paper)
     check_bytes("size=32,coefficients=4,bits=8,rays=16", 393216);
     check_bytes("size=32,coefficients=9,bits=8,rays=16", 884736);
     check_bytes("size=32,coefficients=4,bits=16,rays=16", 2 * 393216);
+    check_bytes("size=32,coefficients=4,bits=8,direct=true,rays=16", 393216 * 4 / 3); // and k
 }
 
 static struct file_bytes bytes_on(int threads)

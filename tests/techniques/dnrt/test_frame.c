@@ -19,8 +19,10 @@ struct dnrt_scene {
     struct baked_fixture run;
 };
 
-static const vec3s CENTRE[BALLS] = { { { -0.2f, 0.8f, 0.1f } }, { { 0.5f, 0.7f, -0.3f } } };
+static const vec3s CENTRE[BALLS] = { { { -0.2f, 0.8f, 0.1f } }, { { 0.6f, 0.7f, -0.3f } } };
 static const float RADIUS[BALLS] = { 0.4f, 0.3f };
+static const vec3s SUN_DIRECTION = { { 0.3f, -1, -0.6f } };
+static const float SUN_LUX = 1000;
 
 static versors turn_of(int ball)
 {
@@ -47,7 +49,7 @@ static void open_scene(struct dnrt_scene *d, struct gpu *gpu, const char *gi, un
     const int mesh = sphere_fixture_add(s->scene, fixture_matte(s, vec3_of(0.2f, 0.4f, 0.9f)));
     for (int b = 0; b < BALLS; b++)
         if (balls >> b & 1) add_ball(s, mesh, b);
-    fixture_add_sun(s, vec3_of(0.3f, -1, -0.6f), vec3_of(1000, 1000, 1000));
+    fixture_add_sun(s, SUN_DIRECTION, vec3_of(SUN_LUX, SUN_LUX, SUN_LUX));
     fixture_look(s, vec3_of(0, 2.4f, 3.4f), vec3_of(0, 0.4f, -0.6f));
     s->input.want_id_layer = true;
     baked_fixture_open(&d->run, s, gi);
@@ -68,6 +70,7 @@ struct ball_volume {
     float radius, half;
     bool quadratic;
     float light[3][9]; // π c in the object's frame, lux
+    float lamps[3][9]; // π d, of the sun
     const float *scale;
     const struct tensor *volume;
 };
@@ -116,6 +119,17 @@ static void probes_at(struct dnrt_scene *d, vec3s point, float c[3][9])
     free(image);
 }
 
+// The sun lights all of each ball.
+static void add_sun(struct ball_volume *v)
+{
+    const vec3s to_sun = glms_vec3_normalize(glms_vec3_negate(SUN_DIRECTION));
+    float zonal[3], cosine[9];
+    zh_clamped_cosine(3, zonal);
+    zh_rotate(3, zonal, glms_mat3_mulv(v->object_from_world, to_sun), cosine);
+    for (int c = 0; c < 3; c++)
+        for (int j = 0; j < 9; j++) v->lamps[c][j] = GLM_PIf * SUN_LUX * cosine[j];
+}
+
 static struct ball_volume volume_of(struct dnrt_scene *d, int ball, bool quadratic)
 {
     const struct tensors *bake = d->run.baked.bakes.of_term[1];
@@ -134,6 +148,7 @@ static struct ball_volume volume_of(struct dnrt_scene *d, int ball, bool quadrat
         sh_rotate(3, v.object_from_world, c[i], v.light[i]);
         for (int j = 0; j < 9; j++) v.light[i][j] *= GLM_PIf;
     }
+    add_sun(&v);
     return v;
 }
 
@@ -145,10 +160,10 @@ static float sample_of(const struct ball_volume *v, int plane, int index)
                                   : (float)(((const uint8_t *)v->volume->data)[at] - 128) / 127);
 }
 
-// π Σ c_j m_j of the volume of a normal.
+// π Σ (c_j m_j + d_j t_j) of the volume of a normal, t = m + k.
 static float interpolate(const struct ball_volume *v, int normal, int colour, const float at[3])
 {
-    const int count = (int)v->volume->shape[1];
+    const int count = (int)v->volume->shape[1], planes = (int)v->volume->shape[2];
     float sum = 0;
     for (int k = 0; k < 8; k++) {
         float weight = 1;
@@ -159,9 +174,13 @@ static float interpolate(const struct ball_volume *v, int normal, int colour, co
             weight *= k >> i & 1 ? part : 1 - part;
             index = index * N + low + (k >> i & 1);
         }
-        for (int j = 0; j < count; j++)
-            sum += weight * v->light[colour][j] *
-                   sample_of(v, 3 * (count * normal + j) + colour, index);
+        for (int j = 0; j < count; j++) {
+            const int first = planes * (count * normal + j);
+            const float m = sample_of(v, first + colour, index);
+            sum += weight * v->light[colour][j] * m;
+            if (planes == 4)
+                sum += weight * v->lamps[colour][j] * (m + sample_of(v, first + 3, index));
+        }
     }
     return sum;
 }
@@ -308,13 +327,14 @@ static struct pixels pixels_of(struct gpu *gpu, const char *gi, unsigned balls)
 TEST_GPU(pixels_change_as_the_bake_says)
 {
     check_change(gpu, "", 1);
-    check_change(gpu, ",coefficients=9", 2);
+    check_change(gpu, ",direct=true", 1);
+    check_change(gpu, ",coefficients=9,direct=true", 2);
     check_change(gpu, ",bits=8", 3);
 }
 
 TEST_GPU(pixels_change_by_volumes_of_several_normals)
 {
-    check_change(gpu, ",normals=3,grid=quadratic", 3);
+    check_change(gpu, ",normals=3,grid=quadratic,direct=true", 3);
     check_change(gpu, ",normals=6,coefficients=9,bits=8", 3);
 }
 
@@ -353,7 +373,7 @@ static void check_bounce(struct gpu *gpu, const char *options)
 TEST_GPU(objects_get_the_light_that_others_change)
 {
     check_bounce(gpu, "bits=16");
-    check_bounce(gpu, "normals=3,coefficients=9,bits=8,grid=quadratic");
+    check_bounce(gpu, "direct=true,normals=3,coefficients=9,bits=8,grid=quadratic");
 }
 
 // Of two balls, which reflect light onto each other.

@@ -95,20 +95,21 @@ static float hidden_factor(const struct dnrt_options *options, int coefficient)
     return options->occluded == DNRT_OCCLUDED_RADIANCE ? radiance[band] : 1.0f;
 }
 
-// m = t − k of each normal.
+// m = t − k of each normal, and k for light that is reflected alone.
 static void write_transfer(const struct dnrt_options *options, const struct dnrt_transfer *transfer,
                            float *to)
 {
     for (int i = 0; i < dnrt_normals(options); i++)
-        for (int j = 0; j < dnrt_coefficients(options); j++, to += 3) {
+        for (int j = 0; j < dnrt_coefficients(options); j++, to += dnrt_planes(options)) {
             const float hidden = transfer->of[i].hidden[j] * hidden_factor(options, j);
             for (int c = 0; c < 3; c++) to[c] = transfer->of[i].reflected[j].raw[c] - hidden;
+            if (options->direct) to[3] = hidden;
         }
 }
 
 static size_t planes_of(const struct dnrt_options *options)
 {
-    return 3 * (size_t)dnrt_normals(options) * (size_t)dnrt_coefficients(options);
+    return (size_t)(dnrt_planes(options) * dnrt_normals(options) * dnrt_coefficients(options));
 }
 
 static bool run_samples(const struct bake_task *task)
@@ -221,17 +222,18 @@ static bool add_volume(struct bake_plan *plan, const struct job *job,
     const uint64_t n = (uint64_t)dnrt_size(&job->options);
     const uint64_t count = (uint64_t)dnrt_coefficients(&job->options);
     const uint64_t normals = (uint64_t)dnrt_normals(&job->options);
+    const uint64_t planes = (uint64_t)dnrt_planes(&job->options);
     const struct bake_output out[] = {
         { bake_plan_name(plan, DNRT_VOLUME, of->volume),
           job->options.bits == DNRT_BITS_16 ? TENSOR_F16 : TENSOR_U8,
           6,
-          { normals, count, 3, n, n, n },
+          { normals, count, planes, n, n, n },
           BAKE_ROWS,
           BAKE_SAVED },
         { bake_plan_name(plan, DNRT_SCALE, of->volume),
           TENSOR_F32,
           3,
-          { normals, count, 3 },
+          { normals, count, planes },
           BAKE_ROWS,
           BAKE_SAVED },
         { bake_plan_name(plan, DNRT_SPHERE, of->volume),
@@ -249,17 +251,17 @@ static bool add_volume(struct bake_plan *plan, const struct job *job,
     };
     const char *name = bake_plan_name(plan, "shape %d volume", of->volume);
     return name && out[0].name && out[1].name && out[2].name && out[3].name &&
-           bake_plan_add(plan,
-                         &(struct bake_stage){
-                             .name = name,
-                             .wave = 1,
-                             .task_count = 1,
-                             .run = run_volume,
-                             .argument = of,
-                             .outputs = out,
-                             .output_count = 4,
-                             .flops = (double)(n * n * n * normals * count * 6),
-                             .scratch_bytes = (size_t)(n * n * n * (normals * count * 12 + 4)) });
+           bake_plan_add(plan, &(struct bake_stage){
+                                   .name = name,
+                                   .wave = 1,
+                                   .task_count = 1,
+                                   .run = run_volume,
+                                   .argument = of,
+                                   .outputs = out,
+                                   .output_count = 4,
+                                   .flops = (double)(n * n * n * normals * count * planes * 2),
+                                   .scratch_bytes =
+                                       (size_t)(n * n * n * (normals * count * planes * 4 + 4)) });
 }
 
 static struct stage_argument *arguments_of(struct bake_plan *plan, int volume)
