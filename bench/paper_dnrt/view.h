@@ -31,7 +31,7 @@ enum ag_result dnrt_view_open(struct dnrt_view *view, const char *scene, const c
 // The same of a scene that is open: takes it over.
 enum ag_result dnrt_view_open_scene(struct dnrt_view *view, struct ag_scene *scene);
 void dnrt_view_close(struct dnrt_view *view);
-// A reference of the scene as it is. out_position may be NULL.
+// A reference of the scene with its objects. out_position may be NULL.
 enum ag_result dnrt_view_trace(struct dnrt_view *view, struct ag_image **out,
                                struct ag_image **out_position);
 
