@@ -106,6 +106,17 @@ struct frame_view {
     int maps_drawn; // layers of shadow maps and reflective shadow maps rendered in this frame
 };
 
+// In GPU_BIND: what shaders that include frame/shadow/shadow.glsl and evaluate lights bind.
+#define FRAME_LIGHT_BINDINGS(view)                                                                 \
+    (view)->constants_binding, (view)->lights_binding, (view)->shadow_faces_binding,               \
+        { .name = "shadow_maps",                                                                   \
+          .image = (view)->shadow_maps,                                                            \
+          .sampler = (view)->shadow_sampler },                                                     \
+    {                                                                                              \
+        .name = "shadow_sun_maps", .image = (view)->shadow_sun_maps,                               \
+        .sampler = (view)->shadow_sampler                                                          \
+    }
+
 // Inputs and outputs of the indirect light; the frame creates and fills only these.
 enum frame_need {
     FRAME_NEEDS_RSM = 1,

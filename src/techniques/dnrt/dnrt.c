@@ -187,17 +187,11 @@ static void record_lamps(struct dnrt *s, struct gpu_cmd *cmd, const struct frame
                                           view->shadow_radius };
     if (!s->options.direct) return;
     gpu_scope_begin(cmd, "lamps");
-    gpu_dispatch(
-        cmd, s->lamps_pipeline,
-        GPU_BIND(
-            view->constants_binding, view->lights_binding, view->shadow_faces_binding,
-            { .name = "shadow_maps", .image = view->shadow_maps, .sampler = view->shadow_sampler },
-            { .name = "shadow_sun_maps",
-              .image = view->shadow_sun_maps,
-              .sampler = view->shadow_sampler },
-            objects, { .name = "dnrt_light", .buffer = s->light },
-            { .name = "dnrt_changed", .buffer = s->changed }),
-        &push, sizeof push, gpu_groups(push.objects, DNRT_LOCAL), 1, 1);
+    gpu_dispatch(cmd, s->lamps_pipeline,
+                 GPU_BIND(FRAME_LIGHT_BINDINGS(view), objects,
+                          { .name = "dnrt_light", .buffer = s->light },
+                          { .name = "dnrt_changed", .buffer = s->changed }),
+                 &push, sizeof push, gpu_groups(push.objects, DNRT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
 }
 

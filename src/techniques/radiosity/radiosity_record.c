@@ -12,17 +12,11 @@ static void record_direct(struct radiosity *s, struct gpu_cmd *cmd, const struct
     const struct radiosity_direct_push push = { rows.first, rows.count, s->map.texel_count,
                                                 view->shadow_radius,
                                                 s->options.emitters ? 1.0f : 0.0f };
-    gpu_dispatch(
-        cmd, s->pipelines.direct,
-        GPU_BIND(
-            view->constants_binding, view->lights_binding, view->shadow_faces_binding,
-            { .name = "shadow_maps", .image = view->shadow_maps, .sampler = view->shadow_sampler },
-            { .name = "shadow_sun_maps",
-              .image = view->shadow_sun_maps,
-              .sampler = view->shadow_sampler },
-            { .name = "radiosity_texels", .image = s->tables.texels },
-            { .name = "radiosity_flux", .image = s->tables.flux }),
-        &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
+    gpu_dispatch(cmd, s->pipelines.direct,
+                 GPU_BIND(FRAME_LIGHT_BINDINGS(view),
+                          { .name = "radiosity_texels", .image = s->tables.texels },
+                          { .name = "radiosity_flux", .image = s->tables.flux }),
+                 &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
 static void record_clusters(struct radiosity *s, struct gpu_cmd *cmd)

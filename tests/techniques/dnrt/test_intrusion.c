@@ -1,4 +1,4 @@
-// intrusion=shadow: what stands between an object and a receiver, against the part of the object's
+// intrusion=shadow: occluders between an object and a receiver, against the part of the object's
 // disk that the receiver sees.
 #include "techniques/baked_fixture.h"
 #include "techniques/dnrt/sphere_fixture.h"

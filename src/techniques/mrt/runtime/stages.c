@@ -15,18 +15,12 @@ void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     runtime->level.shadow_radius = view->shadow_radius;
     runtime->level.emitters = emitters ? 1.0f : 0.0f;
     gpu_scope_begin(cmd, "direct");
-    gpu_dispatch(
-        cmd, runtime->pipelines.direct,
-        GPU_BIND(
-            view->constants_binding, view->lights_binding, view->shadow_faces_binding,
-            { .name = "shadow_maps", .image = view->shadow_maps, .sampler = view->shadow_sampler },
-            { .name = "shadow_sun_maps",
-              .image = view->shadow_sun_maps,
-              .sampler = view->shadow_sampler },
-            level_binding(runtime, cmd), { .name = "mrt_texels", .buffer = b->texels },
-            { .name = "mrt_unbounced", .buffer = b->unbounced },
-            { .name = "mrt_direct", .buffer = b->direct }),
-        NULL, 0, gpu_groups(runtime->level.texels, MRT_LOCAL), 1, 1);
+    gpu_dispatch(cmd, runtime->pipelines.direct,
+                 GPU_BIND(FRAME_LIGHT_BINDINGS(view), level_binding(runtime, cmd),
+                          { .name = "mrt_texels", .buffer = b->texels },
+                          { .name = "mrt_unbounced", .buffer = b->unbounced },
+                          { .name = "mrt_direct", .buffer = b->direct }),
+                 NULL, 0, gpu_groups(runtime->level.texels, MRT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
     mrt_record_clutter_direct(runtime, cmd, view);
 }

@@ -10,22 +10,15 @@
 static void inject(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
                    const struct frame_view *view, const struct vct_voxel_set *set)
 {
-    gpu_dispatch_indirect(
-        cmd, vct->inject[vct->params.light_count > 0],
-        GPU_BIND(
-            vct_grid_binding(vct, clip, cmd), view->constants_binding, view->lights_binding,
-            view->shadow_faces_binding,
-            { .name = "shadow_maps", .image = view->shadow_maps, .sampler = view->shadow_sampler },
-            { .name = "shadow_sun_maps",
-              .image = view->shadow_sun_maps,
-              .sampler = view->shadow_sampler },
-            { .name = "vct_list", .buffer = set->list },
-            { .name = "vct_surfaces", .image = set->surfaces },
-            { .name = "vct_lit_voxels", .image = set->lit_voxels },
-            { .name = "vct_bounced", .image = set->bounced },
-            { .name = "vct_part_of_face", .image = set->part_of_face },
-            { .name = "vct_arguments", .buffer = set->arguments }),
-        NULL, 0, set->arguments, 0);
+    gpu_dispatch_indirect(cmd, vct->inject[vct->params.light_count > 0],
+                          GPU_BIND(vct_grid_binding(vct, clip, cmd), FRAME_LIGHT_BINDINGS(view),
+                                   { .name = "vct_list", .buffer = set->list },
+                                   { .name = "vct_surfaces", .image = set->surfaces },
+                                   { .name = "vct_lit_voxels", .image = set->lit_voxels },
+                                   { .name = "vct_bounced", .image = set->bounced },
+                                   { .name = "vct_part_of_face", .image = set->part_of_face },
+                                   { .name = "vct_arguments", .buffer = set->arguments }),
+                          NULL, 0, set->arguments, 0);
 }
 
 void vct_refill_volume(struct vct *vct, struct gpu_cmd *cmd)

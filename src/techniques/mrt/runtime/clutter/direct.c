@@ -167,20 +167,14 @@ void mrt_record_clutter_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     note_unbounced(runtime, view);
     if (c->opening_count == 0) return;
     gpu_scope_begin(cmd, "clutter");
-    gpu_dispatch(
-        cmd, c->light,
-        GPU_BIND(
-            view->constants_binding, view->lights_binding, view->shadow_faces_binding,
-            { .name = "shadow_maps", .image = view->shadow_maps, .sampler = view->shadow_sampler },
-            { .name = "shadow_sun_maps",
-              .image = view->shadow_sun_maps,
-              .sampler = view->shadow_sampler },
-            gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level),
-            { .name = "mrt_texels", .buffer = c->texels },
-            { .name = "mrt_clutter_groups", .buffer = c->groups },
-            { .name = "mrt_clutter_faces", .buffer = c->faces },
-            { .name = "mrt_clutter_samples", .buffer = c->samples },
-            { .name = "mrt_clutter_direct", .buffer = c->direct }),
-        NULL, 0, c->group_count, 1, 1);
+    gpu_dispatch(cmd, c->light,
+                 GPU_BIND(FRAME_LIGHT_BINDINGS(view),
+                          gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level),
+                          { .name = "mrt_texels", .buffer = c->texels },
+                          { .name = "mrt_clutter_groups", .buffer = c->groups },
+                          { .name = "mrt_clutter_faces", .buffer = c->faces },
+                          { .name = "mrt_clutter_samples", .buffer = c->samples },
+                          { .name = "mrt_clutter_direct", .buffer = c->direct }),
+                 NULL, 0, c->group_count, 1, 1);
     gpu_scope_end(cmd);
 }
