@@ -1,6 +1,6 @@
-// What is between an object and a receiver, by the object's depth maps. The light is the disk of
-// its bounding sphere: percentage-closer soft shadows (Fernando 2005), with each occluder projected
-// from the receiver to that disk.
+// Occlusion between an object and a receiver, by the depth maps of the object. The light is the
+// disk of its bounding sphere: percentage-closer soft shadows (Fernando 2005), with each occluder
+// projected from the receiver to that disk.
 //
 // Texels are compared with the receiver's tangent plane, too: what is behind the plane hides
 // nothing of the light that the receiver gets, and a plane is never in front of itself, however
