@@ -30,27 +30,40 @@ static void check_said(enum ag_log_level level, const char *gi, const char *what
     fail_msg("not said by %s at level %d: %s; but\n%s", gi, (int)level, what, said);
 }
 
-// Mean irradiance by `gi` of a floor of `side` metres, lit by a sun and a point light, with a
-// sunlit wall at one end.
-static double render_floor(const char *gi, float side, float lamp_height)
+// One device for the scenes of a test: pipelines are compiled once.
+struct floor_test {
+    struct ag_context *context;
+    struct ag_device *device;
+};
+
+static struct floor_test floor_test_open(void)
 {
     test_gpu_require();
-    struct ag_context_desc context_desc;
-    struct ag_context *context = NULL;
-    struct ag_device *device = NULL;
-    struct ag_scene *scene = NULL;
-    struct ag_renderer *renderer = NULL;
-    said[0] = '\0';
-    ag_context_desc_default(&context_desc);
-    context_desc.log = listen;
-    context_desc.log_up_to = AG_LOG_INFO;
-    assert_int_equal(ag_context_create(&context_desc, &context), AG_OK);
-    struct ag_device_desc device_desc;
-    ag_device_desc_default(&device_desc);
-    device_desc.validation = true;
-    assert_int_equal(ag_device_create(context, &device_desc, &device), AG_OK);
-    assert_int_equal(ag_scene_create(context, &scene), AG_OK);
+    struct floor_test test = { 0 };
+    struct ag_context_desc context;
+    ag_context_desc_default(&context);
+    context.log = listen;
+    context.log_up_to = AG_LOG_INFO;
+    assert_int_equal(ag_context_create(&context, &test.context), AG_OK);
+    struct ag_device_desc device;
+    ag_device_desc_default(&device);
+    device.validation = true;
+    assert_int_equal(ag_device_create(test.context, &device, &test.device), AG_OK);
+    return test;
+}
 
+static void floor_test_close(struct floor_test *test)
+{
+    assert_int_equal(ag_device_validation_messages(test->device), 0);
+    ag_device_destroy(test->device);
+    ag_context_destroy(test->context);
+}
+
+// A floor of `side` metres with a wall at one end, below a point light.
+static struct ag_scene *make_floor(struct ag_context *context, float side, float lamp_height)
+{
+    struct ag_scene *scene = NULL;
+    assert_int_equal(ag_scene_create(context, &scene), AG_OK);
     struct ag_material_desc material;
     ag_material_desc_default(&material);
     int matte, mesh;
@@ -70,17 +83,25 @@ static double render_floor(const char *gi, float side, float lamp_height)
     light.position[1] = lamp_height;
     for (int c = 0; c < 3; c++) light.intensity[c] = 1000.0f * lamp_height * lamp_height;
     assert_int_equal(ag_scene_add_light(scene, &light, NULL), AG_OK);
+    return scene;
+}
 
-    struct ag_renderer_desc renderer_desc;
+// Mean irradiance of the floor by `gi`. Afterwards `said` has the messages.
+static double render_floor(struct floor_test *test, const char *gi, float side, float lamp_height)
+{
+    said[0] = '\0';
+    struct ag_scene *scene = make_floor(test->context, side, lamp_height);
+    struct ag_renderer *renderer = NULL;
+    struct ag_renderer_desc desc;
     struct ag_frame_desc frame;
-    ag_renderer_desc_default(&renderer_desc);
-    renderer_desc.width = renderer_desc.height = SIZE;
-    renderer_desc.gi = gi;
+    ag_renderer_desc_default(&desc);
+    desc.width = desc.height = SIZE;
+    desc.gi = gi;
     ag_frame_desc_default(&frame);
     const float distance = side > 0 ? side : 1;
     const float eye[3] = { 0, distance, distance }, target[3] = { 0, 0, 0 };
     assert_int_equal(ag_scene_look_at(scene, eye, target, 1.0f, &frame.camera), AG_OK);
-    assert_int_equal(ag_renderer_create(device, scene, &renderer_desc, &renderer), AG_OK);
+    assert_int_equal(ag_renderer_create(test->device, scene, &desc, &renderer), AG_OK);
     assert_int_equal(ag_renderer_render(renderer, &frame), AG_OK);
     struct ag_image *image = NULL;
     assert_int_equal(ag_renderer_read(renderer, "irradiance", &image), AG_OK);
@@ -89,12 +110,9 @@ static double render_floor(const char *gi, float side, float lamp_height)
         CHECK(isfinite(image->pixels[i]) && image->pixels[i] >= 0.0f);
         sum += (double)image->pixels[i] / (3.0 * SIZE * SIZE);
     }
-    ag_image_destroy(context, image);
+    ag_image_destroy(test->context, image);
     ag_renderer_destroy(renderer);
-    assert_int_equal(ag_device_validation_messages(device), 0);
     ag_scene_destroy(scene);
-    ag_device_destroy(device);
-    ag_context_destroy(context);
     return sum;
 }
 
@@ -103,47 +121,57 @@ enum { VOLUMES = sizeof volumes / sizeof volumes[0] };
 
 TEST(a_suitable_scene_logs_its_cell_size)
 {
+    struct floor_test test = floor_test_open();
     for (int i = 0; i < VOLUMES; i++) {
-        CHECK(render_floor(volumes[i], 8, 2) > 0);
+        CHECK(render_floor(&test, volumes[i], 8, 2) > 0);
         check_said(AG_LOG_INFO, volumes[i],
                    strcmp(volumes[i], "vct") == 0 ? "scene: 60 x " : "scene: 32 x ");
         CHECK(!strstr(said, "0 gi") && !strstr(said, "1 gi")); // no error, no warning
     }
+    floor_test_close(&test);
 }
 
 TEST(a_scene_too_large_for_its_cells_causes_a_warning)
 {
+    struct floor_test test = floor_test_open();
     for (int i = 0; i < VOLUMES; i++) {
-        CHECK(render_floor(volumes[i], 4000, 1000) > 0);
+        CHECK(render_floor(&test, volumes[i], 4000, 1000) > 0);
         check_said(AG_LOG_WARNING, volumes[i], "indirect light has no finer detail");
         if (strstr(volumes[i], "lpv"))
             check_said(AG_LOG_WARNING, volumes[i], "no finer detail; cascades=4,cell=");
     }
+    floor_test_close(&test);
 }
 
 TEST(a_scene_without_extent_causes_a_warning)
 {
+    struct floor_test test = floor_test_open();
     for (int i = 0; i < VOLUMES; i++) {
-        CHECK(render_floor(volumes[i], 0, 2) == 0);
+        CHECK(render_floor(&test, volumes[i], 0, 2) == 0);
         check_said(AG_LOG_WARNING, volumes[i], "there is no indirect light");
     }
+    floor_test_close(&test);
 }
 
 TEST(occlusion_by_cones_logs_the_same)
 {
-    render_floor("vctao", 4000, 1000);
+    struct floor_test test = floor_test_open();
+    render_floor(&test, "vctao", 4000, 1000);
     check_said(AG_LOG_WARNING, "vctao", "ambient occlusion has no finer detail");
-    render_floor("vctao", 0, 2);
+    render_floor(&test, "vctao", 0, 2);
     check_said(AG_LOG_WARNING, "vctao", "there is no ambient occlusion");
+    floor_test_close(&test);
 }
 
 // The height of the wall is half the length of the floor.
 TEST(a_light_outside_the_grid_has_the_same_effect)
 {
+    struct floor_test test = floor_test_open();
     for (int i = 0; i < VOLUMES; i++) {
-        CHECK(render_floor(volumes[i], 8, 100) > 0);
+        CHECK(render_floor(&test, volumes[i], 8, 100) > 0);
         if (strcmp(volumes[i], "vct") !=
             0) // every voxel asks the shadow maps, wherever the light is
             check_said(AG_LOG_INFO, volumes[i], "light 0 of scene is outside of the grid");
     }
+    floor_test_close(&test);
 }
