@@ -208,7 +208,7 @@ static bool build_cornell(struct scene *scene, const void *options)
     float vertical_fov_rad = 2.0f * atanf(0.5f * 0.025f / 0.035f);
     const struct cornell_options *o = options;
     return build_shell(scene, o) && build_light(scene, o) &&
-           cornell_add_objects(scene, o->objects) &&
+           cornell_add_objects(scene, o->objects) && (!o->bowl || cornell_add_bowl(scene)) &&
            builtin_camera(scene, "main", from_data(278, 273, -800), from_data(278, 273, 0),
                           vertical_fov_rad);
 }

@@ -90,3 +90,25 @@ bool cornell_add_objects(struct scene *scene, int count)
         if (!movable_object_add(scene, &CORNELL[i])) return false;
     return true;
 }
+
+// The lower half of a spherical shell.
+bool cornell_add_bowl(struct scene *scene)
+{
+    enum { STEPS = 14, POINTS = 2 * (STEPS + 1) };
+    const float outer = 1.2f, inner = 1.05f;
+    vec2s profile[POINTS];
+    struct shape_builder builder;
+    const int material = builtin_diffuse(scene, "bowl", vec3_of(0.8f, 0.7f, 0.5f));
+    if (material < 0) return false;
+    for (int i = 0; i <= STEPS; i++) {
+        const float angle = GLM_PI_2f * (float)i / STEPS;
+        const float across = i == 0 ? 0.0f : sinf(angle), down = i == STEPS ? 0.0f : cosf(angle);
+        profile[i] = (vec2s){ { outer * across, outer * (1.0f - down) } };
+        profile[POINTS - 1 - i] = (vec2s){ { inner * across, outer - inner * down } };
+    }
+    shape_begin(&builder, scene);
+    shape_lathe(&builder, vec3_of(0.0f, 0.8f, 0.5f), profile, POINTS, 2 * STEPS);
+    const int instance = shape_emit(&builder, "bowl", material);
+    if (instance >= 0) scene->instances[instance].movable = true;
+    return instance >= 0;
+}

@@ -17,3 +17,4 @@ bool movable_object_add(struct scene *scene, const struct movable_object *object
 
 // The first `count` of @cornell, at most 10. False on failure.
 bool cornell_add_objects(struct scene *scene, int count);
+bool cornell_add_bowl(struct scene *scene); // concave: its inside lights itself

@@ -84,4 +84,32 @@ vec3 probes_seen_irradiance(sampler3D volume, sampler2D depth, frame_probes grid
     return sum / weights;
 }
 
+// Irradiance over directions, as coefficients, at a point that is on no surface.
+void probes_seen_coefficients(sampler3D volume, sampler2D depth, frame_probes grid, vec3 position,
+                              out vec3 c[9])
+{
+    ivec3 last = ivec3(grid.count_x, grid.count_y, grid.count_z) - 1;
+    vec3 at = clamp((position - grid.first_m) / grid.spacing_m, vec3(0.0), vec3(last));
+    ivec3 base = ivec3(floor(at));
+    float weights = 0.0;
+    for (int j = 0; j < 9; j++) c[j] = vec3(0.0);
+    for (int corner = 0; corner < 8; corner++) {
+        ivec3 step = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+        ivec3 cell = min(base + step, last);
+        vec3 linear = mix(1.0 - (at - vec3(base)), at - vec3(base), equal(step, ivec3(1)));
+        vec4 place = texelFetch(volume, cell + ivec3(0, 0, FRAME_PROBE_SLABS * grid.slab), 0);
+        vec3 to = at - vec3(cell) - place.xyz;
+        int probe = (cell.z * grid.count_y + cell.y) * grid.count_x + cell.x;
+        float weight = linear.x * linear.y * linear.z *
+                       (place.w * probe_visibility(depth, probe, to) + PROBE_UNSEEN);
+        vec4 values;
+        for (int i = 0; i < 27; i++) {
+            if (i % 4 == 0) values = texelFetch(volume, cell + ivec3(0, 0, i / 4 * grid.slab), 0);
+            c[i / 3][i % 3] += weight * values[i % 4];
+        }
+        weights += weight;
+    }
+    for (int j = 0; j < 9; j++) c[j] /= weights;
+}
+
 #endif

@@ -75,8 +75,11 @@ static bool make_pipelines(struct dnrt *s)
         { 2, (uint32_t)dnrt_coefficients(&s->options) }, { 3, s->options.bits == DNRT_BITS_8 },
         { 4, (uint32_t)dnrt_planes(&s->options) },
     };
-    return gpu_compute_pipeline_create(s->gpu, "light", &shader_dnrt_light_comp, NULL, 0,
-                                       &s->light_pipeline) &&
+    const struct gpu_constant of_self[] = { constants[2], constants[4] };
+    return gpu_compute_pipeline_create(s->gpu, "light", &shader_dnrt_light_grid_comp, NULL, 0,
+                                       &s->light_pipeline[0]) &&
+           gpu_compute_pipeline_create(s->gpu, "light", &shader_dnrt_light_seen_comp, NULL, 0,
+                                       &s->light_pipeline[1]) &&
            gpu_compute_pipeline_create(s->gpu, "bounce", &shader_dnrt_bounce_comp, constants, 5,
                                        &s->bounce_pipeline) &&
            gpu_compute_pipeline_create(s->gpu, "volumes", &shader_dnrt_volumes_comp, constants + 1,
@@ -84,6 +87,8 @@ static bool make_pipelines(struct dnrt *s)
            (!s->options.direct ||
             gpu_compute_pipeline_create(s->gpu, "lamps", &shader_dnrt_lamps_comp, NULL, 0,
                                         &s->lamps_pipeline)) &&
+           (!s->options.self || gpu_compute_pipeline_create(s->gpu, "self", &shader_dnrt_self_comp,
+                                                            of_self, 2, &s->self_pipeline)) &&
            make_apply_pipelines(s, constants);
 }
 
@@ -204,11 +209,13 @@ static void record_light(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_binding
                                           s->stale || bounces };
     gpu_scope_begin(cmd, "light");
     gpu_fill_buffer(cmd, s->changed, offsetof(struct dnrt_changed, groups_y), sizeof(uint32_t), 0);
-    gpu_dispatch(cmd, s->light_pipeline,
-                 GPU_BIND({ .name = "probes", .image = s->source.image, .sampler = s->linear },
-                          objects, { .name = "dnrt_light", .buffer = s->light },
-                          { .name = "dnrt_changed", .buffer = s->changed }),
-                 &push, sizeof push, gpu_groups(push.objects, DNRT_LOCAL), 1, 1);
+    gpu_dispatch(
+        cmd, s->light_pipeline[s->source.depth.id != 0],
+        GPU_BIND({ .name = "probes", .image = s->source.image, .sampler = s->linear },
+                 { .name = "probe_depths", .image = s->source.depth, .sampler = s->linear },
+                 objects, { .name = "dnrt_light", .buffer = s->light },
+                 { .name = "dnrt_changed", .buffer = s->changed }),
+        &push, sizeof push, gpu_groups(push.objects, DNRT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
     s->stale = bounces;
 }
@@ -257,11 +264,13 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     struct dnrt *s = state;
     if (s->objects.count == 0 || s->image.id == 0) return;
     for (int i = 0; i < s->objects.count; i++) place_object(s, view->pose, i);
+    dnrt_place_own(s, view->pose->scene);
     if (s->map_count > 0) dnrt_record_maps(s, cmd, view);
     const struct gpu_binding objects = objects_binding(s, cmd);
     record_lamps(s, cmd, view, objects);
     record_light(s, cmd, objects);
-    record_volumes(s, cmd, objects, record_bounces(s, cmd, objects));
+    s->newest_light = record_bounces(s, cmd, objects);
+    record_volumes(s, cmd, objects, s->newest_light);
 }
 
 static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -279,32 +288,39 @@ static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     if (push.objects == 0 || s->image.id == 0) return;
     const uint32_t tiles = dnrt_find_tiles(s, view, push.words, s->tiles);
     if (tiles == 0) return;
+    const struct gpu_binding objects = gpu_transient(cmd, "dnrt_objects", s->gpu_objects,
+                                                     DNRT_MAX_OBJECTS * sizeof *s->gpu_objects),
+                             of_tiles = gpu_transient(
+                                 cmd, "dnrt_tiles", s->tiles,
+                                 (size_t)tiles * (DNRT_TILE_BITS + push.words) * sizeof *s->tiles);
     gpu_scope_begin(cmd, "apply");
-    gpu_dispatch(
-        cmd, s->apply_pipeline[has_id][s->map_count > 0],
-        GPU_BIND(view->constants_binding, { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-                 { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                 { .name = "id", .image = view->layers[FRAME_ID] },
-                 gpu_transient(cmd, "dnrt_objects", s->gpu_objects,
-                               DNRT_MAX_OBJECTS * sizeof *s->gpu_objects),
-                 gpu_transient(cmd, "dnrt_tiles", s->tiles,
-                               (size_t)tiles * (DNRT_TILE_BITS + push.words) * sizeof *s->tiles),
-                 { .name = "volumes", .image = s->image, .sampler = s->linear },
-                 { .name = "depth_maps", .image = s->map_image },
-                 { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
-        &push, sizeof push, tiles, 1, 1);
+    gpu_dispatch(cmd, s->apply_pipeline[has_id][s->map_count > 0],
+                 GPU_BIND(view->constants_binding,
+                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                          { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+                          { .name = "id", .image = view->layers[FRAME_ID] }, objects, of_tiles,
+                          { .name = "volumes", .image = s->image, .sampler = s->linear },
+                          { .name = "depth_maps", .image = s->map_image },
+                          { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+                 &push, sizeof push, tiles, 1, 1);
     gpu_scope_end(cmd);
+    dnrt_record_self(s, cmd, view, objects, of_tiles,
+                     &(struct dnrt_self_push){ push.words, push.tiles_x, s->own_count,
+                                               s->newest_light, lamps_of(s) },
+                     tiles);
 }
 
 static void destroy(void *state)
 {
     struct dnrt *s = state;
     if (!s->host) return;
-    gpu_pipeline *const pipelines[] = { &s->light_pipeline,       &s->bounce_pipeline,
-                                        &s->volumes_pipeline,     &s->lamps_pipeline,
+    gpu_pipeline *const pipelines[] = { &s->light_pipeline[0],    &s->light_pipeline[1],
+                                        &s->bounce_pipeline,      &s->volumes_pipeline,
+                                        &s->lamps_pipeline,       &s->self_pipeline,
                                         &s->apply_pipeline[0][0], &s->apply_pipeline[0][1],
                                         &s->apply_pipeline[1][0], &s->apply_pipeline[1][1] };
-    gpu_buffer *const buffers[] = { &s->shapes, &s->samples, &s->light, &s->changed };
+    gpu_buffer *const buffers[] = { &s->shapes,  &s->samples,      &s->light,
+                                    &s->changed, &s->patch_buffer, &s->point_buffer };
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(s->gpu, pipelines[i]);
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
@@ -313,6 +329,8 @@ static void destroy(void *state)
     gpu_image_destroy(s->gpu, &s->map_image);
     shadow_casters_finish(&s->casters);
     host_free(s->host, s->maps);
+    host_free(s->host, s->patches);
+    host_free(s->host, s->own);
     host_free(s->host, s->gpu_objects);
     host_free(s->host, s->volumes);
     host_free(s->host, s->tiles);
@@ -342,7 +360,7 @@ const struct technique technique_dnrt = {
     .role = ROLE_DELTA,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | NEEDS_BAKE,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID | FRAME_LEAVES_DYNAMIC,
-    .bake_version = 3,
+    .bake_version = 4,
     .options = OPTION_TABLE(struct dnrt_options, option_rows, NULL),
     .presets = presets,
     .state_size = sizeof(struct dnrt),

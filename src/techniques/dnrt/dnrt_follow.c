@@ -71,12 +71,13 @@ static void warn(struct dnrt *s, int without)
                  s->objects.count, DNRT_MAX_OBJECTS);
 }
 
-static bool make_room(struct dnrt *s)
+static bool make_room(struct dnrt *s, const struct scene *scene)
 {
     host_free(s->host, s->gpu_objects);
     s->gpu_objects = host_alloc(s->host, DNRT_MAX_OBJECTS, sizeof *s->gpu_objects);
     if (s->gpu_objects && dnrt_make_tiles(s) &&
-        (s->baked.count == 0 || s->objects.count == 0 || (make_image(s) && dnrt_make_maps(s))))
+        (s->baked.count == 0 || s->objects.count == 0 ||
+         (make_image(s) && dnrt_make_maps(s) && dnrt_make_own(s, scene))))
         return true;
     s->objects.count = 0;
     return false;
@@ -100,7 +101,7 @@ bool dnrt_find_objects(struct dnrt *s, const struct scene_pose *pose)
     if (s->baked.count > 0) warn(s, without);
     if (s->objects.count > DNRT_MAX_OBJECTS) s->objects.count = DNRT_MAX_OBJECTS;
     s->seen = pose->scene->revisions;
-    return make_room(s);
+    return make_room(s, pose->scene);
 }
 
 void dnrt_follow(void *state, const struct scene_pose *pose, bool wait)

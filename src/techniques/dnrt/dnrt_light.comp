@@ -8,6 +8,10 @@
 #include "core/sh.glsl"
 #include "frame/frame_shared.h"
 #include "frame/probes.glsl"
+#ifdef DNRT_SEEN
+#include "frame/octahedral.glsl"
+#include "techniques/common/probe_lookup.glsl"
+#endif
 // A struct and a block cannot share a name.
 #define dnrt_changed dnrt_changed_data
 #include "techniques/dnrt/dnrt_shared.h"
@@ -33,6 +37,9 @@ layout(set = 0, binding = 3, scalar) buffer dnrt_changed
 {
     dnrt_changed_data changed;
 };
+#ifdef DNRT_SEEN
+layout(set = 0, binding = 4) uniform sampler2D probe_depths; // no light passes through walls
+#endif
 
 const float PI = 3.14159265;
 
@@ -64,20 +71,33 @@ void rotate(mat3 axes, inout vec3 c[9])
     }
 }
 
+#ifdef DNRT_SEEN
+void light_at(vec3 position, out vec3 c[9])
+{
+    probes_seen_coefficients(probes, probe_depths, push.grid, position, c);
+}
+#else
+void light_at(vec3 position, out vec3 c[9])
+{
+    vec3 last = vec3(push.grid.count_x, push.grid.count_y, push.grid.count_z) - 1.0;
+    vec3 at = clamp((position - push.grid.first_m) / push.grid.spacing_m, vec3(0.0), last);
+    for (int s = 0; s < FRAME_PROBE_SLABS; s++) {
+        vec3 texel = at + vec3(0.5, 0.5, 0.5 + float(s * push.grid.slab));
+        vec4 values = textureLod(probes, texel / vec3(textureSize(probes, 0)), 0.0);
+        for (int k = 0; k < 4; k++)
+            if (4 * s + k < 27) c[(4 * s + k) / 3][(4 * s + k) % 3] = values[k];
+    }
+}
+#endif
+
 void main()
 {
     uint index = gl_GlobalInvocationID.x;
     if (index >= push.objects) return;
     dnrt_gpu_object object = object_table[index];
-    vec3 last = vec3(push.grid.count_x, push.grid.count_y, push.grid.count_z) - 1.0;
-    vec3 at = clamp((object.centre - push.grid.first_m) / push.grid.spacing_m, vec3(0.0), last);
     vec3 c[9];
-    for (int s = 0; s < FRAME_PROBE_SLABS; s++) {
-        vec3 texel = at + vec3(0.5, 0.5, 0.5 + float(s * push.grid.slab));
-        vec4 values = textureLod(probes, texel / vec3(textureSize(probes, 0)), 0.0);
-        for (int k = 0; k < 4; k++)
-            if (4 * s + k < 27) c[(4 * s + k) / 3][(4 * s + k) % 3] = PI * values[k];
-    }
+    light_at(object.centre, c);
+    for (int j = 0; j < 9; j++) c[j] *= PI;
     rotate(mat3(dnrt_world_from_object(object, vec3(1.0, 0.0, 0.0)),
                 dnrt_world_from_object(object, vec3(0.0, 1.0, 0.0)),
                 dnrt_world_from_object(object, vec3(0.0, 0.0, 1.0))),

@@ -15,6 +15,11 @@
 #define DNRT_COEFFICIENTS 9   // of irradiance at an object
 #define DNRT_PLANES       4   // of a coefficient, at most
 #define DNRT_NO_SHAPE     -2  // of no object
+#define DNRT_LOCAL_ROWS   4   // workgroup size of a tile along y in the pass `self`
+// Bits of a patch's grid; the others: steps along an edge.
+#define DNRT_PATCH_STEPS     0xffffu
+#define DNRT_PATCH_TWO_SIDES 0x10000u
+#define DNRT_PATCH_MIRRORED  0x20000u // corners are clockwise from the front
 // Near plane of depth maps, over the radius of the bounding sphere.
 #define DNRT_NEAR (1.0 / 64.0)
 
@@ -45,6 +50,29 @@ struct dnrt_changed {
     uint32_t list[DNRT_MAX_OBJECTS];
     int32_t shape[DNRT_MAX_OBJECTS];
     float part[DNRT_MAX_OBJECTS];
+};
+
+// A triangle of a volume's shape, and points on it (bake/patches.h).
+struct dnrt_gpu_patch {
+    vec3s corner[3]; // from the volume's centre, along the object's axes
+    uint32_t first;  // point
+    uint32_t grid;   // DNRT_PATCH_… bits
+};
+
+// An instance of the scene, for pixels of objects.
+struct dnrt_own_instance {
+    int32_t object;       // −1: none with patches
+    uint32_t first, next; // patch, of the object's volume and of the next key frame's
+    uint32_t triangles;
+    float scale; // m, of the patches' unit
+};
+
+struct dnrt_self_push {
+    uint32_t words;     // of a tile's bits
+    uint32_t tiles_x;   // across the image
+    uint32_t instances; // of the scene
+    uint32_t light;     // first entry of dnrt_light
+    uint32_t lamps;     // of lamps
 };
 
 struct dnrt_lamps_push {
@@ -93,6 +121,8 @@ _Static_assert(sizeof(struct dnrt_gpu_object) * DNRT_MAX_OBJECTS <= 16384,
 _Static_assert(sizeof(struct dnrt_gpu_shape) == 37 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct dnrt_changed) == (3 + 3 * DNRT_MAX_OBJECTS) * 4,
                "layout is shared with GLSL");
+_Static_assert(sizeof(struct dnrt_gpu_patch) == 11 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct dnrt_own_instance) == 5 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct dnrt_apply_push) == 8 * 4, "layout is shared with GLSL");
 #endif
 

@@ -28,6 +28,11 @@ struct dnrt_map {
     uint64_t updates; // scene_gpu.updates when they were last valid; 0: never
 };
 
+// Of a volume, in the buffer of patches.
+struct dnrt_patch_range {
+    uint32_t first, count;
+};
+
 struct dnrt {
     struct host *host;
     struct gpu *gpu;
@@ -43,9 +48,16 @@ struct dnrt {
     bool stale;      // all volumes of `image`
     gpu_image image; // volumes of all objects in their light
     gpu_sampler linear;
-    gpu_pipeline light_pipeline, bounce_pipeline, volumes_pipeline;
+    gpu_pipeline light_pipeline[2]; // [probes that say what they see]
+    gpu_pipeline bounce_pipeline, volumes_pipeline;
     gpu_pipeline lamps_pipeline;       // of the option `direct`
     gpu_pipeline apply_pipeline[2][2]; // [with FRAME_ID][with depth maps]
+    gpu_pipeline self_pipeline;        // of the option `self`
+    gpu_buffer patch_buffer, point_buffer;
+    struct dnrt_patch_range *patches; // [baked.volume_count]
+    struct dnrt_own_instance *own;    // [own_count] of the scene's instances, of the frame
+    uint32_t own_count;
+    uint32_t newest_light; // first entry of `light` that the volumes have
     struct shadow_casters casters;
     gpu_image map_image;                 // D32F array; empty: intrusion=off
     struct dnrt_map *maps;               // [map_count]
@@ -75,6 +87,18 @@ void dnrt_follow(void *state, const struct scene_pose *pose, bool wait);
 bool dnrt_make_maps(struct dnrt *s);
 // Draws those that are not valid.
 void dnrt_record_maps(struct dnrt *s, struct gpu_cmd *cmd, const struct frame_view *view);
+
+// ---- dnrt_self.c
+
+bool dnrt_upload_self(struct dnrt *s, const struct tensors *bake);
+// Room for the instances of a scene.
+bool dnrt_make_own(struct dnrt *s, const struct scene *scene);
+// After all objects of the frame have been placed.
+void dnrt_place_own(struct dnrt *s, const struct scene *scene);
+// Nothing without FRAME_ID or the option `self`. objects, tiles: of the pass `apply`.
+void dnrt_record_self(const struct dnrt *s, struct gpu_cmd *cmd, const struct frame_view *view,
+                      struct gpu_binding objects, struct gpu_binding tiles,
+                      const struct dnrt_self_push *push, uint32_t tile_count);
 
 // ---- dnrt_tiles.c
 

@@ -6,3 +6,7 @@
 #define DNRT_SCALE  "shape/%d/scale"  // F32 [normal][coefficient][plane]
 #define DNRT_SPHERE "shape/%d/sphere" // F32 [4]: centre and radius in the object's frame
 #define DNRT_BOX    "shape/%d/box"    // F32 [2][3]: centre and half edges of the bounding box
+// With the option `self`, of triangles and of the points on them (bake/patches.h):
+#define DNRT_CORNERS "shape/%d/corners" // F32 [triangle][3][3]: from the sphere's centre
+#define DNRT_PATCHES "shape/%d/patches" // U32 [triangle][2]: first point, grid
+#define DNRT_SELF    "shape/%d/self"    // F16 [point][coefficient][4]: change by colour, occluded

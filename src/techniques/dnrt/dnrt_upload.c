@@ -113,7 +113,8 @@ bool dnrt_upload(struct dnrt *s, const struct tensors *bake)
     if (!fits(s, count * content.shape_bytes)) return false;
     content.shapes = host_alloc(s->host, count, sizeof *content.shapes);
     content.samples = host_alloc(s->host, count, content.shape_bytes);
-    const bool ok = take_shapes(s, bake, &content) && make_changed(s);
+    const bool ok = take_shapes(s, bake, &content) && make_changed(s) &&
+                    (!s->options.self || dnrt_upload_self(s, bake));
     host_free(s->host, content.shapes);
     host_free(s->host, content.samples);
     return ok;

@@ -45,3 +45,64 @@ int sphere_fixture_add(struct scene *scene, int material)
     free(indices);
     return index;
 }
+
+int bowl_fixture_add(struct scene *scene, int material)
+{
+    enum { RINGS = 48, AROUND = 96, VERTICES = (RINGS + 1) * (AROUND + 1) };
+    static vec3s positions[VERTICES], normals[VERTICES];
+    static uint32_t indices[6 * RINGS * AROUND];
+    uint32_t count = 0;
+    for (int r = 0; r <= RINGS; r++)
+        for (int a = 0; a <= AROUND; a++) {
+            const float theta = GLM_PI_2f * (float)r / RINGS, phi = 2 * GLM_PIf * (float)a / AROUND;
+            const vec3s p = vec3_of(sinf(theta) * cosf(phi), -cosf(theta), sinf(theta) * sinf(phi));
+            positions[r * (AROUND + 1) + a] = p;
+            normals[r * (AROUND + 1) + a] = glms_vec3_negate(p);
+        }
+    for (uint32_t r = 0; r < RINGS; r++)
+        for (uint32_t a = 0; a < AROUND; a++) {
+            const uint32_t i = r * (AROUND + 1) + a, up = i + AROUND + 1;
+            const uint32_t quad[6] = { i, i + 1, up + 1, i, up + 1, up };
+            memcpy(indices + count, quad, sizeof quad);
+            count += 6;
+        }
+    const struct mesh mesh = { .name = "bowl",
+                               .vertex_count = VERTICES,
+                               .index_count = count,
+                               .positions = positions,
+                               .normals = normals,
+                               .indices = indices,
+                               .material = material };
+    return scene_add_mesh(scene, &mesh);
+}
+
+int crate_fixture_add(struct scene *scene, int material)
+{
+    enum { SIDES = 5 };
+    vec3s positions[4 * SIDES], normals[4 * SIDES];
+    uint32_t indices[6 * SIDES];
+    for (int side = 0; side < SIDES; side++) { // −x, x, −z, z, −y
+        const int axis = (int[]){ 0, 0, 2, 2, 1 }[side];
+        const float sign = side % 2 ? 1.0f : -1.0f;
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        for (int k = 0; k < 4; k++) {
+            vec3s *p = &positions[4 * side + k], n = { { 0, 0, 0 } };
+            p->raw[axis] = sign;
+            p->raw[u] = (k == 1 || k == 2 ? 1.0f : -1.0f) * -sign;
+            p->raw[v] = k >= 2 ? 1.0f : -1.0f;
+            n.raw[axis] = -sign;
+            normals[4 * side + k] = n;
+        }
+        const uint32_t first = 4 * (uint32_t)side;
+        const uint32_t quad[6] = { first, first + 1, first + 2, first, first + 2, first + 3 };
+        memcpy(indices + 6 * side, quad, sizeof quad);
+    }
+    const struct mesh mesh = { .name = "crate",
+                               .vertex_count = 4 * SIDES,
+                               .index_count = 6 * SIDES,
+                               .positions = positions,
+                               .normals = normals,
+                               .indices = indices,
+                               .material = material };
+    return scene_add_mesh(scene, &mesh);
+}

@@ -1,6 +1,11 @@
-// A mesh of a unit sphere at the origin, within 1e-4 of it.
+// Meshes of unit size at the origin; each returns the mesh.
 #pragma once
 
 #include "scene/scene.h"
 
-int sphere_fixture_add(struct scene *scene, int material); // returns the mesh
+int sphere_fixture_add(struct scene *scene, int material); // within 1e-4 of it
+// A hemispherical bowl, single surfaces that are seen from within: every point of it sees the bowl
+// by a form factor of ½ and the opening by the other half.
+int bowl_fixture_add(struct scene *scene, int material);
+// The inside of a cube without a lid, of edges of 2: ten triangles.
+int crate_fixture_add(struct scene *scene, int material);

@@ -1,5 +1,6 @@
 // dnrt in frames: the change of each pixel against the bake, evaluated on the CPU.
 #include "techniques/baked_fixture.h"
+#include "techniques/dnrt/probe_fixture.h"
 #include "techniques/dnrt/sphere_fixture.h"
 
 #include "core/half.h"
@@ -75,50 +76,6 @@ struct ball_volume {
     const struct tensor *volume;
 };
 
-static float lookup(const float *image, int width, int height, const float at[3], int channel)
-{
-    float sum = 0;
-    for (int k = 0; k < 8; k++) {
-        float weight = 1;
-        int p[3];
-        for (int i = 0; i < 3; i++) {
-            const float low = floorf(at[i]);
-            p[i] = (int)low + (k >> i & 1);
-            weight *= k >> i & 1 ? at[i] - low : 1 - (at[i] - low);
-        }
-        if (weight > 0)
-            sum +=
-                weight * image[4 * (((size_t)p[2] * (size_t)height + (size_t)p[1]) * (size_t)width +
-                                    (size_t)p[0]) +
-                               (size_t)channel];
-    }
-    return sum;
-}
-
-// Irradiance of the source's probes at a point, over normals, lux.
-static void probes_at(struct dnrt_scene *d, vec3s point, float c[3][9])
-{
-    struct probe_volume probes;
-    CHECK(gi_probes(d->run.gi, &probes));
-    const struct gpu_image_desc *desc = gpu_image_info(d->fixture.gpu, probes.image);
-    const size_t floats = 4 * (size_t)desc->width * desc->height * desc->depth;
-    float *image = malloc(floats * sizeof *image);
-    CHECK(gpu_image_download_float(d->fixture.gpu, probes.image, 0, 0, image, 4, floats));
-    const int count[] = { probes.grid.count_x, probes.grid.count_y, probes.grid.count_z };
-    for (int value = 0; value < 27; value++) {
-        float at[3];
-        for (int i = 0; i < 3; i++)
-            at[i] =
-                fminf(fmaxf((point.raw[i] - probes.grid.first_m.raw[i]) / probes.grid.spacing_m, 0),
-                      (float)(count[i] - 1));
-        at[2] += (float)(value / 4 * probes.grid.slab);
-        c[value % 3][value / 3] =
-            lookup(image, (int)desc->width, (int)desc->height, at, value % 4) /
-            frame_radiance_scale(d->fixture.frame);
-    }
-    free(image);
-}
-
 // The sun lights all of each ball.
 static void add_sun(struct ball_volume *v)
 {
@@ -143,7 +100,7 @@ static struct ball_volume volume_of(struct dnrt_scene *d, int ball, bool quadrat
         .volume = tensors_find(bake, "shape/0/volume"),
     };
     float c[3][9];
-    probes_at(d, v.centre, c);
+    probe_fixture_at(&d->run, &d->fixture, v.centre, c);
     for (int i = 0; i < 3; i++) {
         sh_rotate(3, v.object_from_world, c[i], v.light[i]);
         for (int j = 0; j < 9; j++) v.light[i][j] *= GLM_PIf;

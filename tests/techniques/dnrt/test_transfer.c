@@ -2,6 +2,8 @@
 #include "framework/test.h"
 #include "techniques/dnrt/sphere_fixture.h"
 
+#include "techniques/dnrt/bake/part.h"
+#include "techniques/dnrt/bake/patches.h"
 #include "techniques/dnrt/bake/transfer.h"
 #include "techniques/dnrt/bake/volume.h"
 #include "techniques/dnrt/dnrt_object.h"
@@ -288,44 +290,12 @@ TEST(a_convex_object_does_not_shadow_itself)
     ball_close(&ball);
 }
 
-// A hemispherical bowl, single surfaces that are seen from within: every point of it sees the bowl
-// by a form factor of ½ and the opening by the other half.
-static int add_bowl(struct scene *scene, int material)
-{
-    enum { RINGS = 48, AROUND = 96, VERTICES = (RINGS + 1) * (AROUND + 1) };
-    static vec3s positions[VERTICES], normals[VERTICES];
-    static uint32_t indices[6 * RINGS * AROUND];
-    uint32_t count = 0;
-    for (int r = 0; r <= RINGS; r++)
-        for (int a = 0; a <= AROUND; a++) {
-            const float theta = GLM_PI_2f * (float)r / RINGS, phi = 2 * GLM_PIf * (float)a / AROUND;
-            const vec3s p = vec3_of(sinf(theta) * cosf(phi), -cosf(theta), sinf(theta) * sinf(phi));
-            positions[r * (AROUND + 1) + a] = p;
-            normals[r * (AROUND + 1) + a] = glms_vec3_negate(p);
-        }
-    for (uint32_t r = 0; r < RINGS; r++)
-        for (uint32_t a = 0; a < AROUND; a++) {
-            const uint32_t i = r * (AROUND + 1) + a, up = i + AROUND + 1;
-            const uint32_t quad[6] = { i, i + 1, up + 1, i, up + 1, up };
-            memcpy(indices + count, quad, sizeof quad);
-            count += 6;
-        }
-    const struct mesh mesh = { .name = "bowl",
-                               .vertex_count = VERTICES,
-                               .index_count = count,
-                               .positions = positions,
-                               .normals = normals,
-                               .indices = indices,
-                               .material = material };
-    return scene_add_mesh(scene, &mesh);
-}
-
-// Its irradiance in constant light is that outside times E with E = ½ + ½ ρ E.
+// A bowl's irradiance in constant light is that outside times E with E = ½ + ½ ρ E.
 static void check_bowl(float albedo)
 {
     struct ball bowl;
     struct dnrt_transfer with, without;
-    object_open(&bowl, albedo, add_bowl);
+    object_open(&bowl, albedo, bowl_fixture_add);
     const vec3s point = vec3_of(0, 2, 0); // it sees nothing but the inside
     bowl.how.rays = 16384;
     dnrt_transfer_at(&bowl.how, point, 11, &without);
@@ -335,6 +305,44 @@ static void check_bowl(float albedo)
     CHECK_RELATIVE(with.of[0].reflected[0].x, irradiance * without.of[0].reflected[0].x, 0.01);
     CHECK(with.of[0].hidden[0] == without.of[0].hidden[0]);
     ball_close(&bowl);
+}
+
+// expected, occluded: of an irradiance of 1 outside, at the points of the patches.
+static void check_points(float albedo, int (*add)(struct scene *, int), float expected,
+                         float occluded, double tolerance)
+{
+    struct ball bowl;
+    struct dnrt_objects objects;
+    struct dnrt_part part;
+    struct dnrt_patches patches;
+    object_open(&bowl, albedo, add);
+    bowl.scene->instances[0].movable = true;
+    CHECK(dnrt_objects_init(&objects, test_host(), &bowl.pose, 1));
+    CHECK(dnrt_part_init(&part, test_host(), &bowl.pose, &objects, 0));
+    CHECK(dnrt_patches_init(&patches, test_host(), &part));
+    bowl.how.rays = 1024;
+    const float y00 = 0.28209479f;
+    for (uint32_t point = 5; point < patches.points; point += patches.points / 16) {
+        vec4s at[DNRT_MAX_COEFFICIENTS];
+        dnrt_self_at(&bowl.how, &patches, point, point + 1, at);
+        CHECK_NEAR(at[0].x, y00 * expected, tolerance);
+        CHECK_NEAR(at[0].w, y00 * occluded, tolerance);
+    }
+    dnrt_patches_finish(&patches);
+    dnrt_part_finish(&part);
+    dnrt_objects_finish(&objects);
+    ball_close(&bowl);
+}
+
+TEST(points_of_a_bowl_have_the_light_that_the_closed_form_says)
+{
+    check_points(0, bowl_fixture_add, 0.5f - 1, 0.5f, 0.003);
+    check_points(0.8f, bowl_fixture_add, 0.5f / (1 - 0.4f) - 1, 0.5f, 0.003);
+}
+
+TEST(points_of_a_sphere_have_the_light_outside)
+{
+    check_points(0.8f, sphere_fixture_add, 0, 0, 0);
 }
 
 TEST(a_bowl_shadows_and_lights_itself_as_the_closed_form_says)

@@ -13,9 +13,7 @@ static void add(int bands, const float *values, vec3s factor, vec3s *sum)
         sum[j] = glms_vec3_add(sum[j], glms_vec3_scale(factor, values[j]));
 }
 
-// Coefficients of the irradiance whose radiance is a cosine-distributed sample of `direction`: 1
-// over the density cosθ/π, over the bands' factors π, 2π/3 and π/4.
-static void occluded_sample(int bands, vec3s direction, float *out)
+void dnrt_occluded(int bands, vec3s direction, float *out)
 {
     static const float FACTORS[] = { 1.0f, 1.5f, 4.0f };
     sh_eval(bands, direction, out);
@@ -23,10 +21,9 @@ static void occluded_sample(int bands, vec3s direction, float *out)
         for (int j = SH_COUNT(band); j < SH_COUNT(band + 1); j++) out[j] *= FACTORS[band];
 }
 
-static vec3s direction_from(const struct surface *surface, struct rng *rng)
+vec3s dnrt_cosine_direction(const struct surface *surface, vec2s u)
 {
-    const float u = rng_float(rng);
-    const vec3s local = sample_hemisphere_cosine((vec2s){ { u, rng_float(rng) } });
+    const vec3s local = sample_hemisphere_cosine(u);
     vec3s tangent, bitangent;
     basis_of(surface->normal, &tangent, &bitangent);
     const vec3s along = glms_vec3_scale(surface->normal, local.z);
@@ -43,11 +40,12 @@ void dnrt_reflected(const struct trace_scene *trace, int bands, bool self,
     sh_eval(bands, at.normal, values);
     add(bands, values, factor, out);
     for (int bounce = 0; self && bounce < MOST_BOUNCES; bounce++) {
-        const vec3s direction = direction_from(&at, rng);
+        const float u = rng_float(rng);
+        const vec3s direction = dnrt_cosine_direction(&at, (vec2s){ { u, rng_float(rng) } });
         const struct ray ray = { surface_leave(&at, direction), direction, 0.0f, INFINITY };
         struct ray_hit hit;
         if (!embree_closest(trace->embree, &ray, NULL, false, &hit)) return;
-        occluded_sample(bands, direction, values);
+        dnrt_occluded(bands, direction, values);
         add(bands, values, glms_vec3_negate(factor), out);
         surface_at(trace, &ray, &hit, NULL, &at);
         factor = glms_vec3_mul(factor, surface_reflectance(&at));

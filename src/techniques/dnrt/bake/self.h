@@ -11,3 +11,9 @@
 // path, whose mean is exact but for its end after 16 bounces.
 void dnrt_reflected(const struct trace_scene *trace, int bands, bool self,
                     const struct surface *surface, struct rng *rng, vec3s *out);
+
+// A cosine-distributed direction around the surface's normal.
+vec3s dnrt_cosine_direction(const struct surface *surface, vec2s u);
+// Coefficients of the irradiance whose radiance is a cosine-distributed sample of `direction`: 1
+// over the density cosθ/π, over the bands' factors π, 2π/3 and π/4.
+void dnrt_occluded(int bands, vec3s direction, float *out);

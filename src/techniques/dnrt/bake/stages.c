@@ -2,12 +2,8 @@
 #include "techniques/dnrt/dnrt_bake.h"
 
 #include "bake/scene_key.h"
-#include "core/rng.h"
-#include "techniques/dnrt/bake/part.h"
-#include "techniques/dnrt/bake/transfer.h"
+#include "techniques/dnrt/bake/job.h"
 #include "techniques/dnrt/bake/volume.h"
-#include "techniques/dnrt/dnrt_keys.h"
-#include "techniques/dnrt/dnrt_options.h"
 #include "techniques/dnrt/dnrt_tensors.h"
 
 #include <string.h>
@@ -15,43 +11,23 @@
 enum { SAMPLES_PER_TASK = 1024 };
 static const double MOST_BYTES = 2147483648.0; // of all volumes
 
-struct shape_trace {
-    struct dnrt_part part;
-    struct trace_scene *trace;
-};
-
-struct job {
-    struct dnrt_options options;
-    const struct scene_pose *pose;
-    struct dnrt_objects objects;
-    struct shape_trace *volumes; // [objects.volume_count]: shapes at key frames
-    struct host *host;           // of `volumes`
-};
-
-static bool part_of_volume(struct dnrt_part *out, struct host *host,
-                           const struct dnrt_objects *objects, const struct dnrt_key_poses *keys,
-                           int volume)
-{
-    const struct dnrt_shape *shape = &objects->shapes[dnrt_shape_of_volume(objects, volume)];
-    const struct scene_pose *pose =
-        shape->keys > 1 ? dnrt_key_pose(keys, volume - shape->volume) : keys->pose;
-    return dnrt_part_init(out, host, pose, objects, shape->object);
-}
-
-static bool prepare_volumes(struct job *job, const struct dnrt_key_poses *keys)
+static bool prepare_volumes(struct dnrt_job *job, const struct dnrt_key_poses *keys)
 {
     for (int v = 0; v < job->objects.volume_count; v++) {
-        struct shape_trace *of = &job->volumes[v];
-        if (!part_of_volume(&of->part, job->host, &job->objects, keys, v)) return false;
+        struct dnrt_shape_trace *of = &job->volumes[v];
+        if (!dnrt_part_of_volume(&of->part, job->host, &job->objects, keys, v)) return false;
         of->trace = trace_scene_create(job->host, &of->part.pose);
         if (!of->trace) return false;
+        if (job->options.self && dnrt_first_volume(&job->objects, v) == v &&
+            !dnrt_patches_init(&of->patches, job->host, &of->part))
+            return false;
     }
     return true;
 }
 
 static bool prepare(void *argument, struct host *host)
 {
-    struct job *job = argument;
+    struct dnrt_job *job = argument;
     struct dnrt_key_poses keys = { .host = NULL };
     job->host = host;
     if (!dnrt_objects_init(&job->objects, host, job->pose, job->options.keys)) return false;
@@ -65,9 +41,10 @@ static bool prepare(void *argument, struct host *host)
 
 static void finish(void *argument)
 {
-    struct job *job = argument;
+    struct dnrt_job *job = argument;
     for (int v = 0; job->volumes && v < job->objects.volume_count; v++) {
         trace_scene_destroy(job->volumes[v].trace);
+        dnrt_patches_finish(&job->volumes[v].patches);
         dnrt_part_finish(&job->volumes[v].part);
     }
     if (job->host) host_free(job->host, job->volumes);
@@ -79,7 +56,7 @@ static void finish(void *argument)
 
 enum { OUT_TRANSFER, OUT_INSIDE };
 
-static struct dnrt_grid grid_of(const struct job *job, const struct dnrt_part *part)
+static struct dnrt_grid grid_of(const struct dnrt_job *job, const struct dnrt_part *part)
 {
     return (struct dnrt_grid){ part->centre, part->radius * job->options.reach,
                                dnrt_size(&job->options), job->options.grid == DNRT_GRID_QUADRATIC };
@@ -114,18 +91,11 @@ static size_t planes_of(const struct dnrt_options *options)
 
 static bool run_samples(const struct bake_task *task)
 {
-    const struct job *job = task->job;
-    const struct shape_trace *shape = &job->volumes[*(const int *)task->argument];
+    const struct dnrt_job *job = task->job;
+    const int volume = *(const int *)task->argument;
+    const struct dnrt_shape_trace *shape = &job->volumes[volume];
     const struct dnrt_grid grid = grid_of(job, &shape->part);
-    const struct dnrt_sampling how = {
-        .trace = shape->trace,
-        .centre = shape->part.centre,
-        .radius = shape->part.radius,
-        .bands = dnrt_bands(&job->options),
-        .rays = job->options.rays,
-        .normals = dnrt_normals(&job->options),
-        .self = job->options.self,
-    };
+    const struct dnrt_sampling how = dnrt_sampling_of(job, volume);
     const size_t planes = planes_of(&job->options);
     uint64_t samples, first = bake_task_rows(task, OUT_TRANSFER, &samples);
     if (!(shape->part.radius > 0.0f)) return true;
@@ -133,7 +103,7 @@ static bool run_samples(const struct bake_task *task)
         if (bake_task_cancelled(task)) return false;
         struct dnrt_transfer at;
         dnrt_transfer_at(&how, dnrt_grid_point(&grid, (int)(first + i)),
-                         (uint32_t)rng_mix(task->bake_seed ^ (first + i) << 32) | 1u, &at);
+                         dnrt_seed_of(task, first + i), &at);
         write_transfer(&job->options, &at, (float *)task->out[OUT_TRANSFER] + planes * i);
         ((uint8_t *)task->out[OUT_INSIDE])[i] = at.inside > 0.5f;
     }
@@ -149,7 +119,7 @@ struct stage_argument {
     const char *transfer, *inside; // tensors of the samples
 };
 
-static void encode(const struct job *job, const float *values, void *const *out)
+static void encode(const struct dnrt_job *job, const float *values, void *const *out)
 {
     const int planes = (int)planes_of(&job->options);
     const int samples = dnrt_grid_count(dnrt_size(&job->options));
@@ -176,7 +146,7 @@ static void write_bounds(const struct dnrt_part *part, void *const *out)
 
 static bool run_volume(const struct bake_task *task)
 {
-    const struct job *job = task->job;
+    const struct dnrt_job *job = task->job;
     const struct stage_argument *of = task->argument;
     const struct dnrt_part *part = &job->volumes[of->volume].part;
     const struct tensor *transfer = bake_task_input(task, of->transfer);
@@ -195,7 +165,7 @@ static bool run_volume(const struct bake_task *task)
 
 // ---- the plan
 
-static bool add_samples(struct bake_plan *plan, const struct job *job,
+static bool add_samples(struct bake_plan *plan, const struct dnrt_job *job,
                         const struct stage_argument *of)
 {
     const uint64_t samples = (uint64_t)dnrt_grid_count(dnrt_size(&job->options));
@@ -216,7 +186,7 @@ static bool add_samples(struct bake_plan *plan, const struct job *job,
                                                                      job->options.rays });
 }
 
-static bool add_volume(struct bake_plan *plan, const struct job *job,
+static bool add_volume(struct bake_plan *plan, const struct dnrt_job *job,
                        const struct stage_argument *of)
 {
     const uint64_t n = (uint64_t)dnrt_size(&job->options);
@@ -274,7 +244,7 @@ static struct stage_argument *arguments_of(struct bake_plan *plan, int volume)
     return of->transfer && of->inside ? of : NULL;
 }
 
-static bool add_stages(struct bake_plan *plan, const struct job *job, int volumes)
+static bool add_stages(struct bake_plan *plan, const struct dnrt_job *job, int volumes)
 {
     for (int wave = 0; wave < 2; wave++)
         for (int v = 0; v < volumes; v++) {
@@ -291,7 +261,7 @@ static bool add_key(struct bake_plan *plan, const struct dnrt_objects *objects,
     struct hash128 key = hash128_add_text((struct hash128){ 0 }, "dnrt");
     for (int v = 0; v < objects->volume_count; v++) {
         struct dnrt_part part;
-        const bool ok = part_of_volume(&part, bake_plan_host(plan), objects, keys, v);
+        const bool ok = dnrt_part_of_volume(&part, bake_plan_host(plan), objects, keys, v);
         const struct hash128 of =
             ok ? scene_key(&part.pose, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS)
                : (struct hash128){ 0 };
@@ -304,7 +274,7 @@ static bool add_key(struct bake_plan *plan, const struct dnrt_objects *objects,
 }
 
 // All volumes are in one buffer of the GPU.
-static bool fits(struct bake_plan *plan, const struct job *job, int volumes)
+static bool fits(struct bake_plan *plan, const struct dnrt_job *job, int volumes)
 {
     const double bytes = (double)planes_of(&job->options) *
                          dnrt_grid_count(dnrt_size(&job->options)) *
@@ -318,7 +288,7 @@ static bool fits(struct bake_plan *plan, const struct job *job, int volumes)
 
 bool dnrt_bake(struct bake_plan *plan, const struct technique_bake *how)
 {
-    struct job *job = bake_plan_alloc(plan, 1, sizeof *job);
+    struct dnrt_job *job = bake_plan_alloc(plan, 1, sizeof *job);
     struct host *host = bake_plan_host(plan);
     struct dnrt_objects objects;
     struct dnrt_key_poses keys = { .host = NULL };
@@ -329,7 +299,9 @@ bool dnrt_bake(struct bake_plan *plan, const struct technique_bake *how)
     const bool ok = dnrt_objects_init(&objects, host, how->pose, job->options.keys) &&
                     fits(plan, job, objects.volume_count) &&
                     dnrt_key_poses_init(&keys, host, how->pose, job->options.keys) &&
-                    add_key(plan, &objects, &keys) && add_stages(plan, job, objects.volume_count);
+                    add_key(plan, &objects, &keys) &&
+                    dnrt_add_self_stages(plan, job, &objects, &keys) &&
+                    add_stages(plan, job, objects.volume_count);
     dnrt_key_poses_finish(&keys);
     dnrt_objects_finish(&objects);
     return ok;

@@ -1,0 +1,134 @@
+// What an object changes of the light at its own surface (Giuffrida 2016, appendix B.3): of each of
+// its pixels Σ c_j s_j, s_j the self-transfer between the points of the triangle. Light d_j of
+// lamps is reflected, but its shadow is in direct light: s_j and what is occluded of Y_j. After the
+// pass `apply`, of the same tiles.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "frame/frame.glsl"
+#include "frame/octahedral.glsl"
+#include "techniques/dnrt/dnrt_shared.h"
+
+#include "techniques/dnrt/dnrt_object.glsl"
+
+layout(local_size_x = DNRT_TILE, local_size_y = DNRT_LOCAL_ROWS) in;
+layout(constant_id = 2) const uint COEFFICIENTS = 4;
+layout(constant_id = 4) const uint PLANES = 3; // 4: with light of lamps
+
+layout(push_constant, scalar) uniform push_block
+{
+    dnrt_self_push push;
+};
+layout(set = 0, binding = 1) uniform sampler2D depth;
+layout(set = 0, binding = 2) uniform sampler2D normal;
+layout(set = 0, binding = 3) uniform usampler2D id; // FRAME_ID
+layout(set = 0, binding = 4, scalar) uniform dnrt_objects
+{
+    dnrt_gpu_object object_table[DNRT_MAX_OBJECTS];
+};
+layout(set = 0, binding = 5, scalar) readonly buffer dnrt_tiles
+{
+    uint tile_table[]; // of dnrt_apply.comp
+};
+layout(set = 0, binding = 6, scalar) readonly buffer dnrt_own
+{
+    dnrt_own_instance instance_table[];
+};
+layout(set = 0, binding = 7, scalar) readonly buffer dnrt_patches
+{
+    dnrt_gpu_patch patch_table[];
+};
+layout(set = 0, binding = 8, scalar) readonly buffer dnrt_points
+{
+    uvec2 point_table[]; // [point][coefficient]: change by colour, what is occluded
+};
+layout(set = 0, binding = 9, scalar) readonly buffer dnrt_light
+{
+    vec3 light_table[];
+};
+layout(set = 0, binding = 10, rgba16f) uniform image2D irradiance;
+
+// Weights of the second and third corner of the point of the triangle's plane nearest to p, moved
+// into the triangle.
+vec2 weights_at(vec3 a, vec3 b, vec3 c, vec3 p)
+{
+    vec3 u = b - a, v = c - a, w = p - a;
+    float uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v);
+    float area2 = uu * vv - uv * uv;
+    if (!(area2 > 0.0)) return vec2(0.0);
+    vec2 at = max(vec2(vv * wu - uv * wv, uu * wv - uv * wu) / area2, vec2(0.0));
+    return at / max(at.x + at.y, 1.0);
+}
+
+// The three points around, and their weights.
+void points_around(uint n, vec2 at, out uint points[3], out vec3 weights)
+{
+    vec2 scaled = at * float(n);
+    uint j = min(uint(scaled.y), n - 1u), i = min(uint(scaled.x), n - 1u - j);
+    vec2 part = scaled - vec2(i, j);
+    uint row = j * (2u * n + 3u - j) / 2u, above = row + n + 1u - j;
+    bool upper = part.x + part.y > 1.0 && i + j + 2u <= n;
+    points = uint[3](upper ? above + i + 1u : row + i, row + i + 1u, above + i);
+    weights = upper ? vec3(part.x + part.y - 1.0, 1.0 - part.y, 1.0 - part.x)
+                    : vec3(1.0 - part.x - part.y, part);
+}
+
+vec3 change_at(dnrt_gpu_patch patch_, vec2 at, vec3 n, uint light, uint lamps)
+{
+    uint steps = patch_.grid & DNRT_PATCH_STEPS, points[3], first = patch_.first;
+    vec3 front = cross(patch_.corner[1] - patch_.corner[0], patch_.corner[2] - patch_.corner[0]);
+    if ((patch_.grid & DNRT_PATCH_MIRRORED) != 0u) front = -front;
+    if ((patch_.grid & DNRT_PATCH_TWO_SIDES) != 0u && dot(front, n) < 0.0)
+        first += (steps + 1u) * (steps + 2u) / 2u;
+    vec3 weights, sum = vec3(0.0);
+    points_around(steps, at, points, weights);
+    for (uint k = 0; k < 3; k++)
+        for (uint j = 0; j < COEFFICIENTS; j++) {
+            uvec2 packed = point_table[(first + points[k]) * COEFFICIENTS + j];
+            vec4 change = vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y));
+            sum += weights[k] * change.rgb * light_table[light + j];
+            if (PLANES == 4u) sum += weights[k] * (change.rgb + change.a) * light_table[lamps + j];
+        }
+    const float INV_PI = 0.318309886; // dnrt_light has π c_j
+    return INV_PI * sum;
+}
+
+vec3 change_of(ivec2 pixel, uvec2 ids, float z)
+{
+    dnrt_own_instance of = instance_table[ids.x - 1u];
+    if (of.object < 0 || ids.y - 1u >= of.triangles) return vec3(0.0);
+    dnrt_gpu_object object = object_table[of.object];
+    vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z) - object.centre;
+    vec3 p = dnrt_object_from_world(object, position) / of.scale;
+    vec3 n = dnrt_object_from_world(object, octahedral_decode(texelFetch(normal, pixel, 0).rg));
+    dnrt_gpu_patch first = patch_table[of.first + ids.y - 1u];
+    dnrt_gpu_patch next = patch_table[of.next + ids.y - 1u];
+    vec2 at = weights_at(mix(first.corner[0], next.corner[0], object.part),
+                         mix(first.corner[1], next.corner[1], object.part),
+                         mix(first.corner[2], next.corner[2], object.part), p);
+    uint light = push.light + uint(of.object) * DNRT_COEFFICIENTS;
+    uint lamps = push.lamps + uint(of.object) * DNRT_COEFFICIENTS;
+    vec3 change = change_at(first, at, n, light, lamps);
+    return object.part > 0.0 ? mix(change, change_at(next, at, n, light, lamps), object.part)
+                             : change;
+}
+
+void main()
+{
+    uint tile = tile_table[gl_WorkGroupID.x * (DNRT_TILE_BITS + push.words)];
+    ivec2 first = ivec2(DNRT_TILE * uvec2(tile % push.tiles_x, tile / push.tiles_x) +
+                        gl_LocalInvocationID.xy);
+    for (int y = 0; y < DNRT_TILE; y += DNRT_LOCAL_ROWS) {
+        ivec2 pixel = first + ivec2(0, y);
+        if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) continue;
+        uvec2 ids = texelFetch(id, pixel, 0).rg;
+        float z = texelFetch(depth, pixel, 0).r;
+        if (ids.x == 0u || ids.x > push.instances || !(z > 0.0)) continue;
+        vec3 change = change_of(pixel, ids, z);
+        if (change == vec3(0.0)) continue;
+        vec4 before = imageLoad(irradiance, pixel);
+        imageStore(irradiance, pixel,
+                   vec4(clamp(before.rgb + change, vec3(0.0), vec3(HALF_MAX)), before.a));
+    }
+}
