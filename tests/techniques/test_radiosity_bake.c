@@ -14,7 +14,8 @@
 
 #define SMALL "radiosity:texels=2048,rays=100,sources=16"
 // Takes a second or more.
-#define LONGER "radiosity:texels=2048,rays=2000,sources=16"
+#define LONGER  "radiosity:texels=2048,rays=2000,sources=16"
+#define LOWRANK ",transfer=lowrank"
 
 struct source {
     struct scene *scene;
@@ -72,17 +73,27 @@ static void check_same(struct file_bytes *a, struct file_bytes *b)
     file_bytes_finish(test_host(), b);
 }
 
-TEST(bake_has_the_same_bytes_on_1_2_and_4_threads)
+static void check_threads(const char *text)
 {
     struct source s;
     open_source(&s);
-    struct file_bytes one = baked_on(&s, SMALL, 1);
+    struct file_bytes one = baked_on(&s, text, 1);
     for (int threads = 2; threads <= 4; threads *= 2) {
-        struct file_bytes more = baked_on(&s, SMALL, threads);
+        struct file_bytes more = baked_on(&s, text, threads);
         check_same(&one, &more);
     }
     file_bytes_finish(test_host(), &one);
     close_source(&s);
+}
+
+TEST(bake_has_the_same_bytes_on_1_2_and_4_threads)
+{
+    check_threads(SMALL);
+}
+
+TEST(bake_of_low_rank_has_the_same_bytes_on_1_2_and_4_threads)
+{
+    check_threads(SMALL LOWRANK);
 }
 
 // Cancels where this share is done.
@@ -93,13 +104,14 @@ static bool stop_at(void *user, const struct bake_progress *progress)
 }
 
 // Each run is that of another program, which has the checkpoint alone.
-static struct file_bytes baked_with_interruptions(const struct source *s, int *interruptions)
+static struct file_bytes baked_with_interruptions(const struct source *s, const char *text,
+                                                  int *interruptions)
 {
     static double SHARES[] = { 0.1, 0.4, 0.7, 2.0 };
     const char *checkpoint = test_path("radiosity.checkpoint");
     struct bake *bake = NULL;
     for (int i = 0; !bake; i++) {
-        bake = bake_of(s, LONGER);
+        bake = bake_of(s, text);
         const struct bake_run_options how = {
             .threads = 2, .checkpoint = checkpoint, .progress = stop_at, .user = &SHARES[i]
         };
@@ -112,17 +124,27 @@ static struct file_bytes baked_with_interruptions(const struct source *s, int *i
     return bytes_of(bake);
 }
 
-TEST(bake_has_the_same_bytes_after_interruptions)
+static void check_interruptions(const char *text)
 {
     struct source s;
     int interruptions = 0;
     open_source(&s);
-    struct file_bytes whole = baked_on(&s, LONGER, 0);
-    struct file_bytes resumed = baked_with_interruptions(&s, &interruptions);
+    struct file_bytes whole = baked_on(&s, text, 0);
+    struct file_bytes resumed = baked_with_interruptions(&s, text, &interruptions);
     CHECK(interruptions >= 2);
     check_same(&whole, &resumed);
     file_bytes_finish(test_host(), &whole);
     close_source(&s);
+}
+
+TEST(bake_has_the_same_bytes_after_interruptions)
+{
+    check_interruptions(LONGER);
+}
+
+TEST(bake_of_low_rank_has_the_same_bytes_after_interruptions)
+{
+    check_interruptions(LONGER LOWRANK);
 }
 
 // ---- memory

@@ -5,9 +5,10 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define RADIOSITY_TEXELS_BINDING 1
+#define RADIOSITY_LIGHT_BINDING  6
 #include "frame/frame.glsl"
+#include "techniques/radiosity/radiosity_receive.glsl"
 #include "techniques/radiosity/radiosity_row.glsl"
-#include "techniques/radiosity/radiosity_texels.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
 
@@ -20,18 +21,17 @@ layout(set = 0, binding = 3) uniform usampler2D radiosity_tiles; // first texel,
 // Pairs of source and form factor; components along the tangents (halves).
 layout(set = 0, binding = 4, rgba32ui) uniform readonly uimage2D radiosity_factors;
 layout(set = 0, binding = 5, rg32ui) uniform readonly uimage2D radiosity_sent;
-layout(set = 0, binding = 6, rg32ui) uniform writeonly uimage2D radiosity_light; // [colour][texel]
 
-vec3 irradiance = vec3(0.0), by_u = vec3(0.0), by_v = vec3(0.0);
+radiosity_received sum = radiosity_received(vec3(0.0), vec3(0.0), vec3(0.0));
 
 void add_entry(uvec2 word)
 {
     uvec2 sent = imageLoad(radiosity_sent, radiosity_at(radiosity_source(word.x))).xy;
     vec3 light = radiosity_form_factor(word.x) * radiosity_unpack(sent);
     vec2 along = unpackHalf2x16(word.y);
-    irradiance += light;
-    by_u += along.x * light;
-    by_v += along.y * light;
+    sum.irradiance += light;
+    sum.by_u += along.x * light;
+    sum.by_v += along.y * light;
 }
 
 void main()
@@ -46,17 +46,5 @@ void main()
         add_entry(pair.zw);
     }
     uint i = texelFetch(radiosity_order, radiosity_at(row), 0).x;
-    // The tangents of basis_of (core/vec.h).
-    vec3 n = radiosity_texel_part(i, push.texels, RADIOSITY_NORMAL).xyz;
-    float side = n.z < 0.0 || (n.z == 0.0 && floatBitsToUint(n.z) != 0u) ? -1.0 : 1.0;
-    float a = -1.0 / (side + n.z), b = n.x * n.y * a;
-    vec3 u = vec3(1.0 + side * n.x * n.x * a, side * b, -side * n.x);
-    vec3 v = vec3(b, side + n.y * n.y * a, -n.y);
-    float emitters = push.emitters * frame.radiance_scale;
-    for (int c = 0; c < 3; c++) {
-        vec4 light = vec4(irradiance[c], irradiance[c] * n + by_u[c] * u + by_v[c] * v) +
-                     radiosity_unbounced(i, push.texels, c, frame.sky, emitters);
-        imageStore(radiosity_light, radiosity_at(c * push.texels + i),
-                   uvec4(radiosity_pack_light(light), 0u, 0u));
-    }
+    radiosity_store_light(i, push.texels, sum, push.emitters * frame.radiance_scale);
 }
