@@ -273,41 +273,54 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     record_volumes(s, cmd, objects, s->newest_light);
 }
 
-static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+// Only tiles that may have pixels of an object read FRAME_ID.
+static void record_tiles(struct dnrt *s, struct gpu_cmd *cmd, const struct frame_view *view,
+                         struct gpu_binding objects, struct gpu_binding table,
+                         struct dnrt_tile_counts tiles)
 {
-    struct dnrt *s = state;
-    struct dnrt_apply_push push = { .objects = (uint32_t)s->objects.count,
-                                    .words = gpu_groups((uint32_t)s->objects.count, 32),
+    struct dnrt_apply_push push = { .words = gpu_groups((uint32_t)s->objects.count, 32),
                                     .tiles_x = gpu_groups(view->width, DNRT_TILE),
                                     .size = (uint32_t)dnrt_size(&s->options),
                                     .fade = s->options.fade,
                                     .map_size = (uint32_t)s->options.map_size,
                                     .map_count = (uint32_t)s->map_count,
                                     .reach = s->options.reach };
-    const bool has_id = view->layers[FRAME_ID].id != 0;
-    if (push.objects == 0 || s->image.id == 0) return;
-    const uint32_t tiles = dnrt_find_tiles(s, view, push.words, s->tiles);
-    if (tiles == 0) return;
+    const uint32_t own = view->layers[FRAME_ID].id != 0 ? tiles.own : 0;
+    const uint32_t first[2] = { own, 0 }, end[2] = { tiles.all, own };
+    for (int id = 0; id < 2; id++) {
+        push.first_tile = first[id];
+        if (first[id] == end[id]) continue;
+        gpu_dispatch(cmd, s->apply_pipeline[id][s->map_count > 0],
+                     GPU_BIND(view->constants_binding,
+                              { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                              { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+                              { .name = "id", .image = view->layers[FRAME_ID] }, objects, table,
+                              { .name = "volumes", .image = s->image, .sampler = s->linear },
+                              { .name = "depth_maps", .image = s->map_image },
+                              { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+                     &push, sizeof push, end[id] - first[id], 1, 1);
+    }
+}
+
+static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct dnrt *s = state;
+    if (s->objects.count == 0 || s->image.id == 0) return;
+    const uint32_t words = gpu_groups((uint32_t)s->objects.count, 32);
+    const struct dnrt_tile_counts tiles = dnrt_find_tiles(s, view, words, s->tiles);
+    if (tiles.all == 0) return;
+    const size_t bytes = (size_t)tiles.all * (DNRT_TILE_BITS + words) * sizeof *s->tiles;
     const struct gpu_binding objects = gpu_transient(cmd, "dnrt_objects", s->gpu_objects,
                                                      DNRT_MAX_OBJECTS * sizeof *s->gpu_objects),
-                             of_tiles = gpu_transient(
-                                 cmd, "dnrt_tiles", s->tiles,
-                                 (size_t)tiles * (DNRT_TILE_BITS + push.words) * sizeof *s->tiles);
+                             table = gpu_transient(cmd, "dnrt_tiles", s->tiles, bytes);
     gpu_scope_begin(cmd, "apply");
-    gpu_dispatch(cmd, s->apply_pipeline[has_id][s->map_count > 0],
-                 GPU_BIND(view->constants_binding,
-                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-                          { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                          { .name = "id", .image = view->layers[FRAME_ID] }, objects, of_tiles,
-                          { .name = "volumes", .image = s->image, .sampler = s->linear },
-                          { .name = "depth_maps", .image = s->map_image },
-                          { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
-                 &push, sizeof push, tiles, 1, 1);
+    record_tiles(s, cmd, view, objects, table, tiles);
     gpu_scope_end(cmd);
-    dnrt_record_self(s, cmd, view, objects, of_tiles,
-                     &(struct dnrt_self_push){ push.words, push.tiles_x, s->own_count,
-                                               s->newest_light, lamps_of(s) },
-                     tiles);
+    if (tiles.own == 0) return;
+    dnrt_record_self(s, cmd, view, objects, table,
+                     &(struct dnrt_self_push){ words, gpu_groups(view->width, DNRT_TILE),
+                                               s->own_count, s->newest_light, lamps_of(s) },
+                     tiles.own);
 }
 
 static void destroy(void *state)

@@ -59,10 +59,13 @@ struct pixel_quad {
 
 const ivec2 CORNER[4] = ivec2[4](ivec2(0, 0), ivec2(1, 0), ivec2(0, 1), ivec2(1, 1));
 
+vec2 pixel_uv;     // of the image
+vec3 volume_texel; // of `volumes`
+
 // The corner that the four have in common: a gather returns them in another order than CORNER.
 vec2 middle_of(ivec2 first)
 {
-    return (vec2(first) + 1.0) / vec2(frame.width, frame.height);
+    return (vec2(first) + 1.0) * pixel_uv;
 }
 
 vec4 depths_at(ivec2 first)
@@ -79,12 +82,14 @@ void read_quad(ivec2 first, vec4 z, out pixel_quad q)
 #else
     uvec4 instance = uvec4(~0u);
 #endif
+    vec3 ray = frame_view_ray((vec2(first) + 0.5) * pixel_uv);
+    vec3 ray_x = frame.world_from_clip[0].xyz * (2.0 * pixel_uv.x);
+    vec3 ray_y = frame.world_from_clip[1].xyz * (2.0 * pixel_uv.y);
     [[unroll]] for (int i = 0; i < 4; i++)
     {
-        vec2 uv = frame_uv(uvec2(first + CORNER[i]));
+        vec3 to = ray + float(CORNER[i].x) * ray_x + float(CORNER[i].y) * ray_y;
         q.counts[i] = z[i] > 0.0;
-        q.position[i] =
-            frame.camera_position + frame_view_distance(max(z[i], 1e-12)) * frame_view_ray(uv);
+        q.position[i] = frame.camera_position + frame_view_distance(max(z[i], 1e-12)) * to;
         q.normal[i] = octahedral_decode(vec2(x[i], y[i]));
         q.instance[i] = instance[i];
         q.change[i] = vec3(0.0);
@@ -99,16 +104,16 @@ void add_object(uint index, vec3 position, vec3 n, bvec4 of, inout pixel_quad q)
     vec3 to_centre = object.centre - position;
     dnrt_receiver at = dnrt_receiver(dnrt_object_from_world(object, -to_centre), vec3(0.0));
     if (NORMALS == 6u) at.normal = dnrt_object_from_world(object, n);
-    vec3 texel = vec3(dnrt_slot(object)) + 0.5 + dnrt_sample_of(object, at, push.size);
-    float reach = dnrt_reach(object, at.position, push.fade);
+    dnrt_place place = dnrt_place_of(object, at, push.size, push.fade);
+    vec3 texel = vec3(dnrt_slot(object)) + 0.5 + place.at;
     vec3 change[LOOKUPS];
     [[unroll]] for (uint k = 0; k < LOOKUPS; k++)
     {
         vec3 slot = vec3(float(dnrt_volume_of(at, k) * push.size), 0.0, 0.0);
-        change[k] = textureLod(volumes, (texel + slot) / vec3(textureSize(volumes, 0)), 0.0).rgb;
-        change[k] = reach == 0.0 ? vec3(0.0) : reach * change[k];
+        change[k] = textureLod(volumes, (texel + slot) * volume_texel, 0.0).rgb;
+        change[k] = place.reach == 0.0 ? vec3(0.0) : place.reach * change[k];
     }
-    to_centre /= max(length(to_centre), 1e-12);
+    to_centre *= inversesqrt(max(dot(to_centre, to_centre), 1e-24));
     vec3 added[4];
     [[unroll]] for (int i = 0; i < 4; i++)
     {
@@ -117,7 +122,7 @@ void add_object(uint index, vec3 position, vec3 n, bvec4 of, inout pixel_quad q)
             at.normal = dnrt_object_from_world(object, q.normal[i]);
             weights = dnrt_weights(object, at);
         }
-        if (!of[i] || reach == 0.0 || is_own(object, q.instance[i])) weights = vec3(0.0);
+        if (!of[i] || place.reach == 0.0 || is_own(object, q.instance[i])) weights = vec3(0.0);
         added[i] = vec3(0.0);
         [[unroll]] for (uint k = 0; k < LOOKUPS; k++) added[i] += weights[k] * change[k];
 #ifndef DNRT_MAPS
@@ -128,6 +133,11 @@ void add_object(uint index, vec3 position, vec3 n, bvec4 of, inout pixel_quad q)
     [[dont_unroll]] for (int i = 0; i < 4; i++) if (added[i] != vec3(0.0)) q.change[i] +=
         seen_of(index, object, q.position[i], q.normal[i]) * added[i];
 #endif
+}
+
+float square(vec3 v)
+{
+    return dot(v, v);
 }
 
 // Pixels on one surface share a lookup, of which there is one more where a quad has an edge.
@@ -147,23 +157,22 @@ void add_objects(uint group, float share_m, inout pixel_quad q)
         float count = 0.0;
         [[unroll]] for (int i = 0; i < 4; i++)
         {
-            near[i] = left[i] && (i == chosen || distance(first, q.position[i]) <= share_m);
+            near[i] =
+                left[i] && (i == chosen || square(first - q.position[i]) <= share_m * share_m);
             sum += near[i] ? q.position[i] : vec3(0.0);
             count += near[i] ? 1.0 : 0.0;
             left[i] = left[i] && i != chosen && !near[i];
         }
         vec3 position = sum / max(count, 1.0);
-        uint w = 0u;
-        do {
-            uint bits = tile_table[group + DNRT_TILE_BITS + w];
-            do {
-                uint index = 32u * w + uint(max(findLSB(bits), 0));
-                bvec4 now = near;
-                if (bits == 0u) now = bvec4(false);
-                add_object(index, position, n, now, q);
-                bits &= bits - 1u;
-            } while (bits != 0u);
-        } while (++w < push.words);
+        uint w = 0u, bits = tile_table[group + DNRT_TILE_BITS];
+        do { // software drivers copy all that a loop changes: one loop, of objects and words
+            uint index = 32u * w + uint(max(findLSB(bits), 0));
+            bvec4 now = near;
+            if (bits == 0u) now = bvec4(false);
+            add_object(index, position, n, now, q);
+            bits &= bits - 1u;
+            if (bits == 0u && ++w < push.words) bits = tile_table[group + DNRT_TILE_BITS + w];
+        } while (w < push.words);
     } while (any(left));
 }
 
@@ -196,7 +205,9 @@ vec4 next_quad(inout ivec2 first, int end)
 void main()
 {
     frame = frame_block;
-    uint group = gl_WorkGroupID.x * (DNRT_TILE_BITS + push.words);
+    pixel_uv = 1.0 / vec2(frame.width, frame.height);
+    volume_texel = 1.0 / vec3(textureSize(volumes, 0));
+    uint group = (push.first_tile + gl_WorkGroupID.x) * (DNRT_TILE_BITS + push.words);
     uint tile = tile_table[group];
     float share_m = uintBitsToFloat(tile_table[group + 1u]);
     ivec2 first = ivec2(DNRT_TILE * uvec2(tile % push.tiles_x, tile / push.tiles_x) +

@@ -64,16 +64,16 @@ vec4 transfer_at(uint shape_index, uint j, vec3 at)
 vec3 change_at(uint index, dnrt_gpu_object object, vec3 position, vec3 n)
 {
     dnrt_receiver at = dnrt_receiver_of(object, position, n);
-    vec3 weights = dnrt_reach(object, at.position, push.fade) * dnrt_weights(object, at);
+    dnrt_place place = dnrt_place_of(object, at, push.size, push.fade);
+    vec3 weights = place.reach * dnrt_weights(object, at);
     vec3 sum = vec3(0.0);
     if (weights == vec3(0.0)) return sum;
-    vec3 texel = dnrt_sample_of(object, at, push.size);
     for (uint i = 0; i < LOOKUPS; i++) {
         uint volume = dnrt_volume_of(at, i);
         for (uint j = 0; j < COEFFICIENTS; j++) {
-            vec4 m = transfer_at(NORMALS * uint(object.shape) + volume, j, texel);
+            vec4 m = transfer_at(NORMALS * uint(object.shape) + volume, j, place.at);
             if (object.part > 0.0)
-                m = mix(m, transfer_at(NORMALS * uint(object.next) + volume, j, texel),
+                m = mix(m, transfer_at(NORMALS * uint(object.next) + volume, j, place.at),
                         object.part);
             uint entry = index * DNRT_COEFFICIENTS + j;
             vec3 lamps = PLANES == 4u ? light_table[push.lamps + entry] : vec3(0.0);

@@ -18,15 +18,6 @@ dnrt_receiver dnrt_receiver_of(dnrt_gpu_object object, vec3 position, vec3 norma
                          dnrt_object_from_world(object, normal));
 }
 
-// Between the border of the inner volume, at 1, and the outer one's: the inverse square of the
-// distance, less its value at the end.
-float dnrt_fall_off(float distance, float fade)
-{
-    if (distance <= 1.0) return 1.0;
-    float end = 1.0 / (fade * fade);
-    return max((1.0 / (distance * distance) - end) / (1.0 - end), 0.0);
-}
-
 // The normal whose product with the vector irradiance is the irradiance from above the horizon. An
 // object is above with `part` of its box's extent along the normal: all of it counts, or of a
 // sphere of this extent the cosine from above, part² h/d, is that of its form factor (a quadratic
@@ -39,14 +30,6 @@ vec3 dnrt_above_horizon(dnrt_gpu_object object, dnrt_receiver at)
     float distance = max(length(to_box), 1e-12);
     float below = (1.0 - part) * min(extent / distance, 1.0) / distance;
     return part * (at.normal + below * to_box);
-}
-
-// 0: out of the object's reach.
-float dnrt_reach(dnrt_gpu_object object, vec3 position, float fade)
-{
-    vec3 extent = abs(position) / object.half_m;
-    float border = max(extent.x, max(extent.y, extent.z));
-    return object.shape < 0 || border >= max(fade, 1.0) ? 0.0 : dnrt_fall_off(border, fade);
 }
 
 // Weights of the volumes: of one, of x, y and z, or of −x or x, −y or y, −z or z.
@@ -64,13 +47,24 @@ uint dnrt_volume_of(dnrt_receiver at, uint i)
     return NORMALS == 6u ? 2u * i + (at.normal[i] < 0.0 ? 1u : 0u) : i;
 }
 
-// The position among the samples of a volume, 0 to size − 1 along each edge.
-vec3 dnrt_sample_of(dnrt_gpu_object object, dnrt_receiver at, uint size)
+// What is looked up in a volume.
+struct dnrt_place {
+    vec3 at;     // among the samples, 0 to size − 1 along each edge
+    float reach; // a factor: 1 in the inner volume, 0 out of the object's reach
+};
+
+// In the outer volume, between the border of the inner one, at 1, and `fade`, it is the sample at
+// the border, times the inverse square of the distance less its value at the end.
+dnrt_place dnrt_place_of(dnrt_gpu_object object, dnrt_receiver at, uint size, float fade)
 {
-    vec3 p = at.position / object.half_m;
-    p /= max(max(abs(p.x), max(abs(p.y), abs(p.z))), 1.0);
+    vec3 p = at.position * (1.0 / object.half_m), extent = abs(p);
+    float border = max(extent.x, max(extent.y, extent.z)), over = 1.0 / max(border, 1.0);
+    float end = 1.0 / (fade * fade), fall = max((over * over - end) / (1.0 - end), 0.0);
+    p *= over;
     if (QUADRATIC) p = sign(p) * sqrt(abs(p));
-    return (0.5 * p + 0.5) * float(size - 1u);
+    dnrt_place place = dnrt_place((0.5 * p + 0.5) * float(size - 1u), border <= 1.0 ? 1.0 : fall);
+    if (object.shape < 0 || border >= max(fade, 1.0)) place.reach = 0.0;
+    return place;
 }
 
 #endif

@@ -104,9 +104,9 @@ struct dnrt_volumes_push {
 };
 
 struct dnrt_apply_push {
-    uint32_t objects;
-    uint32_t words;   // of a tile's bits
-    uint32_t tiles_x; // across the image
+    uint32_t first_tile; // of the list
+    uint32_t words;      // of a tile's bits
+    uint32_t tiles_x;    // across the image
     uint32_t size;
     float fade;         // where the outer volume ends, in halves of the inner one's edge
     uint32_t map_size;  // texels along an edge of a depth map

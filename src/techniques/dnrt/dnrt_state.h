@@ -105,6 +105,11 @@ void dnrt_record_self(const struct dnrt *s, struct gpu_cmd *cmd, const struct fr
 // Whether its outer volume is inside of the view.
 bool dnrt_in_view(const struct dnrt *s, const struct frame_view *view, int object);
 
-// Writes [tile][DNRT_TILE_BITS + words] for tiles that an object reaches and returns their number.
-uint32_t dnrt_find_tiles(const struct dnrt *s, const struct frame_view *view, uint32_t words,
-                         uint32_t *tiles);
+// Tiles that an object reaches, and those of them that may have pixels of an object.
+struct dnrt_tile_counts {
+    uint32_t all, own;
+};
+
+// Writes [tile][DNRT_TILE_BITS + words], tiles that may have pixels of an object first.
+struct dnrt_tile_counts dnrt_find_tiles(const struct dnrt *s, const struct frame_view *view,
+                                        uint32_t words, uint32_t *tiles);

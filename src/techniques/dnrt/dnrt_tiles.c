@@ -1,5 +1,5 @@
 // Which tiles of the image an object reaches: those of the rectangle around the corners of its
-// outer volume.
+// outer volume. Pixels of its own are in the rectangle around its bounding sphere.
 #include "techniques/dnrt/dnrt_state.h"
 
 #include <math.h>
@@ -63,33 +63,59 @@ static uint32_t bits_of(float value)
     return bits;
 }
 
-static void mark(uint32_t *tiles, int across, uint32_t words, struct rectangle r, int object,
-                 float share_m)
+struct tile_list {
+    uint32_t *words;
+    int across;
+    size_t stride;
+};
+
+static uint32_t *tile_at(const struct tile_list *tiles, int x, int y)
+{
+    return tiles->words + (size_t)(y * tiles->across + x) * tiles->stride;
+}
+
+static void mark(const struct tile_list *tiles, struct rectangle r, int object, float share_m)
 {
     const uint32_t share = bits_of(share_m);
     for (int y = r.first[1]; y < r.end[1]; y++)
         for (int x = r.first[0]; x < r.end[0]; x++) {
-            uint32_t *tile = tiles + (size_t)(y * across + x) * (DNRT_TILE_BITS + words);
+            uint32_t *tile = tile_at(tiles, x, y);
             if (tile[1] == 0 || share < tile[1]) tile[1] = share;
             tile[DNRT_TILE_BITS + object / 32] |= 1u << object % 32;
         }
 }
 
-// Moves those with a bit to the front.
-static uint32_t keep_marked(uint32_t *tiles, uint32_t count, uint32_t words)
+static void mark_own(const struct tile_list *tiles, struct rectangle r)
 {
-    const size_t stride = DNRT_TILE_BITS + words;
-    uint32_t kept = 0;
-    for (uint32_t t = 0; t < count; t++) {
-        const uint32_t *from = tiles + t * stride;
-        uint32_t any = 0;
-        for (uint32_t w = 0; w < words; w++) any |= from[DNRT_TILE_BITS + w];
-        if (any == 0) continue;
-        uint32_t *to = tiles + kept++ * stride;
-        memmove(to, from, stride * sizeof *to);
-        to[0] = t;
+    for (int y = r.first[1]; y < r.end[1]; y++)
+        for (int x = r.first[0]; x < r.end[0]; x++) tile_at(tiles, x, y)[0] = 1;
+}
+
+static void swap_words(uint32_t *a, uint32_t *b, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t word = a[i];
+        a[i] = b[i];
+        b[i] = word;
     }
-    return kept;
+}
+
+// Moves those with a bit to the front, before them those with pixels of objects.
+static struct dnrt_tile_counts sort_marked(const struct tile_list *tiles, uint32_t count)
+{
+    struct dnrt_tile_counts counts = { 0, 0 };
+    for (uint32_t t = 0; t < count; t++) {
+        const uint32_t *from = tiles->words + t * tiles->stride;
+        const bool own = from[0] != 0;
+        uint32_t any = 0;
+        for (size_t w = DNRT_TILE_BITS; w < tiles->stride; w++) any |= from[w];
+        if (any == 0) continue;
+        uint32_t *to = tiles->words + counts.all++ * tiles->stride;
+        memmove(to, from, tiles->stride * sizeof *to);
+        to[0] = t;
+        if (own) swap_words(to, tiles->words + counts.own++ * tiles->stride, tiles->stride);
+    }
+    return counts;
 }
 
 bool dnrt_in_view(const struct dnrt *s, const struct frame_view *view, int object)
@@ -102,19 +128,27 @@ bool dnrt_in_view(const struct dnrt *s, const struct frame_view *view, int objec
 // Of the distance of two samples.
 static const float SHARE = 0.5f;
 
-uint32_t dnrt_find_tiles(const struct dnrt *s, const struct frame_view *view, uint32_t words,
-                         uint32_t *tiles)
+// Of the bounding sphere, for rounded positions.
+static const float OWN_MARGIN = 1.02f;
+
+struct dnrt_tile_counts dnrt_find_tiles(const struct dnrt *s, const struct frame_view *view,
+                                        uint32_t words, uint32_t *at)
 {
     const int across = tiles_of(view->width);
+    const struct tile_list tiles = { at, across, DNRT_TILE_BITS + words };
     const uint32_t count = (uint32_t)(across * tiles_of(view->height));
-    memset(tiles, 0, (size_t)count * (DNRT_TILE_BITS + words) * sizeof *tiles);
+    memset(at, 0, count * tiles.stride * sizeof *at);
     for (int i = 0; i < s->objects.count; i++) {
         const struct dnrt_gpu_object *object = &s->gpu_objects[i];
         const float half = object->half_m * s->options.fade;
         const float cell_m = 2.0f * object->half_m / (float)(dnrt_size(&s->options) - 1);
-        if (object->shape >= 0 && half > 0.0f)
-            mark(tiles, across, words, rectangle_of(view, object, half), i,
-                 s->options.normals == DNRT_NORMALS_6 ? 0.0f : SHARE * cell_m);
+        // A deformed object is anywhere about the sphere of its bake.
+        const float own =
+            s->objects.at[i].deformed ? half : OWN_MARGIN * object->half_m / s->options.reach;
+        if (object->shape < 0 || !(half > 0.0f)) continue;
+        mark(&tiles, rectangle_of(view, object, half), i,
+             s->options.normals == DNRT_NORMALS_6 ? 0.0f : SHARE * cell_m);
+        mark_own(&tiles, rectangle_of(view, object, own));
     }
-    return keep_marked(tiles, count, words);
+    return sort_marked(&tiles, count);
 }
