@@ -66,7 +66,6 @@ struct trial_irradiance trial_reference(struct frame_fixture *s, int bounces, in
     assert_true(pose_init(&s->pose, s->scene, -1, 0));
     struct reference_options options = reference_options_default();
     options.bounces = bounces;
-    options.diffuse_only = true;
     struct reference *reference = reference_create(test_host(), &s->pose, &s->input.camera,
                                                    (int)s->width, (int)s->height, &options);
     assert_non_null(reference);

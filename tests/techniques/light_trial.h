@@ -12,6 +12,6 @@ struct trial_irradiance {
 // Both open the fixture, which must not be open, and leave it to be finished. Pixels without a
 // surface do not count.
 struct trial_irradiance trial_technique(struct frame_fixture *s, const char *gi);
-// Light of the same kinds as the technique's: without direct light of punctual lights. All bounces,
-// or `bounces` of them; −1: all.
+// Light of the same kinds as the technique's: without direct light of punctual lights, with that of
+// specular lobes in bounces. All bounces, or `bounces` of them; −1: all.
 struct trial_irradiance trial_reference(struct frame_fixture *s, int bounces, int samples);
