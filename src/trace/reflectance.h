@@ -3,6 +3,6 @@
 
 #include "trace/surface.h"
 
-// The share of diffuse light that the surface's diffuse base and its dielectric lobe send on, 0…1
-// per channel: brdf_bounce_reflectance (frame/brdf.glsl). Metals send none. 0 where unlit.
+// The share of diffuse light that the surface's diffuse base and its specular lobes send on, 0…1
+// per channel: brdf_bounce_reflectance (frame/brdf.glsl). 0 where unlit.
 vec3s surface_reflectance(const struct surface *surface);

@@ -152,22 +152,41 @@ TEST_GPU(spots_flux_is_the_integral_of_its_intensity)
     finish(&s, &r);
 }
 
-TEST_GPU(metals_and_surfaces_beyond_the_range_reflect_no_diffuse_flux)
+// A box of this material, and its flux over that of a white matte one.
+static double flux_of(struct gpu *gpu, const struct material *material, float range_m)
 {
-    for (int i = 0; i < 2; i++) {
-        struct frame_fixture s;
-        struct reader r;
-        begin(&s, &r, gpu);
-        struct material m = material_default();
-        m.metallic = i == 0 ? 1 : 0;
-        fixture_box(&s, vec3_of(-1, -1, -1), vec3_of(1, 1, 1), true, fixture_material(&s, &m));
-        fixture_add_point(&s, vec3_of(0, 0, 0), vec3_of(10, 10, 10))->range_m = i == 1 ? 0.9f : 0;
-        fixture_open(&s);
-        struct texel *t = render(&s, &r);
-        CHECK(total(&r, t, 0) == 0);
-        free(t);
-        finish(&s, &r);
-    }
+    struct frame_fixture s;
+    struct reader r;
+    begin(&s, &r, gpu);
+    fixture_box(&s, vec3_of(-1, -1, -1), vec3_of(1, 1, 1), true, fixture_material(&s, material));
+    fixture_add_point(&s, vec3_of(0, 0, 0), vec3_of(10, 10, 10))->range_m = range_m;
+    fixture_open(&s);
+    struct texel *t = render(&s, &r);
+    const double flux = total(&r, t, 0) / (4 * PI * 10);
+    free(t);
+    finish(&s, &r);
+    return flux;
+}
+
+// The hemispherical albedo of a metal: white reflects all light, black what Fresnel's term gives.
+TEST_GPU(metals_reflect_the_albedo_of_their_lobe)
+{
+    struct material m = material_default();
+    m.metallic = 1;
+    m.roughness = 0.5f;
+    CHECK_RELATIVE(flux_of(gpu, &m, 0), 1, 1e-2); // 8 bits of reflectance
+    m.base_color = vec4_of(vec3_of(0.5f, 0.5f, 0.5f), 1);
+    const double half = flux_of(gpu, &m, 0);
+    CHECK(half > 0.45 && half < 0.6);
+    m.base_color = vec4_of(vec3_of(0, 0, 0), 1);
+    const double black = flux_of(gpu, &m, 0);
+    CHECK(black > 0.01 && black < 0.08);
+}
+
+TEST_GPU(surfaces_beyond_the_range_reflect_no_flux)
+{
+    const struct material m = material_default();
+    CHECK(flux_of(gpu, &m, 0.9f) == 0);
 }
 
 TEST_GPU(face_count_follows_the_lights)
