@@ -283,9 +283,8 @@ static const struct change changes_of_place[] = {
 };
 
 // The bake is that of an equal scene: surfaces of a scene stay while a bake uses it.
-TEST(the_next_frame_is_that_of_a_new_renderer_with_objects_of_dnrt)
+static void check_objects(const char *gi)
 {
-    static const char gi[] = "lpv:dim=16,cascades=1,probes=true+dnrt:size=16,rays=16";
     struct ag_technique_info info = { .needs_bake = true };
     struct renderer_fixture s = fixture_open("none", NULL), of_bake = s;
     struct cube cube = add_cube(s.scene, 1.4f, true);
@@ -299,6 +298,18 @@ TEST(the_next_frame_is_that_of_a_new_renderer_with_objects_of_dnrt)
     ag_bake_destroy(bake);
     ag_scene_destroy(of_bake.scene);
     fixture_close(&s);
+}
+
+TEST(the_next_frame_is_that_of_a_new_renderer_with_objects_of_dnrt)
+{
+    check_objects("lpv:dim=16,cascades=1,probes=true+dnrt:size=16,rays=16");
+}
+
+// Depth maps are kept, and light of lamps and of the object itself follows.
+TEST(the_next_frame_is_that_of_a_new_renderer_with_objects_in_the_light_of_lamps)
+{
+    check_objects("lpv:dim=16,cascades=1,probes=true+dnrt:size=16,rays=16,map_size=16,"
+                  "intrusion=shadow,direct=true,self=true");
 }
 
 static void check_warning(struct renderer_fixture *s, const char *expected)

@@ -227,7 +227,8 @@ static uint32_t record_bounces(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_b
     struct dnrt_bounce_push push = { .objects = count,
                                      .lamps = lamps_of(s),
                                      .size = (uint32_t)dnrt_size(&s->options),
-                                     .fade = s->options.fade };
+                                     .fade = s->options.fade,
+                                     .reach = s->options.reach };
     if (!has_bounces(s)) return 0;
     gpu_scope_begin(cmd, "bounces");
     for (int bounce = 1; bounce < s->options.bounces; bounce++) {

@@ -96,20 +96,18 @@ void read_quad(ivec2 first, vec4 z, out pixel_quad q)
     }
 }
 
-// To the pixels `of` the quad: their lookups are at one position. With six volumes the normal of
-// the pixel, of which there is one, chooses among them.
-void add_object(uint index, vec3 position, vec3 n, bvec4 of, inout pixel_quad q)
+// To the pixels `of` the quad: their lookups are at one position.
+void add_object(uint index, vec3 position, bvec4 of, inout pixel_quad q)
 {
     dnrt_gpu_object object = object_table[index];
     vec3 to_centre = object.centre - position;
     dnrt_receiver at = dnrt_receiver(dnrt_object_from_world(object, -to_centre), vec3(0.0));
-    if (NORMALS == 6u) at.normal = dnrt_object_from_world(object, n);
     dnrt_place place = dnrt_place_of(object, at, push.size, push.fade);
     vec3 texel = vec3(dnrt_slot(object)) + 0.5 + place.at;
-    vec3 change[LOOKUPS];
-    [[unroll]] for (uint k = 0; k < LOOKUPS; k++)
+    vec3 change[NORMALS];
+    [[unroll]] for (uint k = 0; k < NORMALS; k++)
     {
-        vec3 slot = vec3(float(dnrt_volume_of(at, k) * push.size), 0.0, 0.0);
+        vec3 slot = vec3(float(k * push.size), 0.0, 0.0);
         change[k] = textureLod(volumes, (texel + slot) * volume_texel, 0.0).rgb;
         change[k] = place.reach == 0.0 ? vec3(0.0) : place.reach * change[k];
     }
@@ -117,14 +115,16 @@ void add_object(uint index, vec3 position, vec3 n, bvec4 of, inout pixel_quad q)
     vec3 added[4];
     [[unroll]] for (int i = 0; i < 4; i++)
     {
-        vec3 weights = vec3(max(dot(to_centre, q.normal[i]), 0.0), 0.0, 0.0);
+        float cosine = max(dot(to_centre, q.normal[i]), 0.0);
+        vec3 above = vec3(0.0);
         if (NORMALS > 1u) {
             at.normal = dnrt_object_from_world(object, q.normal[i]);
-            weights = dnrt_weights(object, at);
+            above = dnrt_above_horizon(object, at, object.half_m / push.reach);
         }
-        if (!of[i] || place.reach == 0.0 || is_own(object, q.instance[i])) weights = vec3(0.0);
         added[i] = vec3(0.0);
-        [[unroll]] for (uint k = 0; k < LOOKUPS; k++) added[i] += weights[k] * change[k];
+        [[unroll]] for (uint k = 0; k < NORMALS; k++) added[i] +=
+            (NORMALS == 1u ? cosine : dnrt_weight(at, above, k)) * change[k];
+        if (!of[i] || place.reach == 0.0 || is_own(object, q.instance[i])) added[i] = vec3(0.0);
 #ifndef DNRT_MAPS
         q.change[i] += added[i];
 #endif
@@ -146,12 +146,11 @@ void add_objects(uint group, float share_m, inout pixel_quad q)
     bvec4 left = q.counts;
     do {
         int chosen = 3;
-        vec3 first = q.position[3], n = q.normal[3], sum = vec3(0.0);
+        vec3 first = q.position[3], sum = vec3(0.0);
         [[unroll]] for (int i = 2; i >= 0; i--) if (left[i])
         {
             chosen = i;
             first = q.position[i];
-            n = q.normal[i];
         }
         bvec4 near;
         float count = 0.0;
@@ -169,7 +168,7 @@ void add_objects(uint group, float share_m, inout pixel_quad q)
             uint index = 32u * w + uint(max(findLSB(bits), 0));
             bvec4 now = near;
             if (bits == 0u) now = bvec4(false);
-            add_object(index, position, n, now, q);
+            add_object(index, position, now, q);
             bits &= bits - 1u;
             if (bits == 0u && ++w < push.words) bits = tile_table[group + DNRT_TILE_BITS + w];
         } while (w < push.words);

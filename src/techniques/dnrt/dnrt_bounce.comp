@@ -65,19 +65,20 @@ vec3 change_at(uint index, dnrt_gpu_object object, vec3 position, vec3 n)
 {
     dnrt_receiver at = dnrt_receiver_of(object, position, n);
     dnrt_place place = dnrt_place_of(object, at, push.size, push.fade);
-    vec3 weights = place.reach * dnrt_weights(object, at);
+    vec3 above = dnrt_above_horizon(object, at, object.half_m / push.reach);
+    float cosine = max(-dot(at.position, at.normal) / max(length(at.position), 1e-12), 0.0);
     vec3 sum = vec3(0.0);
-    if (weights == vec3(0.0)) return sum;
-    for (uint i = 0; i < LOOKUPS; i++) {
-        uint volume = dnrt_volume_of(at, i);
+    if (place.reach == 0.0) return sum;
+    for (uint i = 0; i < NORMALS; i++) {
+        float weight = place.reach * (NORMALS == 1u ? cosine : dnrt_weight(at, above, i));
+        if (weight == 0.0) continue;
         for (uint j = 0; j < COEFFICIENTS; j++) {
-            vec4 m = transfer_at(NORMALS * uint(object.shape) + volume, j, place.at);
+            vec4 m = transfer_at(NORMALS * uint(object.shape) + i, j, place.at);
             if (object.part > 0.0)
-                m = mix(m, transfer_at(NORMALS * uint(object.next) + volume, j, place.at),
-                        object.part);
+                m = mix(m, transfer_at(NORMALS * uint(object.next) + i, j, place.at), object.part);
             uint entry = index * DNRT_COEFFICIENTS + j;
             vec3 lamps = PLANES == 4u ? light_table[push.lamps + entry] : vec3(0.0);
-            sum += weights[i] * ((light_table[push.from + entry] + lamps) * m.rgb + lamps * m.w);
+            sum += weight * ((light_table[push.from + entry] + lamps) * m.rgb + lamps * m.w);
         }
     }
     return SH_COSINE_0 * sum;

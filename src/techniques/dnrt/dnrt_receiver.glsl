@@ -5,7 +5,6 @@
 
 layout(constant_id = 1) const uint NORMALS = 1;       // 1, 3 or 6 volumes, bake/transfer.h
 layout(constant_id = 0) const bool QUADRATIC = false; // the grid
-const uint LOOKUPS = NORMALS == 1u ? 1u : 3u;         // with a weight
 
 struct dnrt_receiver {
     vec3 position; // from the object's centre, along its axes, m
@@ -19,32 +18,38 @@ dnrt_receiver dnrt_receiver_of(dnrt_gpu_object object, vec3 position, vec3 norma
 }
 
 // The normal whose product with the vector irradiance is the irradiance from above the horizon. An
-// object is above with `part` of its box's extent along the normal: all of it counts, or of a
-// sphere of this extent the cosine from above, part² h/d, is that of its form factor (a quadratic
-// fit of Snyder 1996, "Area Light Sources for Real-Time Graphics").
-vec3 dnrt_above_horizon(dnrt_gpu_object object, dnrt_receiver at)
+// object is above with `part` of its extent along the normal, that of its bounding box within its
+// bounding sphere: all of it counts, or of a sphere of this extent the cosine from above, part²
+// h/d, is that of its form factor (a quadratic fit of Snyder 1996, "Area Light Sources for
+// Real-Time Graphics").
+vec3 dnrt_above_horizon(dnrt_gpu_object object, dnrt_receiver at, float radius)
 {
     vec3 to_box = object.box_centre - at.position;
-    float extent = max(dot(abs(at.normal), object.box_half), 1e-12);
-    float part = clamp(0.5 * dot(to_box, at.normal) / extent + 0.5, 0.0, 1.0);
+    float height = dot(to_box, at.normal), extent = dot(abs(at.normal), object.box_half);
+    float of_centre = -dot(at.position, at.normal);
+    float top = min(height + extent, of_centre + radius);
+    float bottom = max(height - extent, of_centre - radius);
+    float most = max(0.5 * (top - bottom), 1e-12);
+    float part = clamp(0.25 * (top + bottom) / most + 0.5, 0.0, 1.0);
     float distance = max(length(to_box), 1e-12);
-    float below = (1.0 - part) * min(extent / distance, 1.0) / distance;
+    float below = (1.0 - part) * min(most / distance, 1.0) / distance;
     return part * (at.normal + below * to_box);
 }
 
-// Weights of the volumes: of one, of x, y and z, or of −x or x, −y or y, −z or z.
-vec3 dnrt_weights(dnrt_gpu_object object, dnrt_receiver at)
+// Weights of the volumes of x, y and z, or of x, −x, y, −y, z and −z: differences of two are the
+// vector irradiance. Near an axis that of the axis alone, which has its own horizon, counts more.
+float dnrt_weight(dnrt_receiver at, vec3 above, uint volume)
 {
-    if (NORMALS == 3u) return dnrt_above_horizon(object, at);
-    if (NORMALS == 6u) return at.normal * at.normal;
-    float cosine = -dot(at.position, at.normal) / max(length(at.position), 1e-12);
-    return vec3(max(cosine, 0.0), 0.0, 0.0);
-}
-
-// The volume of the i-th weight.
-uint dnrt_volume_of(dnrt_receiver at, uint i)
-{
-    return NORMALS == 6u ? 2u * i + (at.normal[i] < 0.0 ? 1u : 0u) : i;
+    if (NORMALS == 3u) return above[volume];
+    uint axis = volume / 2u;
+    float side = volume % 2u == 0u ? 1.0 : -1.0;
+    vec3 square = at.normal * at.normal;
+    float alone = dot(square, square); // 1 at an axis, 1/2 between two
+    alone *= alone;
+    alone *= alone;
+    alone *= alone;
+    float of_axis = side * at.normal[axis] > 0.0 ? square[axis] : 0.0;
+    return mix(side * above[axis], of_axis, alone);
 }
 
 // What is looked up in a volume.

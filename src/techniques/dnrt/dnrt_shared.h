@@ -95,6 +95,7 @@ struct dnrt_bounce_push {
     uint32_t lamps;    // of lamps
     uint32_t size;
     float fade;
+    float reach; // of the inner volume, radii of the bounding sphere
 };
 
 struct dnrt_volumes_push {

@@ -146,8 +146,7 @@ struct dnrt_tile_counts dnrt_find_tiles(const struct dnrt *s, const struct frame
         const float own =
             s->objects.at[i].deformed ? half : OWN_MARGIN * object->half_m / s->options.reach;
         if (object->shape < 0 || !(half > 0.0f)) continue;
-        mark(&tiles, rectangle_of(view, object, half), i,
-             s->options.normals == DNRT_NORMALS_6 ? 0.0f : SHARE * cell_m);
+        mark(&tiles, rectangle_of(view, object, half), i, SHARE * cell_m);
         mark_own(&tiles, rectangle_of(view, object, own));
     }
     return sort_marked(&tiles, count);
