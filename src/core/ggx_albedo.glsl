@@ -1,5 +1,5 @@
 // Directional albedo of the GGX lobe: the GLSL twin of ggx_albedo.h, which has the formulas. A
-// shader that needs the table defines GGX_ALBEDO_BINDING first; the buffer is named "ggx_albedo".
+// shader that needs the table defines GGX_ALBEDO_BINDING first; the image is named "ggx_albedo".
 #ifndef CORE_GGX_ALBEDO_GLSL
 #define CORE_GGX_ALBEDO_GLSL
 
@@ -8,15 +8,12 @@ const float GGX_MIN_ROUGHNESS = 0.045;
 const float GGX_ALBEDO_K = 0.35;
 
 #ifdef GGX_ALBEDO_BINDING
-layout(set = 0, binding = GGX_ALBEDO_BINDING, scalar) readonly buffer ggx_albedo
-{
-    uint ggx_albedo_table[];
-};
+// Four nodes in each texel (ggx_albedo_texel): one load of 16 bytes.
+layout(set = 0, binding = GGX_ALBEDO_BINDING, rgba32ui) uniform readonly uimage2D ggx_albedo;
 
-vec2 ggx_albedo_mix(int node, float x)
+vec2 ggx_albedo_mix(uvec2 nodes, float x)
 {
-    return mix(unpackUnorm2x16(ggx_albedo_table[node]), unpackUnorm2x16(ggx_albedo_table[node + 1]),
-               x);
+    return mix(unpackUnorm2x16(nodes.x), unpackUnorm2x16(nodes.y), x);
 }
 
 // (A, B): E(F0, F90) = F0 · A + F90 · B. n_v: 0…1, roughness: GGX_MIN_ROUGHNESS…1.
@@ -28,9 +25,8 @@ vec2 ggx_albedo_at(float n_v, float roughness)
              float(GGX_ALBEDO_SIZE - 1);
     ivec2 low = min(ivec2(t), ivec2(GGX_ALBEDO_SIZE - 2));
     vec2 part = t - vec2(low);
-    int node = low.y * GGX_ALBEDO_SIZE + low.x;
-    return mix(ggx_albedo_mix(node, part.x), ggx_albedo_mix(node + GGX_ALBEDO_SIZE, part.x),
-               part.y);
+    uvec4 nodes = imageLoad(ggx_albedo, low);
+    return mix(ggx_albedo_mix(nodes.xy, part.x), ggx_albedo_mix(nodes.zw, part.x), part.y);
 }
 #endif
 

@@ -28,6 +28,14 @@
 // [roughness][n·v]; A in the lower 16 bits, B in the upper ones, as fractions of 65535.
 extern const uint32_t ggx_albedo_table[GGX_ALBEDO_SIZE * GGX_ALBEDO_SIZE];
 
+// What a lookup needs, as a texel of an image of GGX_ALBEDO_SIZE² texels for shaders: the nodes i
+// and i + 1 of n·v, of roughness j and j + 1. i, j: 0…GGX_ALBEDO_SIZE − 1; beyond the last node, it
+// again.
+struct ggx_albedo_texel {
+    uint32_t nodes[4];
+};
+struct ggx_albedo_texel ggx_albedo_texel(int i, int j);
+
 struct ggx_albedo {
     float a, b;
 };

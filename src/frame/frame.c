@@ -23,16 +23,24 @@ static const uint32_t MAX_SIZE = 16384;
 
 static bool create_ggx_albedo(struct frame *f)
 {
-    struct gpu_buffer_desc desc = { "frame.ggx_albedo", sizeof ggx_albedo_table,
-                                    GPU_BUFFER_STORAGE };
-    return gpu_buffer_create(f->gpu, &desc, &f->common->ggx_albedo) &&
-           gpu_buffer_upload(f->gpu, f->common->ggx_albedo, 0, ggx_albedo_table,
-                             sizeof ggx_albedo_table);
+    const int n = GGX_ALBEDO_SIZE;
+    const struct gpu_image_desc desc = { .name = "frame.ggx_albedo",
+                                         .format = GPU_RGBA32U,
+                                         .width = GGX_ALBEDO_SIZE,
+                                         .height = GGX_ALBEDO_SIZE,
+                                         .usage = GPU_STORAGE };
+    struct ggx_albedo_texel *texels = host_alloc(f->host, (size_t)n * n, sizeof *texels);
+    for (int i = 0; texels && i < n * n; i++) texels[i] = ggx_albedo_texel(i % n, i / n);
+    const bool ok = texels && gpu_image_create(f->gpu, &desc, &f->common->ggx_albedo) &&
+                    gpu_image_upload(f->gpu, f->common->ggx_albedo, 0, 0, texels,
+                                     (size_t)n * n * sizeof *texels);
+    host_free(f->host, texels);
+    return ok;
 }
 
 static struct gpu_binding ggx_albedo_binding(const struct frame *f)
 {
-    return (struct gpu_binding){ "ggx_albedo", .buffer = f->common->ggx_albedo };
+    return (struct gpu_binding){ "ggx_albedo", .image = f->common->ggx_albedo };
 }
 
 static bool init_common(struct frame *f, const struct frame_options *options)
@@ -50,7 +58,7 @@ static bool init_common(struct frame *f, const struct frame_options *options)
 static void finish_common(struct frame *f)
 {
     struct frame_common *c = f->common;
-    gpu_buffer_destroy(f->gpu, &c->ggx_albedo);
+    gpu_image_destroy(f->gpu, &c->ggx_albedo);
     display_finish(&c->display);
     composite_finish(&c->composite);
     direct_finish(&c->direct);

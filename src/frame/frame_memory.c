@@ -5,6 +5,9 @@
 
 #include "frame/shadow/shadow_shared.h"
 
+static const uint64_t GGX_ALBEDO_BYTES =
+    sizeof(struct ggx_albedo_texel) * GGX_ALBEDO_SIZE * GGX_ALBEDO_SIZE;
+
 // Drivers pad images and buffers; exposure and reports of a frame take less than one page.
 static const uint64_t PAGE_BYTES = 64u << 10;
 
@@ -53,7 +56,7 @@ uint64_t frame_memory_estimate(const struct frame_options *options, const struct
     const uint64_t lights = input->light_count > 0 ? (uint64_t)input->light_count : 0;
     // The list of the pixels that direct light of a single sun leaves undecided.
     const uint64_t list = lights == 1 ? (uint64_t)width * height * sizeof(uint32_t) : 0;
-    return 2 * PAGE_BYTES + padded(sizeof ggx_albedo_table) + padded(list) +
+    return 2 * PAGE_BYTES + padded(GGX_ALBEDO_BYTES) + padded(list) +
            layer_bytes(layers_of(input, needs), width, height) +
            lights * light_bytes(options, needs);
 }

@@ -36,7 +36,7 @@ struct frame_common {
     struct direct direct;
     struct composite composite;
     struct display display;
-    gpu_buffer ggx_albedo;                // core/ggx_albedo.h
+    gpu_image ggx_albedo;                 // core/ggx_albedo.h
     struct frame *views[FRAME_MAX_VIEWS]; // [0]: the first; NULL: there is none
 };
 

@@ -10,12 +10,18 @@ vec2 octahedral_encode(vec3 n)
     return n.z < 0.0 ? folded : p;
 }
 
-vec3 octahedral_decode(vec2 e)
+// Of any length.
+vec3 octahedral_direction(vec2 e)
 {
     vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
     float below = max(-n.z, 0.0);
     n.xy -= mix(vec2(-below), vec2(below), greaterThanEqual(n.xy, vec2(0.0)));
-    return normalize(n);
+    return n;
+}
+
+vec3 octahedral_decode(vec2 e)
+{
+    return normalize(octahedral_direction(e));
 }
 
 #endif

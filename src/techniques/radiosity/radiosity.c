@@ -103,10 +103,6 @@ static bool make_pipelines(struct radiosity *s)
         { "smooth", &shader_radiosity_smooth_comp, &p->smooth },
         { "map", &shader_radiosity_map_comp, &p->map },
         { "seams", &shader_radiosity_seams_comp, &p->seams },
-        { "apply",
-          s->options.specular ? &shader_radiosity_apply_specular_comp
-                              : &shader_radiosity_apply_diffuse_comp,
-          &p->apply },
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (!gpu_compute_pipeline_create(s->gpu, rows[i].name, rows[i].shader, NULL, 0,
@@ -227,12 +223,13 @@ static void debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view
 static void destroy_tables(struct radiosity *s)
 {
     struct radiosity_tables *t = &s->tables;
-    gpu_image *const images[] = {
-        &t->texels,       &t->neighbours,   &t->clusters,  &t->spans,         &t->members,
-        &t->groups,       &t->owners,       &t->instances, &t->triangles,     &t->places,
-        &t->seams,        &t->flux,         &t->light,     &t->smoothed,      &t->sent,
-        &t->radiosity[0], &t->radiosity[1], &t->solution,  &t->light_maps[0], &t->light_maps[1]
-    };
+    gpu_image *const images[] = { &t->texels,   &t->neighbours,    &t->clusters,
+                                  &t->spans,    &t->members,       &t->groups,
+                                  &t->owners,   &t->instances,     &t->triangles,
+                                  &t->fronts,   &t->places,        &t->seams,
+                                  &t->flux,     &t->light,         &t->smoothed,
+                                  &t->sent,     &t->radiosity[0],  &t->radiosity[1],
+                                  &t->solution, &t->light_maps[0], &t->light_maps[1] };
     for (size_t i = 0; i < sizeof images / sizeof *images; i++)
         gpu_image_destroy(s->gpu, images[i]);
     gpu_buffer_destroy(s->gpu, &t->labels);
@@ -246,8 +243,9 @@ static void destroy(void *state)
     struct radiosity *s = state;
     if (!s->host) return;
     struct radiosity_pipelines *p = &s->pipelines;
-    gpu_pipeline *const pipelines[] = { &p->direct, &p->clusters, &p->nodes, &p->solve, &p->gather,
-                                        &p->smooth, &p->map,      &p->seams, &p->apply, &p->view };
+    gpu_pipeline *const pipelines[] = { &p->direct,   &p->clusters, &p->nodes, &p->solve,
+                                        &p->gather,   &p->smooth,   &p->map,   &p->seams,
+                                        &p->apply[0], &p->apply[1], &p->view };
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(s->gpu, pipelines[i]);
     destroy_tables(s);
@@ -294,7 +292,8 @@ static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t he
                                  table_bytes(clusters, 8) + table_bytes(texels, 4) +
                                  5 * table_bytes(nodes, 8);
     const uint64_t of_scene = table_bytes(RADIOSITY_TRIANGLE_PARTS * texels, 16) +
-                              table_bytes(1, 8) + table_bytes(1, 16) + table_bytes(1, 4);
+                              table_bytes(texels, 4) + table_bytes(1, 8) + table_bytes(1, 16) +
+                              table_bytes(1, 4);
     const uint64_t of_map =
         table_bytes((uint64_t)o->texels, 8) + 2 * 8 * RADIOSITY_LAYERS * (uint64_t)o->texels;
     return of_texels + of_clusters + of_scene + of_map + radiosity_probes_memory(o);

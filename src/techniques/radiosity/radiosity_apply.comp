@@ -12,20 +12,25 @@
 #if SPECULAR
 #define GGX_ALBEDO_BINDING 8
 #endif
+#define FRAME_CONSTANTS_COPIED
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/radiosity/radiosity_lobe.glsl"
 #define RADIOSITY_INSTANCES_BINDING 4
 #define RADIOSITY_TRIANGLES_BINDING 5
+#define RADIOSITY_FRONTS_BINDING    13
 #include "techniques/radiosity/radiosity_place.glsl"
 
-layout(local_size_x = RADIOSITY_LOCAL_2D, local_size_y = RADIOSITY_LOCAL_2D) in;
+// A processor's caches fetch the next lines of memory ahead: there, a workgroup is a row of pixels.
+layout(local_size_x_id = RADIOSITY_APPLY_WIDTH, local_size_y_id = RADIOSITY_APPLY_HEIGHT) in;
+layout(constant_id = RADIOSITY_APPLY_DIELECTRIC) const bool HAS_DIELECTRIC = false;
 
 layout(push_constant, scalar) uniform push_block
 {
-    radiosity_apply_push push;
+    radiosity_apply_push push_of_all;
 };
+radiosity_apply_push push; // a copy, as FRAME_CONSTANTS_COPIED
 layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2) uniform sampler2D normal;
 layout(set = 0, binding = 3) uniform usampler2D id; // FRAME_ID
@@ -34,9 +39,15 @@ layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D irradiance;
 #if SPECULAR
 layout(set = 0, binding = 9) uniform sampler2D albedo;
 layout(set = 0, binding = 10) uniform sampler2D material;
-layout(set = 0, binding = 11) uniform sampler2D dielectric; // FRAME_DIELECTRIC if `has_dielectric`
+layout(set = 0, binding = 11) uniform sampler2D dielectric; // FRAME_DIELECTRIC if HAS_DIELECTRIC
 layout(set = 0, binding = 12, rgba16f) uniform writeonly image2D specular;
 #endif
+
+// One division, where normalize has three on software drivers.
+vec3 unit(vec3 v)
+{
+    return v * inversesqrt(dot(v, v));
+}
 
 // Irradiance and vector irradiance by colour.
 struct light_at_pixel {
@@ -46,7 +57,7 @@ struct light_at_pixel {
 
 light_at_pixel light_at(vec3 place, vec3 n)
 {
-    vec2 uv = place.xy / vec2(push.width, push.height);
+    vec2 uv = place.xy * vec2(push.per_width, push.per_height);
     light_at_pixel light;
     for (int c = 0; c < 3; c++) {
         vec4 texel =
@@ -62,10 +73,10 @@ light_at_pixel light_at(vec3 place, vec3 n)
 vec3 reflected(ivec2 pixel, vec3 position, vec3 n, light_at_pixel light)
 {
     vec4 lobe = BRDF_DEFAULT_DIELECTRIC;
-    if (push.has_dielectric != 0u) lobe = texelFetch(dielectric, pixel, 0);
+    if (HAS_DIELECTRIC) lobe = texelFetch(dielectric, pixel, 0);
     brdf_material m =
         brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
-    vec3 to_viewer = normalize(frame.camera_position - position);
+    vec3 to_viewer = unit(frame.camera_position - position);
     vec3 along = (dot(to_viewer, n) * n - to_viewer) * lean_of(brdf_alpha(m.roughness));
     vec3 radiance = BRDF_INV_PI * (light.irradiance + 1.5 * (along * light.vector));
     return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
@@ -75,14 +86,17 @@ vec3 reflected(ivec2 pixel, vec3 position, vec3 n, light_at_pixel light)
 
 void main()
 {
+    frame = frame_block;
+    push = push_of_all;
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
     float z = texelFetch(depth, pixel, 0).r;
     light_at_pixel light = light_at_pixel(vec3(0.0), mat3(0.0));
     vec3 radiance = vec3(0.0);
     if (z > 0.0) {
-        vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
-        vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
+        vec2 uv = (vec2(pixel) + 0.5) * vec2(push.per_view_width, push.per_view_height);
+        vec3 position = frame.camera_position + frame_view_distance(z) * frame_view_ray(uv);
+        vec3 n = unit(octahedral_direction(texelFetch(normal, pixel, 0).rg));
         vec3 place = radiosity_place_of(texelFetch(id, pixel, 0).rg, push.instances, position);
         if (place.z >= 0.0) light = light_at(place, n);
 #if SPECULAR

@@ -8,6 +8,7 @@
 #define SHADOW_MAPS_BINDING      3
 #define SHADOW_SUN_MAPS_BINDING  12
 #define RADIOSITY_TEXELS_BINDING 4
+#define FRAME_CONSTANTS_COPIED
 #include "frame/frame.glsl"
 #include "frame/light.glsl"
 #include "frame/shadow/shadow.glsl"
@@ -18,8 +19,9 @@ layout(local_size_x = RADIOSITY_LOCAL) in;
 
 layout(push_constant, scalar) uniform push_block
 {
-    radiosity_direct_push push;
+    radiosity_direct_push push_of_all;
 };
+radiosity_direct_push push; // a copy, as FRAME_CONSTANTS_COPIED
 layout(set = 0, binding = 5, scalar) readonly buffer frame_lights
 {
     frame_light frame_light_table[];
@@ -28,6 +30,8 @@ layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D radiosity_flux;
 
 void main()
 {
+    frame = frame_block;
+    push = push_of_all;
     if (gl_GlobalInvocationID.x >= push.count) return;
     uint i = push.first + gl_GlobalInvocationID.x;
     vec4 place = radiosity_texel_part(i, push.texels, RADIOSITY_POSITION); // w: area

@@ -1,6 +1,8 @@
 // Where light is shown: places of the light map and of triangles in it.
 #include "techniques/radiosity/radiosity_state.h"
 
+#include "frame/octahedral.h"
+
 uint32_t radiosity_place_word(const struct radiosity *s, size_t place)
 {
     const size_t width = s->map.charts.width, line = place / width;
@@ -43,11 +45,18 @@ static vec4s gradient_of(const struct chart_triangle *t, int axis)
 
 static void fill_triangle(const struct radiosity *s, uint32_t chart_triangle, vec4s *parts)
 {
-    if (chart_triangle == CHART_NONE) return;
+    const bool mapped = chart_triangle != CHART_NONE;
+    for (int axis = 0; axis < RADIOSITY_TRIANGLE_PARTS; axis++)
+        parts[axis] = mapped ? gradient_of(&s->map.charts.triangles[chart_triangle], axis)
+                             : vec4_of(vec3_of(0.0f, 0.0f, 0.0f), -1.0f);
+}
+
+static uint32_t front_of(const struct radiosity *s, uint32_t chart_triangle)
+{
+    if (chart_triangle == CHART_NONE) return RADIOSITY_ONE_SIDED;
     const struct chart_triangle *t = &s->map.charts.triangles[chart_triangle];
-    parts[0] = gradient_of(t, 0);
-    parts[1] = gradient_of(t, 1);
-    parts[2] = vec4_of(t->normal, s->map.back_of[t->chart] == CHART_NONE ? 1.0f : 2.0f);
+    return s->map.back_of[t->chart] == CHART_NONE ? RADIOSITY_ONE_SIDED
+                                                  : octahedral_pack(t->normal);
 }
 
 static bool upload_instances(struct radiosity *s)
@@ -61,6 +70,15 @@ static bool upload_instances(struct radiosity *s)
                                   &s->tables.instances);
 }
 
+static bool upload_fronts(struct radiosity *s, size_t triangles)
+{
+    uint32_t *fronts = host_alloc(s->host, radiosity_table_room(triangles), sizeof *fronts);
+    for (size_t i = 0; fronts && i < triangles; i++)
+        fronts[i] = front_of(s, s->map.chart_triangle[i]);
+    return radiosity_table_upload(s->host, s->gpu, "fronts", GPU_R32U, fronts, triangles,
+                                  &s->tables.fronts);
+}
+
 bool radiosity_upload_triangles(struct radiosity *s)
 {
     const size_t triangles = s->map.triangle_0[s->instances];
@@ -70,5 +88,5 @@ bool radiosity_upload_triangles(struct radiosity *s)
         fill_triangle(s, s->map.chart_triangle[i], parts + RADIOSITY_TRIANGLE_PARTS * i);
     return radiosity_table_upload(s->host, s->gpu, "triangles", GPU_RGBA32F, parts, count,
                                   &s->tables.triangles) &&
-           upload_instances(s);
+           upload_fronts(s, triangles) && upload_instances(s);
 }

@@ -28,7 +28,11 @@
 
 // Of a triangle of the scene: entry RADIOSITY_TRIANGLE_PARTS · triangle + part.
 // In the light map it is at x = u · (position, 1), y = v · (position, 1), in texels.
-#define RADIOSITY_TRIANGLE_PARTS 3 // u; v; normal of the front, number of sides in the map
+#define RADIOSITY_TRIANGLE_PARTS 2 // u; v: (0, 0, 0, −1) for triangles that are not in the map
+
+// Normal of the front of a triangle that has two sides in the map, as octahedral_pack (frame/
+// octahedral.h), which does not give this word: that of triangles with one.
+#define RADIOSITY_ONE_SIDED 0x8000u
 
 // Of a place of the light map: y above x, above both the side.
 #define RADIOSITY_PLACE_BITS 15
@@ -99,10 +103,17 @@ struct radiosity_seams_push {
 };
 
 struct radiosity_apply_push {
-    uint32_t width, height;
-    uint32_t instances; // later ones are not in the map
-    uint32_t has_dielectric;
+    float per_width, per_height;           // 1 / size of the light map
+    float per_view_width, per_view_height; // 1 / size of the view
+    uint32_t instances;                    // later ones are not in the map
 };
+
+// Specialization constants: the size of a workgroup in pixels; whether there is FRAME_DIELECTRIC.
+#define RADIOSITY_APPLY_WIDTH      0
+#define RADIOSITY_APPLY_HEIGHT     1
+#define RADIOSITY_APPLY_DIELECTRIC 2
+// Of all that find places: whether some triangles have two sides in the map.
+#define RADIOSITY_HAS_BACKS 3
 
 struct radiosity_view_push {
     uint32_t width, height; // of the light map
@@ -121,7 +132,7 @@ _Static_assert(sizeof(struct radiosity_gather_push) == 16, "layout is shared wit
 _Static_assert(sizeof(struct radiosity_smooth_push) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_map_push) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_seams_push) == 20, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_apply_push) == 16, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_apply_push) == 20, "layout is shared with GLSL");
 #endif
 
 #endif

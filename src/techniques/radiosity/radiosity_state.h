@@ -27,7 +27,8 @@ struct radiosity_rows {
 struct radiosity_tables {
     gpu_image texels, neighbours;               // of texels
     gpu_image clusters, spans, members, groups; // of clusters
-    gpu_image owners, instances, triangles;     // of the light map
+    gpu_image owners, instances;                // of the light map
+    gpu_image triangles, fronts;                // of the scene
     gpu_image places, seams;                    // beside seams
     gpu_image flux, light, smoothed;            // [texels] of the newest light
     gpu_image sent, radiosity[2];               // [clusters and nodes] likewise
@@ -38,7 +39,8 @@ struct radiosity_tables {
 };
 
 struct radiosity_pipelines {
-    gpu_pipeline direct, clusters, nodes, solve, gather, smooth, map, seams, apply, view;
+    gpu_pipeline direct, clusters, nodes, solve, gather, smooth, map, seams, view;
+    gpu_pipeline apply[2]; // [whether there is FRAME_DIELECTRIC], when first needed
 };
 
 // Stages of an update, in their order.

@@ -40,11 +40,9 @@ bool radiosity_table_create(struct host *host, struct gpu *gpu, const char *name
 bool radiosity_table_upload(struct host *host, struct gpu *gpu, const char *name,
                             enum gpu_format format, void *entries, size_t count, gpu_image *out)
 {
-    // Those that are loaded the most.
-    const uint32_t storage = gpu_format_bytes(format) == 16 ? (uint32_t)GPU_STORAGE : 0;
     const struct gpu_image_desc like = { .name = name,
                                          .format = format,
-                                         .usage = GPU_SAMPLED | storage };
+                                         .usage = GPU_SAMPLED | GPU_STORAGE };
     const size_t bytes = radiosity_table_room(count) * (size_t)gpu_format_bytes(format);
     const bool ok = entries && make(host, gpu, &like, count, out) &&
                     gpu_image_upload(gpu, *out, 0, 0, entries, bytes);

@@ -88,6 +88,7 @@ void radiosity_view_record(struct radiosity *s, struct gpu_cmd *cmd, const struc
                           { .name = "id", .image = layers[FRAME_ID] },
                           { .name = "radiosity_instances", .image = s->tables.instances },
                           { .name = "radiosity_triangles", .image = s->tables.triangles },
+                          { .name = "radiosity_fronts", .image = s->tables.fronts },
                           { .name = "radiosity_owners", .buffer = s->tables.owner_of_place },
                           { .name = "radiosity_labels", .buffer = s->tables.labels },
                           { .name = "target", .image = out }),

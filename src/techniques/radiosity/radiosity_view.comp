@@ -7,6 +7,7 @@
 #include "frame/octahedral.glsl"
 #define RADIOSITY_INSTANCES_BINDING 4
 #define RADIOSITY_TRIANGLES_BINDING 5
+#define RADIOSITY_FRONTS_BINDING    9
 #include "techniques/radiosity/radiosity_place.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL_2D, local_size_y = RADIOSITY_LOCAL_2D) in;
