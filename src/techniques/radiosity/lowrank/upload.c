@@ -2,6 +2,7 @@
 // not are left out.
 #include "techniques/radiosity/lowrank/lowrank.h"
 
+#include "core/half.h"
 #include "techniques/radiosity/radiosity_table.h"
 #include "techniques/radiosity/radiosity_tensors.h"
 
@@ -54,6 +55,32 @@ static bool check_sources(const struct upload *u)
         if (u->from.source[i] >= nodes)
             return host_fail(u->how->host, FAIL_FORMAT,
                              "bake of radiosity: a region's source of light is beyond %u", nodes);
+    return true;
+}
+
+// The norm of a region's transfer is a few times the square root of its texels, which the weights
+// of the components quadruple at most (basis.c): what a mode has is below the number of texels.
+static const float MOST_WEIGHT = RADIOSITY_REGION;
+
+static bool check_scales(const struct upload *u)
+{
+    for (size_t i = 0; i < u->to->regions * u->from.modes; i++)
+        if (!(u->from.scale[i] >= 0.0f && INT16_MAX * u->from.scale[i] <= MOST_WEIGHT))
+            return host_fail(u->how->host, FAIL_FORMAT,
+                             "bake of radiosity: the scale %g of a mode is not in 0…%g",
+                             (double)u->from.scale[i], (double)(MOST_WEIGHT / INT16_MAX));
+    return true;
+}
+
+// Irradiance: that of the first mode is a sum of form factors, others have 1 as the largest.
+static bool check_expansions(const struct upload *u)
+{
+    const size_t rows = u->to->regions * RADIOSITY_REGION * u->from.modes;
+    const uint16_t two = half_from_float(2.0f), sign = 0x8000;
+    for (size_t i = 0; i < rows; i++)
+        if ((u->from.expand[COMPONENTS * i] & ~sign) >= two)
+            return host_fail(u->how->host, FAIL_FORMAT,
+                             "bake of radiosity: the irradiance of a mode is not in -2…2");
     return true;
 }
 
@@ -245,7 +272,7 @@ bool radiosity_lowrank_init(struct radiosity_lowrank *out,
                                   .modes = radiosity_lowrank_modes(how->options) } };
     if (!find_tensors(&u, bake)) return false;
     if (out->regions == 0) return true;
-    const bool ok = check_sources(&u) && upload_all(&u);
+    const bool ok = check_sources(&u) && check_scales(&u) && check_expansions(&u) && upload_all(&u);
     host_free(how->host, u.regions);
     return ok;
 }
