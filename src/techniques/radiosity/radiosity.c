@@ -273,11 +273,12 @@ static uint64_t rows_bytes(uint64_t rows, uint64_t bytes)
            table_bytes(rows / RADIOSITY_TILE, 8);
 }
 
-// Of a light map that charts fill by two thirds, on one side, with a triangle for each texel.
+// Of a light map with the texels wanted, on one side, that charts fill by two thirds, with a
+// triangle for each texel.
 static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t height)
 {
     const struct radiosity_options *o = options;
-    const uint64_t texels = (uint64_t)o->texels * 2 / 3;
+    const uint64_t texels = (uint64_t)o->texels, places = texels * 3 / 2;
     const uint64_t clusters = texels / (uint64_t)(o->cluster * o->cluster) + 1;
     const uint64_t nodes = 2 * clusters, sources = (uint64_t)o->sources;
     (void)width;
@@ -294,8 +295,7 @@ static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t he
     const uint64_t of_scene = table_bytes(RADIOSITY_TRIANGLE_PARTS * texels, 16) +
                               table_bytes(texels, 4) + table_bytes(1, 8) + table_bytes(1, 16) +
                               table_bytes(1, 4);
-    const uint64_t of_map =
-        table_bytes((uint64_t)o->texels, 8) + 2 * 8 * RADIOSITY_LAYERS * (uint64_t)o->texels;
+    const uint64_t of_map = table_bytes(places, 8) + 2 * 8 * RADIOSITY_LAYERS * places;
     return of_texels + of_clusters + of_scene + of_map + radiosity_probes_memory(o);
 }
 
