@@ -3,6 +3,7 @@
 
 #include "core/rng.h"
 #include "scene/charts/charts.h"
+#include "scene/charts/raster.h"
 #include "scene/charts/unwrap.h"
 
 #include <math.h>
@@ -274,6 +275,64 @@ TEST(a_spiral_does_not_overlap_itself)
     host_free(test_host(), taken);
     check_rectangles_are_apart(&charts);
     check_texels_lie_on_triangles(&charts);
+    charts_finish(&charts);
+    close_scene(scene, &pose);
+}
+
+// Smooth pleats, each of which hangs over the one before: seen from above a fifth of the length is
+// covered three times.
+static struct scene *pleats(void)
+{
+    enum { PLEATS = 3, STEPS = 32, ROWS = PLEATS * STEPS + 1 };
+    vec3s positions[2 * ROWS];
+    uint32_t indices[6 * (ROWS - 1)];
+    for (uint32_t i = 0; i < 2 * ROWS; i++) {
+        const float at = 6.2831853f * (float)(i / 2) / STEPS;
+        positions[i] = vec3_of(0.2f * at - 0.4f * sinf(at), 0.1f * at, i % 2 ? 0.0f : 1.0f);
+    }
+    for (uint32_t i = 0; i + 1 < ROWS; i++) {
+        const uint32_t quad[6] = { 0, 1, 2, 1, 3, 2 };
+        for (uint32_t k = 0; k < 6; k++) indices[6 * i + k] = 2 * i + quad[k];
+    }
+    const struct mesh mesh = { .vertex_count = 2 * ROWS,
+                               .index_count = 6 * (ROWS - 1),
+                               .positions = positions,
+                               .indices = indices,
+                               .material = -1 };
+    return scene_of(&mesh, 1);
+}
+
+enum { FINE = 8 }; // parts of a texel's side
+
+struct fine_raster {
+    uint8_t *taken;
+    size_t width;
+};
+
+static bool mark_part(void *user, int32_t x, int32_t y)
+{
+    struct fine_raster *raster = user;
+    return mark(raster->taken, (uint32_t)((size_t)y * raster->width + (size_t)x));
+}
+
+TEST(a_folded_strip_does_not_overlap_itself_by_an_eighth_of_a_texel)
+{
+    struct scene *scene = pleats();
+    struct scene_pose pose;
+    struct charts charts;
+    const struct charts_options options = { .texels_per_m = 20.0f, .max_texels = 1u << 20 };
+    CHECK(pose_init(&pose, scene, -1, 0.0f));
+    CHECK(charts_init(&charts, test_host(), &pose, &options));
+    struct fine_raster raster = { NULL, (size_t)FINE * charts.width };
+    raster.taken = host_alloc(test_host(), raster.width * FINE * charts.height, 1);
+    for (uint32_t i = 0; i < charts.triangle_count; i++) {
+        struct raster_triangle t;
+        for (int k = 0; k < 6; k++)
+            t.at[k / 2][k % 2] = FINE * (double)charts.triangles[i].place[k / 2].raw[k % 2];
+        CHECK(raster_centres(&t, mark_part, &raster));
+    }
+    CHECK(charts.count >= 4); // up and over, twice at least
+    host_free(test_host(), raster.taken);
     charts_finish(&charts);
     close_scene(scene, &pose);
 }
