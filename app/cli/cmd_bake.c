@@ -131,7 +131,7 @@ static void describe_stages(const json_t *stages)
 static void describe(const json_t *report)
 {
     describe_stages(json_object_get(report, "stages"));
-    note("baked in %.1f s, at most %.0f MB of memory, %.1f MB of arrays",
+    note("baked in %.1f s, at most %.0f MB of memory with the scene, %.1f MB of arrays",
          json_number_value(json_object_get(report, "seconds")),
          json_number_value(json_object_get(report, "peak_memory_bytes")) * 1e-6,
          json_number_value(json_object_get(report, "bytes")) * 1e-6);
