@@ -87,6 +87,27 @@ static bool make_light_maps(struct radiosity *s)
            gpu_sampler_get(s->gpu, &linear, &s->linear);
 }
 
+// Rows of pixels suit the caches of a processor, squares those of a GPU.
+static bool make_lookups(struct radiosity *s)
+{
+    struct radiosity_pipelines *p = &s->pipelines;
+    const bool rows = gpu_info(s->gpu)->type == GPU_CPU;
+    p->apply_width = rows ? 64 : RADIOSITY_LOCAL_2D;
+    p->apply_height = rows ? 1 : RADIOSITY_LOCAL_2D;
+    for (uint32_t dielectric = 0; dielectric < 2; dielectric++) {
+        const struct gpu_constant constants[] = { { RADIOSITY_APPLY_WIDTH, p->apply_width },
+                                                  { RADIOSITY_APPLY_HEIGHT, p->apply_height },
+                                                  { RADIOSITY_APPLY_DIELECTRIC, dielectric },
+                                                  { RADIOSITY_HAS_BACKS, s->sides == 2 } };
+        if (!gpu_compute_pipeline_create(s->gpu, "apply",
+                                         s->options.specular ? &shader_radiosity_apply_specular_comp
+                                                             : &shader_radiosity_apply_diffuse_comp,
+                                         constants, 4, &p->apply[dielectric]))
+            return false;
+    }
+    return true;
+}
+
 static bool make_pipelines(struct radiosity *s)
 {
     struct radiosity_pipelines *p = &s->pipelines;
@@ -108,7 +129,7 @@ static bool make_pipelines(struct radiosity *s)
         if (!gpu_compute_pipeline_create(s->gpu, rows[i].name, rows[i].shader, NULL, 0,
                                          rows[i].out))
             return false;
-    return true;
+    return make_lookups(s);
 }
 
 static bool load(void *state, const struct tensors *bake)

@@ -1,8 +1,6 @@
 // The passes of a frame.
 #include "techniques/radiosity/radiosity_state.h"
 
-#include "technique_shaders.h"
-
 // Rows of a stage.
 struct span {
     uint32_t first, count;
@@ -258,42 +256,17 @@ void radiosity_record_part(struct radiosity *s, struct gpu_cmd *cmd, const struc
     if (part->first + part->count == radiosity_stage_rows(s, part->stage)) record_end(s, cmd, part);
 }
 
-// Of the lookup. Rows of pixels suit the caches of a processor, squares those of a GPU.
-static struct local_size {
-    uint32_t width, height;
-} local_size_of(const struct radiosity *s)
-{
-    if (gpu_info(s->gpu)->type == GPU_CPU) return (struct local_size){ 64, 1 };
-    return (struct local_size){ RADIOSITY_LOCAL_2D, RADIOSITY_LOCAL_2D };
-}
-
-static bool prepare_apply(struct radiosity *s, bool has_dielectric, gpu_pipeline *out)
-{
-    const struct local_size local = local_size_of(s);
-    const struct gpu_constant constants[] = { { RADIOSITY_APPLY_WIDTH, local.width },
-                                              { RADIOSITY_APPLY_HEIGHT, local.height },
-                                              { RADIOSITY_APPLY_DIELECTRIC, has_dielectric },
-                                              { RADIOSITY_HAS_BACKS, s->sides == 2 } };
-    return out->id ||
-           gpu_compute_pipeline_create(s->gpu, "apply",
-                                       s->options.specular ? &shader_radiosity_apply_specular_comp
-                                                           : &shader_radiosity_apply_diffuse_comp,
-                                       constants, 4, out);
-}
-
 void radiosity_record_apply(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const gpu_image *layers = view->layers;
     const gpu_image dielectric = layers[FRAME_DIELECTRIC];
-    const struct local_size local = local_size_of(s);
+    const struct radiosity_pipelines *p = &s->pipelines;
     const struct radiosity_apply_push push = { 1.0f / (float)s->map.charts.width,
                                                1.0f / (float)s->map.charts.height,
                                                1.0f / (float)view->width,
                                                1.0f / (float)view->height, s->instances };
-    gpu_pipeline *const pipeline = &s->pipelines.apply[dielectric.id != 0];
-    if (!prepare_apply(s, dielectric.id != 0, pipeline)) return;
     gpu_scope_begin(cmd, "apply");
-    gpu_dispatch(cmd, *pipeline,
+    gpu_dispatch(cmd, p->apply[dielectric.id != 0],
                  GPU_BIND(view->constants_binding, view->ggx_albedo_binding,
                           { .name = "depth", .image = layers[FRAME_DEPTH] },
                           { .name = "normal", .image = layers[FRAME_NORMAL] },
@@ -310,7 +283,7 @@ void radiosity_record_apply(struct radiosity *s, struct gpu_cmd *cmd, const stru
                             .sampler = s->linear },
                           { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
                           { .name = "specular", .image = layers[FRAME_SPECULAR] }),
-                 &push, sizeof push, gpu_groups(view->width, local.width),
-                 gpu_groups(view->height, local.height), 1);
+                 &push, sizeof push, gpu_groups(view->width, p->apply_width),
+                 gpu_groups(view->height, p->apply_height), 1);
     gpu_scope_end(cmd);
 }

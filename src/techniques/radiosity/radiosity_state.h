@@ -40,7 +40,8 @@ struct radiosity_tables {
 
 struct radiosity_pipelines {
     gpu_pipeline direct, clusters, nodes, solve, gather, smooth, map, seams, view;
-    gpu_pipeline apply[2]; // [whether there is FRAME_DIELECTRIC], when first needed
+    gpu_pipeline apply[2];              // [whether there is FRAME_DIELECTRIC]
+    uint32_t apply_width, apply_height; // of their workgroups
 };
 
 // Stages of an update, in their order.
