@@ -1,5 +1,7 @@
 #include "techniques/dnrt/sphere_fixture.h"
 
+#include "framework/test.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -105,4 +107,26 @@ int crate_fixture_add(struct scene *scene, int material)
                                .indices = indices,
                                .material = material };
     return scene_add_mesh(scene, &mesh);
+}
+
+void traced_shape_open(struct traced_shape *shape, const struct material *material,
+                       int (*add)(struct scene *, int material))
+{
+    const struct node node = node_default();
+    shape->scene = scene_create(test_host(), "shape");
+    const int mesh = add(shape->scene, scene_add_material(shape->scene, material));
+    const struct instance it = { .node = scene_add_node(shape->scene, &node),
+                                 .mesh = mesh,
+                                 .skin = -1 };
+    CHECK(scene_add_instance(shape->scene, &it) == 0);
+    CHECK(pose_init(&shape->pose, shape->scene, -1, 0));
+    shape->trace = trace_scene_create(test_host(), &shape->pose);
+    assert_non_null(shape->trace);
+}
+
+void traced_shape_close(struct traced_shape *shape)
+{
+    trace_scene_destroy(shape->trace);
+    pose_finish(&shape->pose);
+    scene_destroy(shape->scene);
 }

@@ -7,37 +7,8 @@
 
 #include "core/rng.h"
 #include "core/sampling.h"
-#include "trace/trace.h"
 
 #include <math.h>
-
-struct ball {
-    struct scene *scene;
-    struct scene_pose pose;
-    struct trace_scene *trace;
-};
-
-static void ball_open(struct ball *ball)
-{
-    const struct material material = material_default();
-    const struct node node = node_default();
-    ball->scene = scene_create(test_host(), "ball");
-    const int mesh = sphere_fixture_add(ball->scene, scene_add_material(ball->scene, &material));
-    const struct instance it = { .node = scene_add_node(ball->scene, &node),
-                                 .mesh = mesh,
-                                 .skin = -1 };
-    CHECK(scene_add_instance(ball->scene, &it) == 0);
-    CHECK(pose_init(&ball->pose, ball->scene, -1, 0));
-    ball->trace = trace_scene_create(test_host(), &ball->pose);
-    assert_non_null(ball->trace);
-}
-
-static void ball_close(struct ball *ball)
-{
-    trace_scene_destroy(ball->trace);
-    pose_finish(&ball->pose);
-    scene_destroy(ball->scene);
-}
 
 // What the sphere hides of an irradiance of π: ∫ (ω·n)₊ dω.
 static double hidden_exactly(vec3s point, vec3s n)
@@ -60,7 +31,8 @@ static double hidden_exactly(vec3s point, vec3s n)
 }
 
 // The same from the volumes, with the weights of dnrt_receiver.glsl.
-static double hidden_by(const struct ball *ball, int normals, vec3s point, vec3s n, uint32_t seed)
+static double hidden_by(const struct traced_shape *ball, int normals, vec3s point, vec3s n,
+                        uint32_t seed)
 {
     const struct dnrt_sampling how = { ball->trace, vec3_of(0, 0, 0), 1, 1, 256, normals, false };
     struct dnrt_transfer at;
@@ -90,7 +62,7 @@ struct errors {
 };
 
 // Of receivers at a distance in all directions whose normals have this angle to the nearest axis.
-static struct errors errors_at(const struct ball *ball, float degrees, float distance)
+static struct errors errors_at(const struct traced_shape *ball, float degrees, float distance)
 {
     enum { RECEIVERS = 400 };
     struct errors errors = { { 0 } };
@@ -115,8 +87,9 @@ static struct errors errors_at(const struct ball *ball, float degrees, float dis
 
 TEST(several_normals_have_the_lower_error_of_oblique_receivers_nearby)
 {
-    struct ball ball;
-    ball_open(&ball);
+    struct traced_shape ball;
+    const struct material material = material_default();
+    traced_shape_open(&ball, &material, sphere_fixture_add);
     for (int d = 0; d < 3; d++)
         for (int a = 0; a < 4; a++) {
             const float distance = (const float[]){ 1.2f, 1.5f, 2.5f }[d];
@@ -127,5 +100,5 @@ TEST(several_normals_have_the_lower_error_of_oblique_receivers_nearby)
             CHECK(at.of[1] < 0.5 * at.of[0] && at.of[2] < 0.5 * at.of[0]);
             if (degrees == 0) CHECK(at.of[2] < 0.01);
         }
-    ball_close(&ball);
+    traced_shape_close(&ball);
 }

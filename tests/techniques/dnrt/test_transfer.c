@@ -11,7 +11,6 @@
 #include "core/half.h"
 #include "core/rng.h"
 #include "core/sh.h"
-#include "trace/trace.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,9 +18,7 @@
 // ---- a unit sphere
 
 struct ball {
-    struct scene *scene;
-    struct scene_pose pose;
-    struct trace_scene *trace;
+    struct traced_shape of;
     struct dnrt_sampling how;
 };
 
@@ -32,17 +29,8 @@ static void object_open(struct ball *ball, float albedo, int (*add)(struct scene
     material.base_color = vec4_of(vec3_of(albedo, albedo, albedo), 1);
     material.metallic = 0;
     material.specular = 0; // its reflectance is the albedo
-    ball->scene = scene_create(test_host(), "ball");
-    const int mesh = add(ball->scene, scene_add_material(ball->scene, &material));
-    const struct node node = node_default();
-    const struct instance it = { .node = scene_add_node(ball->scene, &node),
-                                 .mesh = mesh,
-                                 .skin = -1 };
-    CHECK(scene_add_instance(ball->scene, &it) == 0);
-    CHECK(pose_init(&ball->pose, ball->scene, -1, 0));
-    ball->trace = trace_scene_create(test_host(), &ball->pose);
-    assert_non_null(ball->trace);
-    ball->how = (struct dnrt_sampling){ ball->trace, vec3_of(0, 0, 0), 1.0f, 3, 1024, 1, false };
+    traced_shape_open(&ball->of, &material, add);
+    ball->how = (struct dnrt_sampling){ ball->of.trace, vec3_of(0, 0, 0), 1.0f, 3, 1024, 1, false };
 }
 
 static void ball_open(struct ball *ball, float albedo)
@@ -52,9 +40,7 @@ static void ball_open(struct ball *ball, float albedo)
 
 static void ball_close(struct ball *ball)
 {
-    trace_scene_destroy(ball->trace);
-    pose_finish(&ball->pose);
-    scene_destroy(ball->scene);
+    traced_shape_close(&ball->of);
 }
 
 // ---- closed forms: a unit sphere of albedo 1, its centre at distance d along `towards`
@@ -316,9 +302,9 @@ static void check_points(float albedo, int (*add)(struct scene *, int), float ex
     struct dnrt_part part;
     struct dnrt_patches patches;
     object_open(&bowl, albedo, add);
-    bowl.scene->instances[0].movable = true;
-    CHECK(dnrt_objects_init(&objects, test_host(), &bowl.pose, 1));
-    CHECK(dnrt_part_init(&part, test_host(), &bowl.pose, &objects, 0));
+    bowl.of.scene->instances[0].movable = true;
+    CHECK(dnrt_objects_init(&objects, test_host(), &bowl.of.pose, 1));
+    CHECK(dnrt_part_init(&part, test_host(), &bowl.of.pose, &objects, 0));
     CHECK(dnrt_patches_init(&patches, test_host(), &part));
     bowl.how.rays = 1024;
     const float y00 = 0.28209479f;
