@@ -244,6 +244,8 @@ static bool read_stage(const struct reading *r, struct planned_stage *stage)
     const struct tensor *tasks = find_in(r, "tasks", stage->what.name);
     if (!tasks) return true;
     if (!tasks_are_ascending(tasks, stage->what.task_count)) return fail_part(r, stage->what.name);
+    // Its results are complete: reduced, and freed where no later wave reads them.
+    if (stage->what.wave < r->bake->plan.waves_done) return true;
     for (int i = 0; i < stage->what.output_count; i++)
         if (!read_output(r, stage, &stage->outputs[i], tasks)) return false;
     if (r->commit) mark_done(r, stage, tasks);

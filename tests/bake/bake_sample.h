@@ -9,6 +9,7 @@
 struct bake_sample {
     int rows;         // of the matrix
     double task_s;    // least time of a task of the first wave, by polling for cancellation
+    double last_s;    // the same of the last wave
     int failing_task; // of the first stage; -1: none
     atomic_int runs;  // tasks run, of all stages
     atomic_int prepared, finished;

@@ -181,6 +181,47 @@ TEST(bake_in_shards_merges_to_the_same_bytes_in_any_order)
     }
 }
 
+static bool until_last_wave(void *user, const struct bake_progress *progress)
+{
+    const struct bake_sample *sample = user;
+    (void)progress;
+    return sample->runs <= 7 + 5 + 1;
+}
+
+// A checkpoint beyond the waves that the sum and the matrix are kept for, and complete parts of the
+// first wave.
+static void write_checkpoint_of_last_wave(const char *path)
+{
+    struct bake_sample sample = bake_sample_default();
+    sample.last_s = 30.0;
+    struct bake *bake = bake_sample_create(&sample, NULL);
+    CHECK(!bake_run(bake, &(struct bake_run_options){ .threads = 1,
+                                                      .checkpoint = path,
+                                                      .progress = until_last_wave,
+                                                      .user = &sample }));
+    bake_destroy(bake);
+}
+
+TEST(bake_merges_checkpoints_of_later_waves_with_parts_in_any_order)
+{
+    const char *checkpoint = test_path("last-wave"), *part = test_path("part");
+    const char *path = test_path("of-both.safetensors");
+    write_checkpoint_of_last_wave(checkpoint);
+    bake_shard(0, 2, part);
+    for (int order = 0; order < 2; order++) {
+        struct bake_sample sample = bake_sample_default();
+        struct bake *bake = bake_sample_create(&sample, NULL);
+        CHECK(bake_merge(bake, order ? part : checkpoint));
+        CHECK(bake_merge(bake, order ? checkpoint : part));
+        CHECK(bake_merge(bake, part));
+        CHECK(bake_run(bake, &(struct bake_run_options){ 0 }));
+        CHECK(sample.runs == 4); // the last wave
+        CHECK(bake_save(bake, path, false));
+        bake_destroy(bake);
+        check_same(bake_sample_bytes(path), bake_on(1));
+    }
+}
+
 TEST(bake_does_what_a_missing_shard_left)
 {
     struct bake_sample sample = bake_sample_default();
