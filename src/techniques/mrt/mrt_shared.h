@@ -12,16 +12,17 @@
 #define MRT_FACE_SAMPLES  32  // texels of a face of clutter that lights are computed at, at most
 
 // Specialization constants.
-#define MRT_CONSTANT_HALF    0 // operators are half floats, else floats
-#define MRT_CONSTANT_QUADS_B 1 // k_b / 4
-#define MRT_CONSTANT_QUADS_R 2 // k_r / 4
-#define MRT_CONSTANT_VALUES  3 // per texel: 1 irradiance, 4 irradiance by normal (OHLSH)
-#define MRT_CONSTANT_PROBES  4 // bool: surfaces inside blocks are lit by probes
-#define MRT_CONSTANT_AFFINE  5 // bool: all warps of the level are affine
-#define MRT_CONSTANT_TUBES   6 // bool: blocks are tubes, else cubes
-#define MRT_CONSTANT_CLUTTER 7 // bool: some openings are clutter
-#define MRT_CONSTANT_SIGHT   8 // voxels along an edge of a block that see probes; 0: all are seen
-#define MRT_MAX_QUADS        16
+#define MRT_CONSTANT_HALF     0 // operators are half floats, else floats
+#define MRT_CONSTANT_QUADS_B  1 // k_b / 4
+#define MRT_CONSTANT_QUADS_R  2 // k_r / 4
+#define MRT_CONSTANT_VALUES   3 // per texel: 1 irradiance, 4 irradiance by normal (OHLSH)
+#define MRT_CONSTANT_PROBES   4 // bool: surfaces inside blocks are lit by probes
+#define MRT_CONSTANT_AFFINE   5 // bool: all warps of the level are affine
+#define MRT_CONSTANT_TUBES    6 // bool: blocks are tubes, else cubes
+#define MRT_CONSTANT_CLUTTER  7 // bool: some openings are clutter
+#define MRT_CONSTANT_SIGHT    8 // voxels along an edge of a block that see probes; 0: all are seen
+#define MRT_CONSTANT_OUTDOORS 9 // bool: some places are not enclosed
+#define MRT_MAX_QUADS         16
 
 // A texel of the geometry image: the point of the scene where direct light is computed.
 struct mrt_texel {
@@ -123,7 +124,7 @@ struct mrt_gpu_clutter_move {
 };
 
 struct mrt_clutter_apply_push {
-    uint32_t instances, moved; // moved: there are moves
+    uint32_t instances, moved; // moved: instances with a row in mrt_clutter_moves, all or none
 };
 
 // A texel of the light map of clutter, and whose light it has.
@@ -133,7 +134,8 @@ struct mrt_gpu_clutter_place {
 };
 
 struct mrt_apply_push {
-    uint32_t clutter_is_lit; // where the alpha of irradiance is 1
+    // Columns of the image in which clutter is lit where the alpha of irradiance is 1: all or none.
+    int32_t clutter_columns;
 };
 
 struct mrt_clutter_fill_push {

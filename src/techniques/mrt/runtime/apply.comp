@@ -35,7 +35,7 @@ void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
-    if (push.clutter_is_lit != 0u && imageLoad(irradiance, pixel).a > 0.0) return;
+    if (pixel.x < push.clutter_columns && imageLoad(irradiance, pixel).a > 0.0) return;
     float z = texelFetch(depth, pixel, 0).r;
     vec3 result = vec3(0.0);
     if (z > 0.0)

@@ -5,13 +5,15 @@
 
 layout(set = 0, binding = MRT_OUTDOORS_BINDING) uniform sampler3D outdoors;
 
+layout(constant_id = MRT_CONSTANT_OUTDOORS) const bool OUTDOORS = false;
+
 const float MRT_OUTDOORS_OPEN = 0.5; // share of open probes around a place that is outdoors
 
 // rgb: irradiance, a: 1 outdoors, 0 enclosed. One step along the normal, the probes on the
 // surface's side of a wall weigh most; those behind it, in a room or a solid, are not open.
 vec4 outdoor_irradiance(vec3 position, vec3 normal)
 {
-    if (level.outdoors_z == 0) return vec4(0.0);
+    if (!OUTDOORS) return vec4(0.0);
     vec3 last = vec3(level.outdoors_x, level.outdoors_y, level.outdoors_z) - 1.0;
     vec3 at = (position - level.outdoors_m) / level.outdoors_spacing_m + normal;
     vec3 texel = clamp(at, vec3(0.0), last) + 0.5, size = vec3(textureSize(outdoors, 0));

@@ -11,7 +11,7 @@
 
 #include "technique_shaders.h"
 
-enum { VEC3_BYTES = 12, MAX_CONSTANTS = 9, VECTOR_VALUES = 4 };
+enum { VEC3_BYTES = 12, MAX_CONSTANTS = 10, VECTOR_VALUES = 4 };
 
 static bool make_buffers(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
@@ -89,6 +89,7 @@ static bool make_pipeline(struct mrt_runtime *runtime, const struct mrt_runtime_
         [MRT_CONSTANT_TUBES] = mrt_block_is_tube(&input->map->blocks[0]),
         [MRT_CONSTANT_CLUTTER] = input->clutter != NULL,
         [MRT_CONSTANT_SIGHT] = mrt_sight_voxels(input),
+        [MRT_CONSTANT_OUTDOORS] = input->images->outdoors.probes != NULL,
     };
     struct gpu_constant constants[MAX_CONSTANTS];
     int count = 0;
@@ -109,6 +110,7 @@ enum {
     TUBES = 1 << MRT_CONSTANT_TUBES,
     CLUTTER = 1 << MRT_CONSTANT_CLUTTER,
     SIGHT = 1 << MRT_CONSTANT_SIGHT,
+    OUTDOORS = 1 << MRT_CONSTANT_OUTDOORS,
     ALL = HALF | QUADS_B | QUADS_R | VALUES | CLUTTER,
 };
 
@@ -124,7 +126,7 @@ static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime
         { &p->reconstruct, "reconstruct", &shader_mrt_runtime_reconstruct_comp, ALL, 1 },
         { &p->fill, "fill", &shader_mrt_runtime_fill_comp, VALUES, 1 },
         { &p->apply, "apply", &shader_mrt_runtime_apply_comp,
-          VALUES | PROBES | AFFINE | TUBES | SIGHT, values },
+          VALUES | PROBES | AFFINE | TUBES | SIGHT | OUTDOORS, values },
         { &p->debug, "debug", &shader_mrt_runtime_debug_comp, AFFINE | TUBES, 0 },
     };
     const struct pipeline vector[] = {

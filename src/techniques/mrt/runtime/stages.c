@@ -220,7 +220,8 @@ void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     const struct mrt_runtime_buffers *b = &runtime->buffers;
     runtime->level.gain = gain;
     gpu_scope_begin(cmd, "apply");
-    const struct mrt_apply_push push = { mrt_record_clutter_pixels(runtime, cmd, view) };
+    const bool clutter_is_lit = mrt_record_clutter_pixels(runtime, cmd, view);
+    const struct mrt_apply_push push = { clutter_is_lit ? (int32_t)view->width : 0 };
     gpu_dispatch(
         cmd, runtime->pipelines.apply,
         GPU_BIND(

@@ -63,7 +63,7 @@ bool find_light(ivec2 pixel, out vec3 light)
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
     float z = texelFetch(depth, pixel, 0).r;
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
-    if (push.moved != 0u) {
+    if (instance < push.moved) {
         mrt_gpu_clutter_move move = move_table[instance];
         position = mat3(move.x, move.y, move.z) * position + move.by;
         n = mat3(move.x, move.y, move.z) * n;

@@ -261,7 +261,8 @@ bool mrt_record_clutter_pixels(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                                const struct frame_view *view)
 {
     const struct mrt_runtime_clutter_map *m = &runtime->clutter.map;
-    const struct mrt_clutter_apply_push push = { m->instance_count, m->moves != NULL };
+    const struct mrt_clutter_apply_push push = { m->instance_count,
+                                                 m->moves ? m->instance_count : 0 };
     if (m->tile_count == 0 || !view->layers[FRAME_ID].id) return false;
     gpu_dispatch(cmd, m->apply,
                  GPU_BIND(gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level),
