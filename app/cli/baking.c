@@ -183,8 +183,9 @@ enum status baking_run(struct baking *b, bool shard)
 {
     struct ag_bake_info info;
     ag_bake_get_info(b->bake, &info);
+    const bool run_it = !info.complete || shard; // which a complete bake refuses
     enum status status = info.complete ? DONE : estimate(b);
-    if (status == DONE && !info.complete) status = run(b);
+    if (status == DONE && run_it) status = run(b);
     return status == DONE ? write_file(b, shard) : status;
 }
 

@@ -18,8 +18,6 @@ struct job {
 
 static enum status check_usage(const struct arguments *a)
 {
-    if (a->shard_count > 0 && a->merge)
-        return wrong_usage("cannot use --shard with --merge: choose one");
     if ((a->shard_count > 0 || a->merge) && !a->output)
         return wrong_usage("cannot use --%s: it requires -o FILE.safetensors",
                            a->merge ? "merge" : "shard");
@@ -147,9 +145,21 @@ static enum status publish(struct job *job, json_t *report)
     return status == DONE && a->json ? json_print(json_incref(report)) : status;
 }
 
+// What to do with the parts of this shard and the others.
+static enum status describe_shard(const struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    struct ag_bake_info info;
+    ag_bake_get_info(job->baking.bake, &info);
+    note("written: %s, part %d of %d up to %s; with the others: afterglow bake --merge PART… -o "
+         "FILE",
+         a->output, a->shard, a->shard_count, info.split_stage ? info.split_stage : "the end");
+    return DONE;
+}
+
 static enum status report(struct job *job)
 {
-    if (job->arguments->shard_count > 0) return DONE;
+    if (job->arguments->shard_count > 0) return describe_shard(job);
     json_t *document = report_json(job);
     if (!document) return fail_library(job->session.context, AG_ERROR_MEMORY);
     enum status status = publish(job, document);
@@ -208,7 +218,10 @@ const struct command command_bake = {
         "  afterglow bake @maze --gi mrt --shard 0/2 -o part0.safetensors\n"
         "  afterglow bake @maze --gi mrt --shard 1/2 -o part1.safetensors\n"
         "  afterglow bake --merge part0.safetensors part1.safetensors -o all.safetensors\n"
-        "      two parts, on two machines, joined\n"
+        "      two parts, on two machines, joined, and the rest of the bake\n"
+        "  afterglow bake --merge part0.safetensors part1.safetensors --shard 0/2 -o "
+        "next0.safetensors\n"
+        "      joined, and half of the next work that is worth splitting\n"
         "  afterglow bake house.glb --lightmap maps\n"
         "      light map of radiosity: maps/irradiance.exr and maps/scene.glb\n"
         "  afterglow bake house.glb --lightmap maps --spp 256\n"

@@ -59,7 +59,7 @@ AG_API enum ag_result ag_bake_estimate(struct ag_bake *bake, bool probe,
                                        struct ag_bake_estimate *out);
 
 /// A file that keeps finished tasks, also while running; ag_bake_run resumes it, ag_bake_save
-/// removes it. NULL: none, as at first.
+/// and ag_bake_save_partial remove it. NULL: none, as at first.
 AG_API enum ag_result ag_bake_set_checkpoint(struct ag_bake *bake, const char *path);
 
 struct ag_bake_progress {
@@ -84,7 +84,9 @@ AG_API enum ag_result ag_bake_save(struct ag_bake *bake, const char *path, bool 
 /// Reads a file, untrusted, instead of a run. AG_ERROR_FORMAT if it is damaged or of another
 /// technique, version, scene or options; its seed may be any.
 AG_API enum ag_result ag_bake_load(struct ag_bake *bake, const char *path);
-/// Writes the finished tasks of a shard.
+/// Writes the finished tasks of a shard. A shard runs its part of the first tasks of the bake; with
+/// all parts merged, its part of the next tasks that are worth splitting, and so on until
+/// ag_bake_info.split_stage is NULL. A bake without a shard does the rest.
 AG_API enum ag_result ag_bake_save_partial(struct ag_bake *bake, const char *path);
 /// Adds the finished tasks of such a file, untrusted; ag_bake_run does the rest.
 AG_API enum ag_result ag_bake_merge(struct ag_bake *bake, const char *path);
@@ -105,7 +107,10 @@ struct ag_bake_info {
     bool complete;        ///< run to its end, or loaded
     double seconds;       ///< wall time of all runs; NaN: loaded from a file that does not state it
     uint64_t bytes;       ///< of its arrays; 0 until complete
-    uint64_t reserved[4]; ///< 0; see ABI in types.h
+    /// The costliest stage of those that a run with a shard would split now; NULL: what is left
+    /// is not worth splitting.
+    const char *split_stage;
+    uint64_t reserved[3]; ///< 0; see ABI in types.h
 };
 AG_API enum ag_result ag_bake_get_info(const struct ag_bake *bake, struct ag_bake_info *out);
 /// The report as a JSON document: technique, options, stages with their seconds, seconds,

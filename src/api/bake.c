@@ -334,7 +334,8 @@ enum ag_result ag_bake_get_info(const struct ag_bake *b, struct ag_bake_info *ou
                                   .options = bake_options_text(b->bake),
                                   .complete = bake_is_complete(b->bake),
                                   .seconds = bake_seconds(b->bake),
-                                  .bytes = bake_bytes(b->bake) };
+                                  .bytes = bake_bytes(b->bake),
+                                  .split_stage = bake_split_stage(b->bake) };
     bake_key(b->bake, out->key);
     return AG_OK;
 }

@@ -53,7 +53,7 @@ struct bake_progress {
 
 struct bake_run_options {
     int threads;               // 0: all cores
-    int shard, shard_count;    // run only this part of wave 0; count 0: everything
+    int shard, shard_count;    // run only this part (split.c); count 0: everything
     const char *checkpoint;    // file to resume from and to keep; NULL: none
     double checkpoint_every_s; // 0: only when cancelled
     uint64_t max_memory_bytes; // refuse a larger estimate; 0: no limit
@@ -64,14 +64,17 @@ struct bake_run_options {
 };
 // Runs what is missing. FAIL_CANCELLED: `progress` returned false; finished tasks are kept, also in
 // the checkpoint. A checkpoint of another identity, or a damaged one, is ignored with a warning. It
-// is read once, and removed by bake_save.
+// is read once, and removed by bake_save and bake_save_partial.
 bool bake_run(struct bake *bake, const struct bake_run_options *options);
 bool bake_is_complete(const struct bake *bake);
 
 // Partial files: a checkpoint of the finished tasks, by --shard. `merge` adds the tasks of a file;
-// bake_run then does the rest.
+// bake_run then does the rest, or with a shard a part of the next wave that is worth splitting.
 bool bake_save_partial(struct bake *bake, const char *path);
 bool bake_merge(struct bake *bake, const char *path);
+// The costliest stage of the wave that a run with a shard would split now; NULL: what is left is
+// not worth splitting.
+const char *bake_split_stage(const struct bake *bake);
 
 // What a partial file is a part of: new texts owned by the caller, and its seed.
 struct bake_origin {

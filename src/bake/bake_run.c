@@ -27,8 +27,19 @@ static bool check_memory(const struct bake *bake, const struct bake_run_options 
                      (double)options->max_memory_bytes / MIB, advice);
 }
 
+static bool check_shard(const struct bake *bake, const struct bake_run_options *options)
+{
+    if (options->shard_count <= 0 || split_wave(bake) < bake->plan.waves) return true;
+    return host_fail(
+        bake->host, FAIL_ARGUMENT,
+        "cannot bake part %d of %d of %s: the work that is left is not worth splitting; "
+        "finish it without a shard",
+        options->shard, options->shard_count, bake->identity.technique);
+}
+
 bool bake_run(struct bake *bake, const struct bake_run_options *options)
 {
+    if (!check_shard(bake, options)) return false;
     if (bake_is_complete(bake)) return true;
     if (!check_memory(bake, options) || !bake_resume(bake, options->checkpoint)) return false;
     return bake_is_complete(bake) || run_bake(bake, options, false);

@@ -46,6 +46,7 @@ struct bake {
     pthread_mutex_t memory; // of the host's allocator while tasks run
     double seconds;         // wall time of all runs; NaN: unknown
     double prepare_seconds; // of the newest run's job.prepare
+    bool has_parts;         // bake_merge has read a file
     char *checkpoint;       // that was read, or would have been; NULL: none
     // The result, once complete: of the plan's outputs, or of a file.
     struct safetensors file;
@@ -103,9 +104,13 @@ struct prediction prediction_now(const struct bake *bake, double per_flop_s);
 // Wall time of the missing tasks of this run, on so many threads.
 double prediction_left(const struct bake *bake, const struct prediction *prediction,
                        const struct bake_run_options *options, int threads);
-// The tasks of a stage that a run with these options covers: first … first + *count − 1.
-size_t run_tasks(const struct bake_stage *stage, const struct bake_run_options *options,
-                 size_t *count);
+// ---- split.c: shards
+
+// The wave that shards split now: the next of enough work; plan.waves: there is none.
+int split_wave(const struct bake *bake);
+// The tasks of a stage that a run with these options covers now: first … first + *count − 1.
+size_t run_tasks(const struct bake *bake, const struct bake_stage *stage,
+                 const struct bake_run_options *options, size_t *count);
 
 // ---- partial.c: finished tasks in a file
 

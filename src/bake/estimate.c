@@ -48,7 +48,7 @@ static void add_stages(const struct bake *bake, const struct bake_run_options *o
     for (int s = 0; s < bake->plan.stage_count; s++) {
         const struct planned_stage *stage = &bake->plan.stages[s];
         size_t tasks = 0;
-        run_tasks(&stage->what, options, &tasks);
+        run_tasks(bake, &stage->what, options, &tasks);
         out->rays += stage->what.rays * (double)tasks;
         out->texels += stage->what.texels * (double)tasks;
         for (int i = 0; i < stage->what.output_count; i++)

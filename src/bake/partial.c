@@ -321,5 +321,7 @@ bool partial_read(struct host *host, struct bake *bake, const char *path)
 
 bool bake_merge(struct bake *bake, const char *path)
 {
-    return bake_is_complete(bake) || partial_read(bake->host, bake, path);
+    if (bake_is_complete(bake)) return true;
+    bake->has_parts = true;
+    return partial_read(bake->host, bake, path);
 }

@@ -56,25 +56,11 @@ static double task_seconds(const struct planned_stage *stage, const struct predi
            stage->what.flops * p->per_flop_s;
 }
 
-size_t run_tasks(const struct bake_stage *stage, const struct bake_run_options *options,
-                 size_t *count)
-{
-    uint64_t part = 0;
-    *count = stage->task_count;
-    if (options->shard_count <= 0) return 0;
-    *count = 0;
-    if (stage->wave > 0) return 0;
-    const uint64_t first =
-        bake_rows(stage->task_count, (size_t)options->shard, (size_t)options->shard_count, &part);
-    *count = (size_t)part;
-    return (size_t)first;
-}
-
-static size_t missing_tasks(const struct planned_stage *stage,
+static size_t missing_tasks(const struct bake *bake, const struct planned_stage *stage,
                             const struct bake_run_options *options)
 {
     size_t count = 0, missing = 0;
-    const size_t first = run_tasks(&stage->what, options, &count);
+    const size_t first = run_tasks(bake, &stage->what, options, &count);
     for (size_t i = first; i < first + count; i++) missing += !stage->done[i];
     return missing;
 }
@@ -86,7 +72,7 @@ static double wave_left(const struct bake *bake, const struct prediction *p, int
     double work = 0.0, longest = 0.0;
     for (int s = 0; s < bake->plan.stage_count; s++) {
         const struct planned_stage *stage = &bake->plan.stages[s];
-        const size_t missing = stage->what.wave == wave ? missing_tasks(stage, options) : 0;
+        const size_t missing = stage->what.wave == wave ? missing_tasks(bake, stage, options) : 0;
         if (missing == 0) continue;
         const double each = task_seconds(stage, p);
         work += each * (double)missing;

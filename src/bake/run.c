@@ -358,7 +358,7 @@ static void fill_queue(struct bake_run *run, int wave)
         struct planned_stage *stage = &plan->stages[s];
         size_t count = 0;
         if (stage->what.wave != wave) continue;
-        const size_t first = run_tasks(&stage->what, run->options, &count);
+        const size_t first = run_tasks(run->bake, &stage->what, run->options, &count);
         for (size_t i = first; i < first + count; i++)
             if (!stage->done[i]) run->queue[run->queue_count++] = (struct queued_task){ stage, i };
     }
@@ -379,10 +379,17 @@ static bool run_wave(struct bake_run *run, int wave)
     return true;
 }
 
+// The waves of this run end before this one.
+static int end_of_run(const struct bake_run *run)
+{
+    if (run->probe) return 1;
+    return run->options->shard_count > 0 ? split_wave(run->bake) + 1 : run->bake->plan.waves;
+}
+
 static bool run_waves(struct bake_run *run)
 {
     struct bake_plan *plan = &run->bake->plan;
-    const int end = run->options->shard_count > 0 || run->probe ? 1 : plan->waves;
+    const int end = end_of_run(run);
     for (int wave = plan->waves_done; wave < end; wave++)
         if (!run_wave(run, wave)) return false;
     return plan->waves_done < plan->waves || run->bake->tensors || results_collect(run->bake);
@@ -409,6 +416,22 @@ static bool allocate_run(struct bake_run *run)
     return run->queue && run->messages;
 }
 
+// Tasks of a wave of which the merged files have others.
+static void warn_of_missing_parts(const struct bake *bake)
+{
+    size_t missing = 0, all = 0;
+    for (int s = 0; s < bake->plan.stage_count; s++) {
+        const struct planned_stage *stage = &bake->plan.stages[s];
+        if (stage->what.wave != bake->plan.waves_done) continue;
+        all += stage->what.task_count;
+        missing += stage->what.task_count - stage->done_count;
+    }
+    if (missing > 0 && missing < all)
+        host_log(bake->host, LOG_WARNING,
+                 "a part is missing: %zu of %zu tasks are in none of the merged files and run now",
+                 missing, all);
+}
+
 bool run_bake(struct bake *bake, const struct bake_run_options *options, bool probe)
 {
     struct bake_run run = { .bake = bake,
@@ -418,6 +441,7 @@ bool run_bake(struct bake *bake, const struct bake_run_options *options, bool pr
                             .begun_s = now_s(),
                             .per_flop_s = prediction_flop_seconds(bake->host) };
     run.checkpoint_s = run.begun_s;
+    if (bake->has_parts && options->shard_count <= 0 && !probe) warn_of_missing_parts(bake);
     pthread_cond_init(&run.ended, NULL);
     const bool ok = allocate_run(&run) && run_job(&run);
     bake->seconds = run_seconds(&run);
@@ -429,5 +453,7 @@ bool run_bake(struct bake *bake, const struct bake_run_options *options, bool pr
 
 bool bake_save_partial(struct bake *bake, const char *path)
 {
-    return write_now(bake->host, bake, path, bake->seconds);
+    if (!write_now(bake->host, bake, path, bake->seconds)) return false;
+    if (bake->checkpoint) remove(bake->checkpoint); // the file has its tasks
+    return true;
 }

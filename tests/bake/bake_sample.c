@@ -155,7 +155,8 @@ static bool add_other_waves(struct bake_plan *plan, const struct bake_sample *sa
                                                      .task_count = 4,
                                                      .run = round_modes,
                                                      .outputs = &rounded,
-                                                     .output_count = 1 });
+                                                     .output_count = 1,
+                                                     .flops = 1e6 });
 }
 
 struct bake_sample bake_sample_default(void)

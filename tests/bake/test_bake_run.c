@@ -222,13 +222,61 @@ TEST(bake_merges_checkpoints_of_later_waves_with_parts_in_any_order)
     }
 }
 
-TEST(bake_does_what_a_missing_shard_left)
+// Both parts of a round. before: the parts of the round before, NULL in the first.
+static void bake_round(const char *const before[2], const char *const parts[2])
+{
+    for (int i = 0; i < 2; i++) {
+        struct bake_sample sample = bake_sample_default();
+        struct bake *bake = bake_sample_create(&sample, NULL);
+        for (int k = 0; before && k < 2; k++) CHECK(bake_merge(bake, before[k]));
+        CHECK(bake_run(bake, &(struct bake_run_options){ .shard = i, .shard_count = 2 }));
+        CHECK(bake_save_partial(bake, parts[i]));
+        bake_destroy(bake);
+    }
+}
+
+// The last wave has a twelfth of the cost.
+TEST(bake_in_rounds_of_shards_gives_the_same_bytes)
+{
+    const char *const first[] = { test_path("round-0-a"), test_path("round-0-b") };
+    const char *const last[] = { test_path("round-1-a"), test_path("round-1-b") };
+    const char *path = test_path("rounds.safetensors");
+    bake_round(NULL, first);
+    bake_round(first, last);
+    struct bake_sample sample = bake_sample_default();
+    struct bake *bake = bake_sample_create(&sample, NULL);
+    CHECK(bake_merge(bake, last[0]) && !bake_is_complete(bake) && bake_split_stage(bake));
+    CHECK(bake_merge(bake, last[1]) && bake_is_complete(bake) && !bake_split_stage(bake));
+    CHECK(sample.runs == 0);
+    CHECK(!bake_run(bake, &(struct bake_run_options){ .shard_count = 2 }));
+    CHECK(strstr(test_last_message(), "not worth splitting"));
+    CHECK(bake_save(bake, path, false));
+    bake_destroy(bake);
+    check_same(bake_sample_bytes(path), bake_on(1));
+}
+
+TEST(bake_of_a_shard_leaves_no_checkpoint)
+{
+    struct bake_sample sample = bake_sample_default();
+    const struct bake_run_options options = { .shard_count = 2,
+                                              .checkpoint = test_path("part.checkpoint"),
+                                              .checkpoint_every_s = 1e-3 };
+    sample.task_s = 0.2;
+    struct bake *bake = bake_sample_create(&sample, NULL);
+    CHECK(bake_run(bake, &options) && access(options.checkpoint, F_OK) == 0);
+    CHECK(bake_save_partial(bake, test_path("part")) && access(options.checkpoint, F_OK) != 0);
+    bake_destroy(bake);
+}
+
+TEST(bake_does_what_a_missing_shard_left_and_says_so)
 {
     struct bake_sample sample = bake_sample_default();
     struct bake *bake = bake_sample_create(&sample, NULL);
     const char *shard = test_path("only"), *path = test_path("completed.safetensors");
     bake_shard(1, 3, shard);
+    test_forget_messages();
     CHECK(bake_merge(bake, shard) && bake_run(bake, &(struct bake_run_options){ 0 }));
+    CHECK(strstr(test_last_message(), "a part is missing: 8 of 12 tasks"));
     CHECK(sample.runs > 5 && sample.runs < 17 && bake_save(bake, path, false));
     bake_destroy(bake);
     check_same(bake_sample_bytes(path), bake_on(1));

@@ -399,7 +399,8 @@ static bool add_gathers(struct bake_plan *plan, const struct mrt_bake_job *job,
 {
     bool ok = true;
     if (job->maze == MRT_TUNNEL)
-        for (int i = 0; ok && i < job->baked; i++) ok = mrt_tube_gather(plan, job, i);
+        for (int i = 0; ok && i < job->baked; i++)
+            ok = mrt_tube_gather(plan, job, i) && mrt_tube_vector_gather(plan, job, i);
     else
         for (int m = 0; ok && m < 3; m++) ok = add_gather(plan, job, m);
     for (int i = 0; ok && i < job->baked; i++) ok = add_direct(plan, job, shape[i]);
@@ -433,8 +434,6 @@ bool mrt_dictionary_bake(struct bake_plan *plan, const struct mrt_dictionary_opt
     ok = ok && add_gathers(plan, job, shape);
     for (int i = 0; ok && i < job->baked; i++)
         ok = add_modes(plan, job, shape[i]) && (!full || add_spectrum(plan, job, shape[i]));
-    for (int i = 0; ok && job->maze == MRT_TUNNEL && i < job->baked; i++)
-        ok = mrt_tube_vector_gather(plan, job, i);
     return ok && add_directions(plan, job, shape) &&
            (job->maze != MRT_TUNNEL || mrt_tube_mirror_directions(plan, job)) &&
            mrt_interface_bake(plan, job);

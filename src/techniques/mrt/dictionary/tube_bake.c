@@ -175,7 +175,7 @@ static bool add_vector_gather(struct bake_plan *plan, const struct mrt_bake_job 
     return bake_plan_add(plan,
                          &(struct bake_stage){
                              .name = bake_plan_name(plan, "tube %d gather by normal", stage->shape),
-                             .wave = WAVE_MODES,
+                             .wave = WAVE_GATHER,
                              .task_count = tasks_of(rows),
                              .run = run_vector_gather,
                              .argument = stage,
