@@ -2,7 +2,7 @@
 # The reference implementation of safetensors reads our files.   safetensors_python.sh TEST_PROGRAM
 set -eu
 python3 -c 'import numpy, safetensors' 2>/dev/null || {
-    echo "skipped: python3 has no numpy or no safetensors"
+    echo "skipped: no numpy or safetensors for python3"
     exit 77
 }
 folder=$(mktemp -d)

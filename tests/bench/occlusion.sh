@@ -2,7 +2,7 @@
 # occlusion.sh OCCLUSION AFTERGLOW: a small run on one scene: a row for each technique, cones closer to rays with the same decay than
 # vo with its radius of half a metre, maps, and refused command lines.
 set -eu
-"$2" list --json | grep -q '"index": 0' || exit 77 # no device
+"$2" list --json | grep -q '"index": 0' || { echo "skipped: no Vulkan device"; exit 77; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 fail() { echo "$1"; exit 1; }

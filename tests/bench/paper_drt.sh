@@ -2,7 +2,7 @@
 # paper_drt.sh PAPER_DRT AFTERGLOW: @cornell with a small dictionary, which is baked once: a row for each variant, whose
 # stages are those of its operators; refused command lines.
 set -eu
-"$2" list --json | grep -q '"index": 0' || exit 77 # no device
+"$2" list --json | grep -q '"index": 0' || { echo "skipped: no Vulkan device"; exit 77; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 fail() { echo "$1"; exit 1; }

@@ -2,7 +2,7 @@
 # paper_lpv.sh PAPER_LPV AFTERGLOW: a small run on one scene: a row for each technique, a scanline of irradiance, a plot and an
 # image; scenes with a missing file are skipped with a message; refused command lines.
 set -eu
-"$2" list --json | grep -q '"index": 0' || exit 77 # no device
+"$2" list --json | grep -q '"index": 0' || { echo "skipped: no Vulkan device"; exit 77; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 fail() { echo "$1"; exit 1; }

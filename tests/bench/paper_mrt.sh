@@ -2,7 +2,7 @@
 # paper_mrt.sh PAPER_MRT AFTERGLOW: two mazes with a small dictionary, which is baked once: rows and curves of both figures; a small
 # table 3.3; refused command lines.
 set -eu
-"$2" list --json | grep -q '"index": 0' || exit 77 # no device
+"$2" list --json | grep -q '"index": 0' || { echo "skipped: no Vulkan device"; exit 77; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 fail() { echo "$1"; exit 1; }

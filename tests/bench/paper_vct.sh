@@ -2,7 +2,7 @@
 # paper_vct.sh PAPER_VCT AFTERGLOW: a small run on one scene: rows for every figure, octrees with nodes and mips without, and refused
 # command lines.
 set -eu
-"$2" list --json | grep -q '"index": 0' || exit 77 # no device
+"$2" list --json | grep -q '"index": 0' || { echo "skipped: no Vulkan device"; exit 77; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 fail() { echo "$1"; exit 1; }

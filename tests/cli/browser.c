@@ -219,10 +219,7 @@ static void attach(struct browser *browser)
 struct browser *browser_open(void)
 {
     const char *path = find_chromium();
-    if (!path) {
-        print_message("skipped: there is no Chromium\n");
-        skip();
-    }
+    if (!path) test_skip("no Chromium");
     struct browser *browser = calloc(1, sizeof *browser);
     assert_non_null(browser);
     start(browser, path);

@@ -109,8 +109,7 @@ void require_device(void)
         json_is_true(json_object_get(device, "usable"));
     json_decref(list);
     if (usable) return;
-    print_message("skipped: there is no usable Vulkan device\n");
-    skip();
+    test_skip("no Vulkan device");
 }
 
 bool file_exists(const char *path)

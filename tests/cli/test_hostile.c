@@ -105,8 +105,7 @@ static void require_device_on_full_disk(void)
     full_disk(false);
     if (result->status == 0) return;
     if (result->status != -1) fail_msg("a small image: %s", result->err);
-    print_message("skipped: the driver does not work with a limit of file sizes\n");
-    skip();
+    test_skip("the driver does not work with a limit of file sizes");
 }
 
 TEST(a_full_disk_is_reported_with_the_path_of_a_folder)

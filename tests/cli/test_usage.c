@@ -275,7 +275,7 @@ TEST(a_line_break_in_a_name_does_not_break_the_line)
 
 TEST(a_full_standard_output_is_a_failure)
 {
-    if (!file_exists("/dev/full")) skip();
+    if (!file_exists("/dev/full")) test_skip("no /dev/full");
     char command[600];
     snprintf(command, sizeof command, "%s info @cornell >/dev/full 2>/dev/null", AFTERGLOW_PROGRAM);
     int status = system(command);

@@ -24,7 +24,7 @@ target_link_libraries(ag_test_report PUBLIC ag_test_program ag_image afterglow_c
 ag_test(cli/report_page LIBRARIES ag_test_report)
 ag_test(cli/waiting LIBRARIES ag_test_report)
 ag_test(cli/report_page_browser LIBRARIES ag_test_report)
-set_tests_properties(cli.report_page_browser PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: there is no Chromium")
+set_tests_properties(cli.report_page_browser PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: no Chromium")
 
 # The manual page and the completions, against what the program prints.
 add_test(NAME cli.manual COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/manual.sh ${CMAKE_BINARY_DIR}/manual $<TARGET_FILE:afterglow>)

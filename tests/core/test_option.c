@@ -328,10 +328,7 @@ TEST(numbers_have_a_dot_in_every_locale)
     bool found = false;
     for (size_t i = 0; !found && i < sizeof names / sizeof *names; i++)
         found = setlocale(LC_ALL, names[i]) != NULL;
-    if (!found) {
-        print_message("skipped: no locale with a decimal comma is installed here\n");
-        skip();
-    }
+    if (!found) test_skip("no locale with a decimal comma");
     struct options options = defaults();
     char text[64];
     CHECK(parse("gain=2.5", &options));

@@ -56,8 +56,7 @@ void test_gpu_require(void)
     int count;
     pin_drivers();
     if (gpu_list_devices(test_host(), NULL, 0, &count) && count > 0) return;
-    print_message("skipped: there is no Vulkan device\n");
-    skip();
+    test_skip("no Vulkan device");
 }
 
 struct gpu *test_gpu(void)

@@ -7,7 +7,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MAX_TESTS = 512, MAX_PATHS = 16, MAX_ENDS = 4 };
+enum { MAX_TESTS = 512, MAX_PATHS = 16, MAX_ENDS = 4, OUTCOMES = 4 };
+
+enum outcome { NOT_RUN, PASSED, FAILED, SKIPPED };
+
+static struct test_case {
+    test_function function;
+    enum outcome outcome;
+    const char *reason; // of a skipped case
+} cases[MAX_TESTS], *current;
 
 static struct CMUnitTest tests[MAX_TESTS];
 static size_t test_count;
@@ -16,19 +24,40 @@ static size_t end_count;
 static char folder[256];
 static char last_message[1024];
 
+// A case that fails or is skipped does not return.
+static void run_case(void **state)
+{
+    current = *state;
+    current->outcome = FAILED;
+    current->function(state);
+    current->outcome = PASSED;
+}
+
 void test_register(const char *name, test_function function)
 {
     if (test_count == MAX_TESTS) {
         fprintf(stderr, "more than %d tests in one program\n", MAX_TESTS);
         abort();
     }
-    tests[test_count++] = (struct CMUnitTest){ .name = name, .test_func = function };
+    struct test_case *added = &cases[test_count];
+    added->function = function;
+    tests[test_count++] =
+        (struct CMUnitTest){ .name = name, .test_func = run_case, .initial_state = added };
 }
 
 void test_register_end(bool (*check)(void))
 {
     if (end_count == MAX_ENDS) abort();
     ends[end_count++] = check;
+}
+
+void test_skip(const char *reason)
+{
+    print_message("skipped: %s\n", reason);
+    current->outcome = SKIPPED;
+    current->reason = reason;
+    _skip(__FILE__, __LINE__);
+    abort();
 }
 
 void test_near(double a, double b, double tolerance, const char *a_text, const char *b_text,
@@ -119,16 +148,47 @@ const char *test_scene_path(const char *name)
     char *path = paths[next++ % MAX_PATHS];
     snprintf(path, sizeof paths[0], "%s/%s", base, name);
     if (access(path, R_OK) != 0) {
-        print_message("skipped: no %s (AFTERGLOW_SCENES names the folder of test scenes)\n", path);
-        skip();
+        print_message("no %s (AFTERGLOW_SCENES names the folder of test scenes)\n", path);
+        test_skip("test scene missing");
     }
     return path;
+}
+
+// " (reason: 2, reason: 1)"
+static void print_reasons(void)
+{
+    const char *before = " (";
+    for (size_t i = 0; i < test_count; i++) {
+        int count = 0;
+        if (cases[i].outcome != SKIPPED) continue;
+        for (size_t j = i; j < test_count; j++) {
+            if (cases[j].outcome != SKIPPED || strcmp(cases[j].reason, cases[i].reason) != 0)
+                continue;
+            count++;
+            if (j > i) cases[j].outcome = NOT_RUN;
+        }
+        printf("%s%s: %d", before, cases[i].reason, count);
+        before = ", ";
+    }
+    if (before[0] == ',') printf(")");
+}
+
+// tools/test_totals adds up these lines.
+static void print_outcomes(int failed_ends)
+{
+    int count[OUTCOMES] = { 0 };
+    for (size_t i = 0; i < test_count; i++) count[cases[i].outcome]++;
+    printf("cases: %d passed, %d failed, %d skipped", count[PASSED], count[FAILED] + failed_ends,
+           count[SKIPPED]);
+    print_reasons();
+    printf("\n");
 }
 
 int main(int argc, char **argv)
 {
     if (argc > 1) cmocka_set_test_filter(argv[1]);
-    int failures = _cmocka_run_group_tests("tests", tests, test_count, NULL, NULL);
-    for (size_t i = 0; i < end_count; i++) failures += !ends[i]();
-    return failures;
+    int failures = _cmocka_run_group_tests("tests", tests, test_count, NULL, NULL), failed_ends = 0;
+    for (size_t i = 0; i < end_count; i++) failed_ends += !ends[i]();
+    print_outcomes(failed_ends);
+    return failures + failed_ends;
 }

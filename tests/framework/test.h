@@ -15,6 +15,8 @@
 
 #include "core/host.h"
 
+#undef skip // test_skip takes its place
+
 typedef void (*test_function)(void **state);
 void test_register(const char *name, test_function function);
 // A final check, run once after all tests, while all libraries are still loaded (unlike atexit).
@@ -42,6 +44,10 @@ void test_near(double a, double b, double tolerance, const char *a_text, const c
 void test_relative(double a, double b, double tolerance, const char *a_text, const char *b_text,
                    const char *file, int line);
 void test_check(bool condition, const char *text, const char *file, int line);
+
+// Ends the running test as skipped. Reasons are counted: static storage, without commas, the same
+// for all tests that lack the same thing.
+__attribute__((noreturn)) void test_skip(const char *reason);
 
 // A host that stores the newest error or warning (test_last_message; "" after
 // test_forget_messages). AFTERGLOW_TEST_VERBOSE sends its log to standard error too.

@@ -13,7 +13,7 @@ static void work(struct gpu_cmd *cmd, gpu_pipeline sum, gpu_buffer words, gpu_bu
 
 TEST_GPU(scopes_nest_and_sum_in_the_order_first_begun)
 {
-    if (!gpu_limits(gpu)->timestamps) skip();
+    if (!gpu_limits(gpu)->timestamps) test_skip("no timestamps");
     gpu_buffer words = test_gpu_buffer(gpu, 400000), total = test_gpu_buffer(gpu, 4);
     gpu_pipeline sum = test_gpu_compute(gpu, &shader_test_sum_comp);
     struct gpu_cmd *cmd = gpu_frame_begin(gpu);
@@ -49,7 +49,7 @@ TEST_GPU(scopes_nest_and_sum_in_the_order_first_begun)
 
 TEST_GPU(timings_are_of_the_newest_finished_frame)
 {
-    if (!gpu_limits(gpu)->timestamps) skip();
+    if (!gpu_limits(gpu)->timestamps) test_skip("no timestamps");
     for (int frame = 0; frame < 5; frame++) {
         char name[16], expected[16];
         struct gpu_timing t[4];
@@ -68,7 +68,7 @@ TEST_GPU(timings_are_of_the_newest_finished_frame)
 
 TEST_GPU(scopes_without_a_dot_have_the_innermost_owner)
 {
-    if (!gpu_limits(gpu)->timestamps) skip();
+    if (!gpu_limits(gpu)->timestamps) test_skip("no timestamps");
     static const char *const names[] = { "alone", "vct.cones", "gpu.copy", "vo.lines", "vct.fill" };
     struct gpu_timing t[8];
     struct gpu_cmd *cmd = gpu_frame_begin(gpu);

@@ -9,7 +9,7 @@ for program in clang-format-14 clang-format; do
         break
     fi
 done
-[ -n "$format" ] || { echo "skipped: no clang-format 14 is installed here"; exit 77; }
+[ -n "$format" ] || { echo "skipped: no clang-format 14"; exit 77; }
 cd "$1"
 list() {
     if [ -e .git ] && command -v git >/dev/null; then

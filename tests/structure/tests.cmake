@@ -8,8 +8,12 @@ add_test(NAME structure.self_test COMMAND sh ${structure}/self_test.sh ${CMAKE_C
 add_test(NAME structure.format COMMAND sh ${structure}/format.sh ${CMAKE_SOURCE_DIR})
 add_test(NAME structure.wording COMMAND sh ${structure}/wording.sh ${CMAKE_SOURCE_DIR})
 add_test(NAME structure.cycles COMMAND sh ${structure}/cycles.sh ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR})
+add_executable(test_sample_cases framework/sample_cases.c)
+target_link_libraries(test_sample_cases PRIVATE ag_test_framework afterglow_flags)
+set_target_properties(test_sample_cases PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+add_test(NAME structure.check COMMAND sh ${structure}/check.sh ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR} $<TARGET_FILE:test_sample_cases>)
 set_tests_properties(structure.include_table structure.source_text structure.headers_alone structure.self_test
-  structure.format structure.wording structure.cycles PROPERTIES TIMEOUT 300 LABELS structure)
+  structure.format structure.wording structure.cycles structure.check PROPERTIES TIMEOUT 300 LABELS structure)
 set_tests_properties(structure.format PROPERTIES SKIP_RETURN_CODE 77)
 
 # The public headers are part of the build, so that errors in them appear early.

@@ -1,0 +1,60 @@
+#!/bin/sh
+# check.sh SOURCE BUILD SAMPLE: ./check counts the cases of all suites and goes on after a failed one.
+# SAMPLE is the program of framework/sample_cases.c.
+set -eu
+source=$1 build=$2 sample=$3
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+bad=0
+# expect NAME TEXT FILE: the file has that line.
+expect() { grep -qxF -e "$2" "$3" || { echo "$1: no line '$2' in:"; cat "$3"; bad=1; }; }
+
+"$sample" >"$folder/sample" 2>&1 && { echo "a failed case is no failure"; bad=1; }
+expect "outcomes of a program" "cases: 1 passed, 1 failed, 3 skipped (no sample: 2, no example: 1)" "$folder/sample"
+
+# A copy of ./check whose cmake does nothing, and whose ctest runs one small suite for each preset.
+mkdir -p "$folder/tools" "$folder/bin"
+cp "$source/check" "$folder"
+cp "$source/tools/test_totals" "$folder/tools"
+echo 'setup_packages() { :; }; say() { echo "$*"; }' >"$folder/tools/setup"
+printf '#!/bin/sh\n[ "$2" != "$BROKEN_PRESET" ]\n' >"$folder/bin/cmake"
+cat >"$folder/bin/ctest" <<STUB
+#!/bin/sh
+preset=\${2#build/}
+mkdir -p "\$2"
+echo "ran \$preset"
+cp "$folder/\$preset.tests" "\$2/CTestTestfile.cmake"
+exec "$(command -v ctest)" --test-dir "\$2" --output-junit "$folder/build/check-\$preset.xml"
+STUB
+chmod +x "$folder/bin/cmake" "$folder/bin/ctest"
+cat >"$folder/asan.tests" <<'SUITE'
+add_test(plain true)
+add_test(lost "/nowhere/program")
+add_test(mixed sh "-c" "echo 'cases: 4 passed, 0 failed, 2 skipped (no sample: 2)'; exit 1")
+add_test(killed sh "-c" "echo begins; kill -9 $$")
+SUITE
+cat >"$folder/tsan.tests" <<'SUITE'
+add_test(cases sh "-c" "echo 'cases: 7 passed, 0 failed, 0 skipped'")
+SUITE
+cat >"$folder/debug.tests" <<'SUITE'
+add_test(cases sh "-c" "echo 'cases: 20 passed, 0 failed, 3 skipped (no sample: 1, no thing: 2)'")
+add_test(whole sh "-c" "echo 'skipped: no thing'; exit 77")
+set_tests_properties(whole PROPERTIES SKIP_RETURN_CODE 77)
+SUITE
+run() { (cd "$folder" && PATH="$folder/bin:$PATH" BROKEN_PRESET=$1 ./check -R . >out 2>&1 </dev/null); }
+
+run none && { echo "a failed suite is no failure"; bad=1; }
+for preset in asan tsan debug; do grep -q "^ran $preset" "$folder/out" || { echo "$preset did not run"; bad=1; }; done
+expect "after a failure" "failed suites: asan" "$folder/out"
+expect "cases of all suites" "cases: 32 passed, 3 failed, 6 skipped (no sample: 3, no thing: 3)" "$folder/out"
+expect "summary" "57% tests passed, 3 tests failed out of 7" "$folder/out"
+
+echo 'add_test(plain true)' >"$folder/asan.tests"
+run none || { echo "passed suites are a failure"; bad=1; }
+expect "passed suites" "100% tests passed, 0 tests failed out of 4" "$folder/out"
+
+run debug && { echo "a suite that is not built is no failure"; bad=1; }
+expect "a broken build" "failed suites: debug" "$folder/out"
+expect "without a suite" "cases: 8 passed, 1 failed, 0 skipped" "$folder/out"
+expect "which suite" "	build/check-debug.xml: the suite did not run" "$folder/out"
+exit $bad
