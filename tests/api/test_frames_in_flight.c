@@ -30,9 +30,9 @@ static void signal_gate(const struct gate *gate)
 static void *watch(void *user)
 {
     struct gate *gate = user;
-    for (int i = 0; i < LIMIT_S * 100; i++) {
+    for (int i = 0; i < LIMIT_S * 100 * test_time_factor(); i++) {
         if (atomic_load(&gate->stop)) return NULL;
-        nanosleep(&(struct timespec){ .tv_nsec = 10000000 }, NULL);
+        test_pause_ms(10);
     }
     atomic_store(&gate->forced, true);
     signal_gate(gate);

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 enum { COMMAND_FD = 3, ANSWER_FD = 4, HIGH_FD = 16 }; // the first two are Chromium's choice
-static const double PATIENCE_S = 60.0;                // for one answer
+static const double PATIENCE_S = 60.0;                // for one answer, on an idle machine
 
 struct browser {
     pid_t process;
@@ -28,6 +28,11 @@ static double now_s(void)
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static double patience_s(void)
+{
+    return PATIENCE_S * test_time_factor();
 }
 
 // ---- the process
@@ -136,7 +141,7 @@ static void receive(struct browser *browser, double deadline_s)
     struct pollfd wait = { .fd = browser->answers, .events = POLLIN };
     int left_ms = (int)(1000.0 * (deadline_s - now_s()));
     if (left_ms <= 0 || poll(&wait, 1, left_ms) <= 0)
-        fail_msg("the browser did not answer in %g s", PATIENCE_S);
+        fail_msg("the browser did not answer in %g s", patience_s());
     if (browser->capacity - browser->size < 65536) {
         browser->capacity = 2 * browser->capacity + 65536;
         browser->pending = realloc(browser->pending, browser->capacity);
@@ -169,7 +174,7 @@ static json_t *call(struct browser *browser, const char *method, json_t *params)
     send_all(browser->commands, text, strlen(text) + 1);
     free(text);
     json_decref(command);
-    double deadline_s = now_s() + PATIENCE_S;
+    double deadline_s = now_s() + patience_s();
     for (;;) {
         json_t *message = take_message(browser);
         if (!message) {
@@ -235,7 +240,7 @@ void browser_close(struct browser *browser)
 {
     browser->session[0] = 0;
     command(browser, "Browser.close", json_object());
-    double deadline_s = now_s() + 10.0;
+    double deadline_s = now_s() + 10.0 * test_time_factor();
     while (waitpid(browser->process, NULL, WNOHANG) == 0) {
         if (now_s() > deadline_s) kill(browser->process, SIGKILL);
         usleep(10000);
@@ -255,10 +260,10 @@ void browser_load(struct browser *browser, const char *path, int width, int heig
             json_pack("{s:i, s:i, s:i, s:b}", "width", width, "height", height, "deviceScaleFactor",
                       1, "mobile", 0));
     command(browser, "Page.navigate", json_pack("{s:s}", "url", url));
-    double deadline_s = now_s() + PATIENCE_S;
+    double deadline_s = now_s() + patience_s();
     while (!browser_true(browser,
                          "location.protocol === 'file:' && document.readyState === 'complete'")) {
-        if (now_s() > deadline_s) fail_msg("%s was not loaded in %g s", path, PATIENCE_S);
+        if (now_s() > deadline_s) fail_msg("%s was not loaded in %g s", path, patience_s());
         usleep(20000);
     }
 }

@@ -13,7 +13,6 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #define SCENE "compare @cornell --size 24x18 --quiet"
@@ -545,11 +544,6 @@ TEST(a_foreign_folder_is_left_alone)
 
 // ---- interruption
 
-static void pause_ms(long ms)
-{
-    nanosleep(&(struct timespec){ .tv_nsec = ms * 1000000 }, NULL);
-}
-
 static pid_t start(const char *words, const char *folder)
 {
     static char text[2000];
@@ -590,8 +584,9 @@ TEST(ctrl_c_keeps_the_samples_and_leaves_no_folder)
     snprintf(folder, sizeof folder, "%s/results", home);
     const char *cache = own_cache("stopped-cache");
     pid_t child = start("compare @cornell --size 24x18 --frames 1 --gi none --spp 1000000", folder);
-    for (int i = 0; i < 60000 && !has_entry(cache, "reference"); i++) pause_ms(1);
-    pause_ms(200); // the first samples are written; more are being traced
+    for (int i = 0; i < 60000 * test_time_factor() && !has_entry(cache, "reference"); i++)
+        test_pause_ms(1);
+    test_pause_ms(200 * test_time_factor()); // the first samples are written; more are being traced
     assert_int_equal(kill(child, SIGINT), 0);
     int status = 0;
     assert_true(waitpid(child, &status, 0) == child);
@@ -617,7 +612,8 @@ TEST(a_signal_while_the_folder_is_filled_leaves_none)
     for (int i = 0; i < 8; i++) strcat(words, " --gi none");
     pid_t child = start(words, folder);
     int status = 0;
-    for (int i = 0; i < 60000 && !has_entry(home, ".tmp-"); i++) pause_ms(1);
+    for (int i = 0; i < 60000 * test_time_factor() && !has_entry(home, ".tmp-"); i++)
+        test_pause_ms(1);
     kill(child, SIGTERM);
     assert_true(waitpid(child, &status, 0) == child);
     CHECK(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);

@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 static bool has_temporary(const char *folder)
@@ -19,11 +18,6 @@ static bool has_temporary(const char *folder)
         found |= strstr(entry->d_name, ".tmp-") != NULL;
     closedir(dir);
     return found;
-}
-
-static void pause_ms(long ms)
-{
-    nanosleep(&(struct timespec){ .tv_nsec = ms * 1000000 }, NULL);
 }
 
 static pid_t start(char **words)
@@ -58,7 +52,7 @@ static void check_signal(int number, const char *name)
                       NULL };
     pid_t child = start(words);
     int status = 0;
-    for (int i = 0; i < 20000 && !has_temporary(folder); i++) pause_ms(1);
+    for (int i = 0; i < 20000 * test_time_factor() && !has_temporary(folder); i++) test_pause_ms(1);
     kill(child, number);
     if (waitpid(child, &status, 0) != child) fail_msg("cannot wait for the program");
     CHECK(WIFSIGNALED(status) && WTERMSIG(status) == number);
@@ -83,7 +77,7 @@ TEST(signals_that_are_ignored_stay_ignored)
     int status = 0;
     while (waitpid(child, &status, WNOHANG) == 0) {
         kill(child, SIGTERM);
-        pause_ms(1);
+        test_pause_ms(1);
     }
     signal(SIGTERM, SIG_DFL);
     CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 0);

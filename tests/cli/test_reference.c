@@ -225,8 +225,8 @@ TEST(default_light_and_camera_are_said_before_the_samples)
     const char *errors = path_of("triangle.txt");
     // Interrupted, so that only what was said before counts.
     snprintf(command, sizeof command,
-             "timeout -s INT 2 '%s' reference '%s' --size 64x64 --spp 1000000 -o '%s' 2> '%s'",
-             AFTERGLOW_PROGRAM, scene, path_of("triangle.exr"), errors);
+             "timeout -s INT %g '%s' reference '%s' --size 64x64 --spp 1000000 -o '%s' 2> '%s'",
+             2.0 * test_time_factor(), AFTERGLOW_PROGRAM, scene, path_of("triangle.exr"), errors);
     CHECK(system(command) != 0);
     FILE *file = fopen(errors, "re");
     assert_non_null(file);
@@ -303,9 +303,9 @@ TEST(an_interrupt_leaves_an_image_to_resume)
               "--spp", "1000000", "--quiet", "-o", path, (char *)NULL);
         _exit(127);
     }
-    for (int i = 0; i < 1000 && !file_exists(path); i++)
-        usleep(20000); // the first sample is written
-    usleep(300000);
+    for (int i = 0; i < 1000 * test_time_factor() && !file_exists(path); i++)
+        test_pause_ms(20); // the first sample is written
+    test_pause_ms(300 * test_time_factor());
     assert_int_equal(kill(child, SIGINT), 0);
     int status = 0;
     assert_true(waitpid(child, &status, 0) == child);

@@ -8,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { WIDTH = 1200, HEIGHT = 900, ARROW_LEFT = 37, ARROW_RIGHT = 39 };
@@ -112,10 +111,9 @@ static void drag(struct fixture *f, double from_x, double from_y, double to_x, d
 // Input passes through other threads of the browser than the query for its effect.
 static bool becomes_true(struct fixture *f, const char *expression)
 {
-    const struct timespec pause = { .tv_nsec = 20000000 };
-    for (int i = 0; i < 250; i++) {
+    for (int i = 0; i < 250 * test_time_factor(); i++) {
         if (browser_true(f->browser, "%s", expression)) return true;
-        nanosleep(&pause, NULL);
+        test_pause_ms(20);
     }
     return false;
 }

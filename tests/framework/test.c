@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 enum { MAX_TESTS = 512, MAX_PATHS = 16, MAX_ENDS = 4, OUTCOMES = 4 };
@@ -58,6 +59,19 @@ void test_skip(const char *reason)
     current->reason = reason;
     _skip(__FILE__, __LINE__);
     abort();
+}
+
+double test_time_factor(void)
+{
+    const char *given = getenv("AFTERGLOW_TEST_TIME_FACTOR");
+    return given ? fmax(1.0, atof(given)) : 1.0;
+}
+
+void test_pause_ms(double ms)
+{
+    const double s = floor(1e-3 * ms);
+    nanosleep(&(struct timespec){ .tv_sec = (time_t)s, .tv_nsec = (long)(1e6 * ms - 1e9 * s) },
+              NULL);
 }
 
 void test_near(double a, double b, double tolerance, const char *a_text, const char *b_text,

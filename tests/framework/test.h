@@ -49,6 +49,10 @@ void test_check(bool condition, const char *text, const char *file, int line);
 // for all tests that lack the same thing.
 __attribute__((noreturn)) void test_skip(const char *reason);
 
+// Factor of time limits on a loaded machine, from AFTERGLOW_TEST_TIME_FACTOR: at least 1.
+double test_time_factor(void);
+void test_pause_ms(double ms);
+
 // A host that stores the newest error or warning (test_last_message; "" after
 // test_forget_messages). AFTERGLOW_TEST_VERBOSE sends its log to standard error too.
 struct host *test_host(void);

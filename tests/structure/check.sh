@@ -1,5 +1,5 @@
 #!/bin/sh
-# check.sh SOURCE BUILD SAMPLE: ./check counts the cases of all suites and goes on after a failed one.
+# check.sh SOURCE BUILD SAMPLE: ./check counts the cases of all suites and goes on after a failed one; time limits follow the factor.
 # SAMPLE is the program of framework/sample_cases.c.
 set -eu
 source=$1 build=$2 sample=$3
@@ -12,6 +12,13 @@ expect() { grep -qxF -e "$2" "$3" || { echo "$1: no line '$2' in:"; cat "$3"; ba
 "$sample" >"$folder/sample" 2>&1 && { echo "a failed case is no failure"; bad=1; }
 expect "outcomes of a program" "cases: 1 passed, 1 failed, 3 skipped (no sample: 2, no example: 1)" "$folder/sample"
 
+limit() { ctest --test-dir "$build" --show-only=json-v1 -R '^scene\.limits$' | tr -d ' \n' | grep -o '"name":"TIMEOUT","value":[0-9]*' | sed 's/.*://'; }
+for factor in '' 1 3 x; do
+    [ "$factor" = 3 ] && wanted=180 || wanted=60
+    got=$(AFTERGLOW_TEST_TIME_FACTOR=$factor limit)
+    [ "$got" = "$wanted" ] || { echo "factor '$factor': a limit of $got s, not $wanted s"; bad=1; }
+done
+
 # A copy of ./check whose cmake does nothing, and whose ctest runs one small suite for each preset.
 mkdir -p "$folder/tools" "$folder/bin"
 cp "$source/check" "$folder"
@@ -22,7 +29,7 @@ cat >"$folder/bin/ctest" <<STUB
 #!/bin/sh
 preset=\${2#build/}
 mkdir -p "\$2"
-echo "ran \$preset"
+echo "ran \$preset with factor \${AFTERGLOW_TEST_TIME_FACTOR:-none}"
 cp "$folder/\$preset.tests" "\$2/CTestTestfile.cmake"
 exec "$(command -v ctest)" --test-dir "\$2" --output-junit "$folder/build/check-\$preset.xml"
 STUB
@@ -41,10 +48,10 @@ add_test(cases sh "-c" "echo 'cases: 20 passed, 0 failed, 3 skipped (no sample: 
 add_test(whole sh "-c" "echo 'skipped: no thing'; exit 77")
 set_tests_properties(whole PROPERTIES SKIP_RETURN_CODE 77)
 SUITE
-run() { (cd "$folder" && PATH="$folder/bin:$PATH" BROKEN_PRESET=$1 ./check -R . >out 2>&1 </dev/null); }
+run() { (cd "$folder" && PATH="$folder/bin:$PATH" BROKEN_PRESET=$1 AFTERGLOW_TEST_TIME_FACTOR= ./check -R . >out 2>&1 </dev/null); }
 
 run none && { echo "a failed suite is no failure"; bad=1; }
-for preset in asan tsan debug; do grep -q "^ran $preset" "$folder/out" || { echo "$preset did not run"; bad=1; }; done
+for preset in asan tsan debug; do grep -q "^ran $preset with factor [1-9]" "$folder/out" || { echo "$preset did not run"; bad=1; }; done
 expect "after a failure" "failed suites: asan" "$folder/out"
 expect "cases of all suites" "cases: 32 passed, 3 failed, 6 skipped (no sample: 3, no thing: 3)" "$folder/out"
 expect "summary" "57% tests passed, 3 tests failed out of 7" "$folder/out"

@@ -3,16 +3,18 @@
 #include "techniques/mrt/mrt_map_fixture.h"
 #include "techniques/mrt/mrt_operators_fixture.h"
 
+#include "core/parallel.h"
 #include "techniques/mrt/level/solver.h"
 
 #include <math.h>
 #include <string.h>
 #include <time.h>
 
-static double now_s(void)
+// Processor time of this thread, to which other load adds little.
+static double thread_s(void)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
@@ -271,19 +273,22 @@ TEST(blocks_may_be_turned_in_any_way)
 
 // ---- times
 
-TEST(a_level_of_41_blocks_takes_less_than_a_second)
+TEST(a_level_of_41_blocks_takes_less_than_a_second_on_one_core)
 {
+    const int threads = parallel_threads();
+    parallel_limit(1);
     struct mrt_dictionary o = mrt_random_operators(MRT_MAZE_2D, 16, 32, 128, 32, 5);
     struct mrt_block_map map = mrt_maze(41, 1);
     for (int depth = 2; depth <= 16; depth *= 2) {
-        double start = now_s();
+        double start = thread_s();
         struct mrt_level level = make(&map, &o, depth);
-        double seconds = now_s() - start;
+        double seconds = thread_s() - start;
         print_message("41 blocks, depth %d: %d entries, %d links, %.0f ms\n", depth,
                       level.entry_count, level.first_link[level.entry_count], 1e3 * seconds);
         CHECK(seconds < 1.0);
         mrt_level_finish(&level);
     }
+    parallel_limit(threads);
     mrt_block_map_finish(&map);
     mrt_dictionary_finish(test_host(), &o);
 }
