@@ -11,8 +11,6 @@
 #include <time.h>
 #include <unistd.h>
 
-extern char **environ;
-
 struct spawn_plan {
     posix_spawn_file_actions_t files;
     posix_spawnattr_t attributes;
@@ -57,9 +55,11 @@ static bool start(struct host *host, const char *program, char *const arguments[
                   int output, pid_t *pid)
 {
     struct spawn_plan plan = { .has_files = false };
-    int error = plan_files(&plan, input, output) && plan_signals(&plan)
-                    ? posix_spawn(pid, program, &plan.files, &plan.attributes, arguments, environ)
-                    : ENOMEM;
+    char *no_environment[] = { NULL };
+    int error =
+        plan_files(&plan, input, output) && plan_signals(&plan)
+            ? posix_spawn(pid, program, &plan.files, &plan.attributes, arguments, no_environment)
+            : ENOMEM;
     plan_finish(&plan);
     if (error == 0) return true;
     return host_fail(host, FAIL_UNSUPPORTED, "cannot start %s: %s", program, strerror(error));

@@ -11,8 +11,8 @@ struct process_end {
 };
 
 // Starts `program` with arguments (the first is its name, NULL ends them), the descriptor `input`
-// as standard input (-1: /dev/null; not 0 to 2), standard error /dev/null, default signals, and no
-// other file of this process; waits for its end. False when it cannot be started
+// as standard input (-1: /dev/null; not 0 to 2), standard error /dev/null, default signals, no
+// environment and no other file of this process; waits for its end. False when it cannot be started
 // (FAIL_UNSUPPORTED), writes more than max_bytes or memory ends (FAIL_MEMORY); it is then ended.
 // Output is owned by the caller, see file_bytes_finish. Thread-safe: nothing of the calling process
 // is changed, no signal handler and no signal mask.

@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -99,6 +100,14 @@ TEST(open_files_of_the_host_are_not_inherited)
     CHECK(ok);
     CHECK(out.size == 2 && out.data[0] >= '0' && out.data[0] <= '9'); // ls has opened the folder
     file_bytes_finish(test_host(), &out);
+}
+
+TEST(the_environment_of_the_host_is_not_inherited)
+{
+    setenv("AFTERGLOW_TEST_SECRET", "secret", 1);
+    CHECK(run_shell("printf %s \"${AFTERGLOW_TEST_SECRET-none}${HOME-none}\"", 1000, 60));
+    unsetenv("AFTERGLOW_TEST_SECRET");
+    check_output("nonenone");
 }
 
 TEST(a_host_without_standard_streams_gets_output_too)
