@@ -115,6 +115,13 @@ static bool add_light(struct arguments *a, const char *value, const char **why)
     return value_light(value, &a->lights[a->light_count++], why);
 }
 
+static bool set_follow_links(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->follow_links = true;
+    return true;
+}
+
 static bool set_no_scene_lights(struct arguments *a, const char *value, const char **why)
 {
     (void)value, (void)why;

@@ -28,7 +28,7 @@ struct arguments {
     int word_count;
     // image
     const char *gi, *frame_options;
-    bool has_gi;
+    bool has_gi, follow_links;
     int width, height, frames;
     const char *output; // NULL: from the scene's name
     const char *aov, *debug_view, *stats, *device;

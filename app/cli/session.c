@@ -18,6 +18,7 @@ enum status session_begin(struct session *session, const struct arguments *argum
     char cache[4096];
     ag_context_desc_default(&desc);
     desc.no_links_in = cache_root(cache, sizeof cache) ? cache : NULL;
+    desc.follow_links = arguments->follow_links;
     desc.log = log_message;
     desc.log_up_to = arguments->verbose ? AG_LOG_DEBUG : AG_LOG_WARNING;
     enum ag_result result = ag_context_create(&desc, &session->context);

@@ -26,7 +26,10 @@ struct ag_context_desc {
     /// Path of the program afterglow-import, which reads OBJ, FBX and X files in a process of its
     /// own. NULL: AFTERGLOW_IMPORTER, else the one installed with the library. "": none.
     const char *importer;
-    uint64_t reserved[4]; ///< 0; see ABI in types.h
+    /// Default false: a file that a scene refers to and that a symbolic link leads out of the
+    /// folder of the scene is AG_ERROR_FILE. The scene file itself may be a link.
+    bool follow_links;
+    uint64_t reserved[3]; ///< 0; see ABI in types.h
 };
 
 AG_API void ag_context_desc_default(struct ag_context_desc *desc);

@@ -108,6 +108,7 @@ enum ag_result ag_context_create(const struct ag_context_desc *desc, struct ag_c
         (struct host){ .log = context_log,
                        .reallocate = desc->reallocate ? context_reallocate : NULL,
                        .user = &seed,
+                       .follow_links = desc->follow_links,
                        .log_up_to = desc->log ? (enum log_level)desc->log_up_to : LOG_ERROR };
     struct ag_context *context = host_alloc(&seed.host, 1, sizeof *context);
     if (!context) return AG_ERROR_MEMORY;

@@ -28,6 +28,7 @@ struct host {
     enum log_level log_up_to; // messages above this level are not formatted
     enum fail_kind failure;   // kind of the last host_fail
     const char *no_links_in;  // NULL, or a folder in which core/file.h does not follow links
+    bool follow_links;        // files that a scene refers to may be outside its folder
     const char *importer;     // path of the program that reads OBJ, FBX and X; NULL: none
 };
 

@@ -1,6 +1,8 @@
 // File access for Assimp: the imported file, and others of its folder and below.
 #include "importer/importer.h"
 
+#include "core/links.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -10,7 +12,7 @@
 #include <unistd.h>
 
 static const char *main_path;
-static bool main_from_input;
+static struct files_options options;
 
 struct open_file {
     struct aiFile file; // first: Assimp's handle
@@ -86,7 +88,7 @@ static char *path_of(const char *name)
 {
     size_t folder = folder_length();
     if (strcmp(name, main_path) == 0) return strdup(name);
-    if (main_from_input && folder == 0) return NULL; // a file in memory, without a folder
+    if (options.from_input && folder == 0) return NULL; // a file in memory, without a folder
     if (strncmp(name, main_path, folder) != 0) return NULL;
     char *path = strdup(name);
     for (char *c = path ? path + folder : NULL; c && *c; c++)
@@ -96,10 +98,16 @@ static char *path_of(const char *name)
     return NULL;
 }
 
+// The imported file itself may be a link to anywhere.
+static bool is_allowed(const char *path)
+{
+    return options.follow_links || strcmp(path, main_path) == 0 || !link_leads_out(path, main_path);
+}
+
 // O_NONBLOCK: a pipe is refused instead of waiting for a writer.
 static int open_path(const char *path)
 {
-    if (main_from_input && strcmp(path, main_path) == 0) return dup(STDIN_FILENO);
+    if (options.from_input && strcmp(path, main_path) == 0) return dup(STDIN_FILENO);
     return open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
 }
 
@@ -126,6 +134,7 @@ static struct aiFile *open_proc(struct aiFileIO *io, const char *name, const cha
 {
     (void)io;
     char *path = strpbrk(mode, "wa+") ? NULL : path_of(name);
+    if (path && !is_allowed(path)) output_fail("link", "%s", path);
     struct open_file *open = path ? calloc(1, sizeof *open) : NULL;
     bool ok = open && read_file(path, open);
     free(path);
@@ -149,10 +158,10 @@ static void close_proc(struct aiFileIO *io, struct aiFile *file)
     free(file);
 }
 
-struct aiFileIO files_of(const char *path, bool from_input)
+struct aiFileIO files_of(const char *path, const struct files_options *how)
 {
     main_path = path;
-    main_from_input = from_input;
+    options = *how;
     return (struct aiFileIO){ .OpenProc = open_proc, .CloseProc = close_proc };
 }
 

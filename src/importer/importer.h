@@ -23,8 +23,11 @@ _Noreturn void output_glb(const char *json, const uint8_t *binary, size_t size);
 void *allocate(size_t count, size_t size);
 
 // --- files.c: the imported file and others of its folder
-// `from_input`: the imported file's bytes are the standard input, a file in memory.
-struct aiFileIO files_of(const char *path, bool from_input);
+struct files_options {
+    bool from_input;   // the imported file's bytes are the standard input, a file in memory
+    bool follow_links; // that lead out of the folder
+};
+struct aiFileIO files_of(const char *path, const struct files_options *options);
 const char *files_extension(const char *path); // "obj", lower case, static storage
 
 // --- glb.c: the parts of a glTF file

@@ -1,4 +1,4 @@
-// afterglow-import FILE CPU_SECONDS MEMORY_BYTES [stdin]. The library starts it;
+// afterglow-import FILE CPU_SECONDS MEMORY_BYTES [stdin] [follow-links]. The library starts it;
 // src/importer/importer.h says why. A signal ends it where a limit is reached, or where Assimp
 // fails.
 #include "importer/importer.h"
@@ -37,9 +37,9 @@ static void set_limits(const char *cpu_seconds, const char *memory_bytes)
 #endif
 }
 
-static const struct aiScene *read_scene(const char *path, bool from_input)
+static const struct aiScene *read_scene(const char *path, const struct files_options *options)
 {
-    struct aiFileIO io = files_of(path, from_input);
+    struct aiFileIO io = files_of(path, options);
     // v grows downwards in glTF. FBX files state their unit; GlobalScale converts it to metres.
     unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType |
                      aiProcess_JoinIdenticalVertices | aiProcess_LimitBoneWeights |
@@ -50,16 +50,30 @@ static const struct aiScene *read_scene(const char *path, bool from_input)
     return scene;
 }
 
+static bool read_words(char **words, struct files_options *options)
+{
+    *options = (struct files_options){ 0 };
+    for (; *words; words++) {
+        bool *option = strcmp(*words, "stdin") == 0          ? &options->from_input
+                       : strcmp(*words, "follow-links") == 0 ? &options->follow_links
+                                                             : NULL;
+        if (!option) return false;
+        *option = true;
+    }
+    return true;
+}
+
 int main(int argc, char **argv)
 {
-    if (argc != 4 && !(argc == 5 && strcmp(argv[4], "stdin") == 0)) {
+    struct files_options options;
+    if (argc < 4 || !read_words(argv + 4, &options)) {
         fprintf(stderr,
                 "afterglow-import is started by libafterglow to read OBJ, FBX and X files\n");
         return 2;
     }
     output_open();
     set_limits(argv[2], argv[3]);
-    struct importer importer = { .glb = glb_begin(), .from = read_scene(argv[1], argc == 5) };
+    struct importer importer = { .glb = glb_begin(), .from = read_scene(argv[1], &options) };
     if (importer.from->mNumLights > 0) output_note("lights of this format (no units)");
     if (importer.from->mNumCameras > 0) output_note("cameras of this format");
     import_materials(&importer);

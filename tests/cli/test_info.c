@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static double number(const json_t *document, const char *key)
 {
@@ -18,6 +19,20 @@ static const char *text(const json_t *document, const char *key)
     const json_t *value = json_object_get(document, key);
     if (!json_is_string(value)) fail_msg("no text %s", key);
     return json_string_value(value);
+}
+
+TEST(links_out_of_the_folder_of_a_scene_are_followed_on_request)
+{
+    static const char obj[] = "mtllib made.mtl\nv 0 0 0\nv 2 0 0\nv 2 3 0\nusemtl red\nf 1 2 3\n";
+    char path[600];
+    snprintf(path, sizeof path, "%s/made.obj", make_folder("linked"));
+    write_file(path, obj, sizeof obj - 1);
+    write_file(test_path("outside.mtl"), "newmtl red\n", 11);
+    assert_int_equal(symlink("../outside.mtl", test_path("linked/made.mtl")), 0);
+    const struct run *refused = run_expect(1, "info", path, NULL);
+    check_one_error_line(refused);
+    CHECK(strstr(refused->err, "refers to made.mtl") && strstr(refused->err, "--follow-links"));
+    run_expect(0, "info --follow-links", path, NULL);
 }
 
 TEST(info_of_the_cornell_box_is_its_published_size)

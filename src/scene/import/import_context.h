@@ -28,8 +28,12 @@ bool import_charge(struct import *import, size_t count, size_t size);
 void *import_alloc(struct import *import, size_t count, size_t size);
 
 // Reads a file that import_resolve named; its size counts as source bytes. `missing` NULL: there
-// must be one; else *missing tells, without a failure.
+// must be one; else *missing tells, without a failure. A symbolic link that leads out of the folder
+// is a failure, unless host->follow_links.
 bool import_read(struct import *import, const char *path, struct file_bytes *out, bool *missing);
+
+// The failure of a file that a symbolic link leads out of the scene's folder. False.
+bool import_fail_link(struct import *import, const char *path);
 
 // Notes a feature that is ignored ("line primitives"); import_log_notes lists all in one warning.
 void import_note(struct import *import, const char *format, ...)

@@ -1,6 +1,7 @@
 #include "scene/import/import_files.h"
 
 #include "core/hash.h"
+#include "core/links.h"
 
 #include <string.h>
 #include <unistd.h>
@@ -21,6 +22,17 @@ static bool is_from_memory(const struct import *import)
     return import->memory && (import->memory->read || !import->memory->folder);
 }
 
+bool import_fail_link(struct import *import, const char *path)
+{
+    const char *slash = strrchr(import->path, '/');
+    const size_t folder = slash ? (size_t)(slash - import->path) + 1 : 0;
+    if (strncmp(path, import->path, folder) == 0) path += folder;
+    return host_fail(import->host, FAIL_FILE,
+                     "%s: refers to %s, which a symbolic link leads out of the scene's folder; "
+                     "follow_links (--follow-links) allows it",
+                     import->path, import_printable(path).s);
+}
+
 bool import_read(struct import *import, const char *path, struct file_bytes *out, bool *missing)
 {
     bool absent = false;
@@ -29,6 +41,8 @@ bool import_read(struct import *import, const char *path, struct file_bytes *out
         if (!read_memory(import, path, out, &absent)) return false;
     } else {
         absent = missing && access(path, R_OK) != 0;
+        if (!import->host->follow_links && link_leads_out(path, import->path))
+            return import_fail_link(import, path);
         if (!absent && !file_read(import->host, path, 0, out)) return false;
     }
     import->source_bytes += out->size;

@@ -24,7 +24,7 @@ static const size_t GLTF_ALLOWANCE_BYTES = (size_t)128 << 20;
 
 // The rest of the stream.
 struct stream {
-    const struct import *import;
+    struct import *import;
     const unsigned char *at, *end;
 };
 
@@ -62,6 +62,7 @@ static bool fail(const struct stream *stream, const char *line)
                   { "unsupported", FAIL_UNSUPPORTED },
                   { "file", FAIL_FILE },
                   { "memory", FAIL_MEMORY } };
+    if (after(line, "link")) return import_fail_link(stream->import, after(line, "link"));
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         const char *why = after(line, kinds[i].word);
         if (!why) continue;
@@ -148,9 +149,10 @@ static bool run(struct import *import, const struct file_bytes *bytes, struct fi
     double cpu_s = CPU_S + CPU_S_PER_MEGABYTE * 1e-6 * (double)size;
     snprintf(cpu, sizeof cpu, "%.0f", cpu_s);
     snprintf(memory, sizeof memory, "%zu", import_limit(import, MEMORY_ALLOWANCE_BYTES));
-    char *arguments[] = {
-        (char *)"afterglow-import", path, cpu, memory, import->memory ? (char *)"stdin" : NULL, NULL
-    };
+    char *arguments[7] = { (char *)"afterglow-import", path, cpu, memory };
+    int count = 4;
+    if (import->memory) arguments[count++] = (char *)"stdin";
+    if (import->host->follow_links) arguments[count++] = (char *)"follow-links";
     const bool ok =
         process_output(import->host, import->host->importer, arguments, input,
                        import_limit(import, GLTF_ALLOWANCE_BYTES), WALL_FACTOR * cpu_s, out, end);
