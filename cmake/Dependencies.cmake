@@ -12,6 +12,7 @@ pkg_check_modules(PNG REQUIRED IMPORTED_TARGET libpng)
 # find_package gives the C core alone; OpenEXR's pkg-config file adds the C++ libraries.
 find_package(OpenEXR 3.1 CONFIG REQUIRED)
 pkg_check_modules(ASSIMP REQUIRED IMPORTED_TARGET assimp)
+pkg_check_modules(SECCOMP REQUIRED IMPORTED_TARGET libseccomp)
 pkg_check_modules(STB REQUIRED IMPORTED_TARGET stb)
 pkg_check_modules(SPIRV_CROSS REQUIRED IMPORTED_TARGET spirv-cross-c-shared)
 # Embree 4 (Debian 13) or 3 (Debian 12); src/trace/embree.c supports both.

@@ -14,7 +14,9 @@
 
 // --- output.c
 void output_open(void); // takes over the standard output
+int output_descriptor(void);
 void output_note(const char *feature);
+void output_log(const char *format, ...) __attribute__((format(printf, 1, 2)));
 _Noreturn void output_fail(const char *kind, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 _Noreturn void output_glb(const char *json, const uint8_t *binary, size_t size); // ends the program

@@ -2,6 +2,7 @@
 // src/importer/importer.h says why. A signal ends it where a limit is reached, or where Assimp
 // fails.
 #include "importer/importer.h"
+#include "importer/sandbox.h"
 
 #include <assimp/postprocess.h>
 
@@ -34,6 +35,15 @@ static void set_limits(const char *cpu_seconds, const char *memory_bytes)
     limit(RLIMIT_AS, strtoull(memory_bytes, NULL, 10));
 #else
     (void)memory_bytes;
+#endif
+}
+
+// Sanitizers need calls of their own.
+static void restrict_calls(void)
+{
+#ifdef IMPORTER_SANDBOX
+    const char *why = sandbox_enter(output_descriptor());
+    if (why) output_log("no seccomp filter: %s", why);
 #endif
 }
 
@@ -73,7 +83,9 @@ int main(int argc, char **argv)
     }
     output_open();
     set_limits(argv[2], argv[3]);
-    struct importer importer = { .glb = glb_begin(), .from = read_scene(argv[1], &options) };
+    struct importer importer = { .glb = glb_begin() }; // jansson reads its seed
+    restrict_calls();
+    importer.from = read_scene(argv[1], &options);
     if (importer.from->mNumLights > 0) output_note("lights of this format (no units)");
     if (importer.from->mNumCameras > 0) output_note("cameras of this format");
     import_materials(&importer);

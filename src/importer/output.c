@@ -53,6 +53,21 @@ __attribute__((format(printf, 1, 2))) static void write_text(const char *format,
     va_end(arguments);
 }
 
+int output_descriptor(void)
+{
+    return stream;
+}
+
+void output_log(const char *format, ...)
+{
+    char text[IMPORT_STREAM_LINE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    write_text("log %s", text);
+}
+
 void output_note(const char *feature)
 {
     write_text("note %s", feature);

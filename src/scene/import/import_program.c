@@ -96,10 +96,13 @@ static bool read_stream(struct import *import, struct stream *stream, const stru
     char line[IMPORT_STREAM_LINE];
     while (next_line(stream, line)) {
         const char *note = after(line, "note"), *why = after(line, "fail");
-        const char *size = after(line, "glb");
+        const char *size = after(line, "glb"), *text = after(line, "log");
         if (why) return fail(stream, why);
         if (note) import_note(import, "%s", import_printable(note).s);
-        if (note || !size) continue;
+        if (text)
+            host_log(import->host, LOG_DEBUG, "%s: importer: %s", import->path,
+                     import_printable(text).s);
+        if (!size) continue;
         size_t bytes = (size_t)strtoull(size, NULL, 10);
         if (bytes != (size_t)(stream->end - stream->at)) break;
         *gltf = (struct file_bytes){ (unsigned char *)stream->at, bytes };
