@@ -54,6 +54,7 @@ run none && { echo "a failed suite is no failure"; bad=1; }
 for preset in asan tsan debug; do grep -q "^ran $preset with factor [1-9]" "$folder/out" || { echo "$preset did not run"; bad=1; }; done
 expect "after a failure" "failed suites: asan" "$folder/out"
 expect "cases of all suites" "cases: 32 passed, 3 failed, 6 skipped (no sample: 3, no thing: 3)" "$folder/out"
+expect "failed test" "	mixed (build/check-asan.xml)" "$folder/out"
 expect "summary" "57% tests passed, 3 tests failed out of 7" "$folder/out"
 
 echo 'add_test(plain true)' >"$folder/asan.tests"
