@@ -137,7 +137,7 @@ static bool drop_unused(struct unwrapped *u, uint32_t index_count)
 static bool unwrap(const struct attaching *a, int instance, struct unwrapped *u)
 {
     const struct mesh *mesh = scene_mesh_of(a->scene, instance);
-    const bool of_file = a->doc->of_file && mesh->source;
+    const bool of_file = instance < a->doc->file_place_count && mesh->source;
     *u = (struct unwrapped){ .host = a->charts->host,
                              .source = of_file ? mesh->source : NULL,
                              .total = of_file ? mesh->source_count : mesh->vertex_count };

@@ -17,6 +17,22 @@ static const char *light_text(const struct lightmap_facts *facts)
 
 // ---- the scene's copy
 
+// A light that the bake had has its indirect light in the map, and with `punctual` its direct
+// light.
+static void mark_lights(struct gltf_doc *doc, const struct lightmap_facts *facts)
+{
+    json_t *extension =
+        json_object_get(json_object_get(doc->root, "extensions"), "KHR_lights_punctual");
+    size_t i;
+    json_t *light;
+    json_array_foreach(json_object_get(extension, "lights"), i, light)
+    {
+        const bool on = i >= doc->off_light_count || !doc->off_lights[i];
+        gltf_doc_set(doc, gltf_doc_child(doc, light, "extras"), LIGHTMAP_EXTRAS,
+                     json_pack("{s:b, s:b}", "direct", on && facts->punctual, "indirect", on));
+    }
+}
+
 static json_t *map_json(const struct lightmap *map, int side)
 {
     const struct image *image = &map->irradiance[side];
@@ -46,6 +62,7 @@ static bool write_scene(const struct lightmap *map, const struct scene *scene,
     bool ok = gltf_doc_of_file(&doc, map->host, scene, &same) &&
               (same || gltf_doc_of_scene(&doc, map->host, scene)) &&
               lightmap_attach(&doc, &map->charts, scene);
+    if (ok) mark_lights(&doc, facts);
     if (ok) describe(&doc, map, facts);
     ok = ok && gltf_doc_write(&doc, path);
     gltf_doc_finish(&doc);

@@ -5,6 +5,7 @@
 #include "lightmap/attach.h"
 #include "scene/charts/charts.h"
 #include "scene/charts/unwrap.h"
+#include "scene/scene_edit.h"
 #include "../scene/gltf_maker.h"
 
 #include <math.h>
@@ -310,4 +311,81 @@ TEST(files_that_have_changed_since_are_not_copied)
     CHECK(gltf_doc_of_file(&doc, test_host(), scene, &same) && !same);
     gltf_doc_finish(&doc);
     scene_destroy(scene);
+}
+
+// ---- what the file has not
+
+#define TWO_LAMPS                                                                                  \
+    "{" ASSET ",'extensionsUsed':['KHR_lights_punctual'],'extensions':{'KHR_lights_punctual':"     \
+    "{'lights':[{'type':'point','color':[0.1,0.2,0.3],'intensity':7}]}},"                          \
+    "'nodes':[{'children':[1]},{'extensions':{'KHR_lights_punctual':{'light':0}}},"                \
+    "{'extensions':{'KHR_lights_punctual':{'light':0}},'translation':[0,3,0]}]}"
+
+static struct scene *load_lamps(void)
+{
+    struct scene *scene = load_gltf(TWO_LAMPS, NULL, 0);
+    assert_non_null(scene);
+    assert_int_equal(scene->light_count, 2);
+    return scene;
+}
+
+static const json_t *lights_of(const struct gltf_doc *doc)
+{
+    const json_t *extensions = json_object_get(doc->root, "extensions");
+    return json_object_get(json_object_get(extensions, "KHR_lights_punctual"), "lights");
+}
+
+TEST(added_lights_and_sky_join_the_scene_of_a_file_without_scenes)
+{
+    struct scene *scene = load_lamps();
+    struct gltf_doc doc;
+    bool same;
+    const struct placed_light added = { .position = { { 1, 2, 3 } },
+                                        .direction = { { 0.1f, -1, 0.3f } },
+                                        .light = { .name = "added",
+                                                   .type = LIGHT_SPOT,
+                                                   .intensity = { { 1000.1f, 3.3f, 0 } },
+                                                   .inner_rad = 0.3f,
+                                                   .outer_rad = 0.5f } };
+    CHECK(scene_add_placed_light(scene, &added) == 2);
+    scene_set_sky(scene, vec3_of(0.1f, 0.2f, 0.3f));
+    CHECK(gltf_doc_of_file(&doc, test_host(), scene, &same) && same);
+    struct scene *copy = written(&doc);
+    check_lights(scene, copy);
+    CHECK(strcmp(copy->lights[2].name, "added") == 0);
+    scene_destroy(copy);
+    scene_destroy(scene);
+    gltf_doc_finish(&doc);
+}
+
+TEST(light_of_two_nodes_is_divided_where_one_is_switched_off)
+{
+    struct scene *scene = load_lamps();
+    struct gltf_doc doc;
+    bool same;
+    scene->lights[0].off = true;
+    CHECK(gltf_doc_of_file(&doc, test_host(), scene, &same) && same);
+    assert_int_equal(json_array_size(lights_of(&doc)), 2);
+    assert_int_equal(doc.off_light_count, 2);
+    CHECK(!doc.off_lights[0] && doc.off_lights[1]);
+    CHECK(json_equal(json_array_get(lights_of(&doc), 0), json_array_get(lights_of(&doc), 1)));
+    scene_destroy(scene);
+    gltf_doc_finish(&doc);
+}
+
+TEST(light_that_was_moved_is_written_where_it_is_now)
+{
+    struct scene *scene = load_lamps();
+    struct gltf_doc doc;
+    bool same;
+    struct placed_light moved = { .position = { { 5, 6, 7 } },
+                                  .direction = { { 0, -1, 0 } },
+                                  .light = scene->lights[1] };
+    CHECK(scene_set_light(scene, 1, &moved));
+    CHECK(gltf_doc_of_file(&doc, test_host(), scene, &same) && same);
+    assert_int_equal(json_array_size(lights_of(&doc)), 3);
+    CHECK(!doc.off_lights[0] && doc.off_lights[1]);
+    scene_destroy(written(&doc));
+    scene_destroy(scene);
+    gltf_doc_finish(&doc);
 }

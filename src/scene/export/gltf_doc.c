@@ -18,6 +18,7 @@ void gltf_doc_finish(struct gltf_doc *doc)
     json_decref(doc->root);
     host_free(doc->host, doc->binary);
     host_free(doc->host, doc->places);
+    host_free(doc->host, doc->off_lights);
     *doc = (struct gltf_doc){ 0 };
 }
 

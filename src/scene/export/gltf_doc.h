@@ -19,14 +19,17 @@ struct gltf_doc {
     size_t size, capacity;
     struct gltf_place *places; // [place_count] of the scene's first instances
     int place_count;
-    bool of_file; // its vertices are those of mesh.source, else those of the mesh
+    bool *off_lights; // [off_light_count] of light definitions: none of the scene's lights uses it
+    size_t off_light_count; // of the file; later definitions are of the scene's lights
+    int file_place_count; // first ones, with the vertices of mesh.source; others with those of mesh
     bool failed;
 };
 // gltf_doc_finish accepts zero.
 bool gltf_doc_init(struct gltf_doc *doc, struct host *host);
 void gltf_doc_finish(struct gltf_doc *doc);
 
-// The file that the scene was loaded from, if it is glTF and has not changed. *same: it is.
+// The file that the scene was loaded from, with the lights, instances and sky that the scene has
+// beyond it, if it is glTF and otherwise unchanged. *same: it is.
 bool gltf_doc_of_file(struct gltf_doc *doc, struct host *host, const struct scene *scene,
                       bool *same);
 // The scene itself. Removed instances have the place of node SIZE_MAX.

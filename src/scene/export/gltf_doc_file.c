@@ -1,5 +1,5 @@
 // A document of a glTF file: its JSON, and the bytes of all its buffers and images in one buffer.
-#include "scene/export/gltf_doc.h"
+#include "scene/export/gltf_scene.h"
 
 #include "core/hash.h"
 #include "scene/import/gltf/gltf.h"
@@ -139,24 +139,29 @@ static void place_instances(struct gltf_doc *doc, struct gltf *gltf)
 static bool find_places(struct gltf_doc *doc, struct gltf *gltf, const struct scene *scene)
 {
     place_instances(doc, gltf);
-    doc->places = host_alloc(doc->host, (size_t)doc->place_count, sizeof *doc->places);
-    if (!doc->places) return false;
+    if (!gltf->failed && doc->place_count > scene->instance_count)
+        return host_fail(doc->host, FAIL_FORMAT, "%s: its instances are not those of the scene",
+                         scene->name);
+    doc->places = host_alloc(doc->host, (size_t)scene->instance_count, sizeof *doc->places);
+    if (gltf->failed || !doc->places) return false;
     place_instances(doc, gltf);
-    return !gltf->failed &&
-           (doc->place_count <= scene->instance_count ||
-            host_fail(doc->host, FAIL_FORMAT, "%s: its instances are not those of the scene",
-                      scene->name));
+    doc->file_place_count = doc->place_count;
+    return true;
 }
 
 // ---- the file
 
-static bool fill(struct gltf_doc *doc, struct gltf *gltf, const struct scene *scene)
+// *can: the document can have all that the scene has.
+static bool fill(struct gltf_doc *doc, struct gltf *gltf, const struct scene *scene, bool *can)
 {
     json_decref(doc->root);
-    doc->of_file = true;
     doc->root = json_incref(gltf->root);
-    return gltf_check_asset(gltf) && gltf_order_nodes(gltf) && gltf_load_buffers(gltf) &&
-           find_places(doc, gltf, scene) && join_buffers(doc, gltf) && embed_images(doc, gltf);
+    if (!gltf_check_asset(gltf) || !gltf_order_nodes(gltf) || !gltf_load_buffers(gltf) ||
+        !find_places(doc, gltf, scene))
+        return false;
+    *can = gltf_doc_can_add(doc, scene, json_array_size(gltf->nodes));
+    return !*can || (join_buffers(doc, gltf) && embed_images(doc, gltf) &&
+                     gltf_doc_add_rest(doc, gltf, scene));
 }
 
 static bool is_gltf(const struct scene *scene)
@@ -167,7 +172,6 @@ static bool is_gltf(const struct scene *scene)
            (strcmp(extension, "gltf") == 0 || strcmp(extension, "glb") == 0);
 }
 
-// Lights and instances may have been added; they are in no file.
 static bool is_changed(const struct scene *scene)
 {
     const struct scene_revisions *r = &scene->revisions;
@@ -188,8 +192,9 @@ bool gltf_doc_of_file(struct gltf_doc *doc, struct host *host, const struct scen
     if (*same) {
         struct gltf gltf = { .import = &import };
         ok = gltf_doc_init(doc, host) && gltf_open(&gltf, &import, &bytes) &&
-             fill(doc, &gltf, scene);
+             fill(doc, &gltf, scene, same);
         gltf_close(&gltf);
+        if (ok && !*same) gltf_doc_finish(doc);
     }
     file_bytes_finish(host, &bytes);
     return ok;

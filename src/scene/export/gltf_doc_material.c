@@ -115,7 +115,7 @@ static void add_alpha(struct gltf_doc *doc, json_t *out, const struct material *
         gltf_doc_set(doc, out, "alphaCutoff", json_real((double)m->alpha_cutoff));
 }
 
-static json_t *material_json(struct gltf_doc *doc, const struct material *m)
+json_t *gltf_doc_material(struct gltf_doc *doc, const struct material *m)
 {
     json_t *out = json_pack("{s:o}", "name", gltf_doc_text(m->name ? m->name : "material"));
     json_t *pbr = gltf_doc_child(doc, out, "pbrMetallicRoughness");
@@ -140,5 +140,5 @@ void gltf_doc_materials(struct scene_export *x)
 {
     for (int i = 0; i < x->scene->image_count; i++) add_image(x->doc, &x->scene->images[i]);
     for (int i = 0; i < x->scene->material_count; i++)
-        gltf_doc_add(x->doc, "materials", material_json(x->doc, &x->scene->materials[i]));
+        gltf_doc_add(x->doc, "materials", gltf_doc_material(x->doc, &x->scene->materials[i]));
 }

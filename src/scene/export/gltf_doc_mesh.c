@@ -72,6 +72,13 @@ json_t *gltf_doc_primitive(struct scene_export *x, int mesh)
     return out;
 }
 
+void gltf_doc_finish_primitives(struct scene_export *x)
+{
+    for (int i = 0; x->primitives && i < x->scene->mesh_count; i++) json_decref(x->primitives[i]);
+    host_free(x->doc->host, x->primitives);
+    x->primitives = NULL;
+}
+
 // ---- animations
 
 static json_t *sampler_json(struct gltf_doc *doc, const struct animation_channel *c)

@@ -35,17 +35,19 @@ static void add_transform(struct gltf_doc *doc, json_t *out, const struct node *
         gltf_doc_set(doc, out, "scale", gltf_doc_floats(node->scale.raw, 3));
 }
 
+json_t *gltf_doc_node(struct gltf_doc *doc, const struct node *node)
+{
+    json_t *out = json_object();
+    if (node->name) gltf_doc_set(doc, out, "name", gltf_doc_text(node->name));
+    add_transform(doc, out, node);
+    if (node->extras) gltf_doc_set(doc, out, "extras", json_loads(node->extras, 0, NULL));
+    return out;
+}
+
 static void add_nodes(struct scene_export *x)
 {
-    struct gltf_doc *doc = x->doc;
-    for (int i = 0; i < x->scene->node_count; i++) {
-        const struct node *node = &x->scene->nodes[i];
-        json_t *out = json_object();
-        if (node->name) gltf_doc_set(doc, out, "name", gltf_doc_text(node->name));
-        add_transform(doc, out, node);
-        if (node->extras) gltf_doc_set(doc, out, "extras", json_loads(node->extras, 0, NULL));
-        gltf_doc_add(doc, "nodes", out);
-    }
+    for (int i = 0; i < x->scene->node_count; i++)
+        gltf_doc_add(x->doc, "nodes", gltf_doc_node(x->doc, &x->scene->nodes[i]));
 }
 
 static json_t *node_at(struct gltf_doc *doc, size_t node)
@@ -53,7 +55,7 @@ static json_t *node_at(struct gltf_doc *doc, size_t node)
     return json_array_get(gltf_doc_array(doc, "nodes"), node);
 }
 
-static void append(struct gltf_doc *doc, json_t *object, const char *key, size_t value)
+void gltf_doc_append(struct gltf_doc *doc, json_t *object, const char *key, size_t value)
 {
     json_t *list = json_object_get(object, key);
     if (!list) {
@@ -70,9 +72,9 @@ static void add_hierarchy(struct scene_export *x)
     for (int i = 0; i < x->scene->node_count; i++) {
         const int parent = x->scene->nodes[i].parent;
         if (parent < 0)
-            append(doc, scene, "nodes", (size_t)i);
+            gltf_doc_append(doc, scene, "nodes", (size_t)i);
         else
-            append(doc, node_at(doc, (size_t)parent), "children", (size_t)i);
+            gltf_doc_append(doc, node_at(doc, (size_t)parent), "children", (size_t)i);
     }
     if (!is_vec3(x->scene->sky, 0.0f))
         gltf_doc_set(doc, gltf_doc_child(doc, scene, "extras"), "afterglow_sky",
@@ -83,7 +85,7 @@ static void add_hierarchy(struct scene_export *x)
 
 // ---- instances
 
-static void add_mobility(struct gltf_doc *doc, json_t *node, const struct instance *instance)
+void gltf_doc_mobility(struct gltf_doc *doc, json_t *node, const struct instance *instance)
 {
     if (instance->movable)
         gltf_doc_set(doc, gltf_doc_child(doc, node, "extras"), "afterglow_mobility",
@@ -114,7 +116,7 @@ static void add_instance(struct scene_export *x, int i)
     if (instance->morph_weights)
         gltf_doc_set(doc, node, "weights",
                      gltf_doc_floats(instance->morph_weights, (size_t)mesh->morph_count));
-    add_mobility(doc, node, instance);
+    gltf_doc_mobility(doc, node, instance);
 }
 
 static void add_instances(struct scene_export *x)
@@ -127,6 +129,8 @@ static void add_instances(struct scene_export *x)
 
 // ---- lights and cameras
 
+static const char LIGHTS[] = "KHR_lights_punctual";
+
 // glTF has one light or camera of a node: others have nodes of their own.
 static json_t *free_node(struct gltf_doc *doc, int node, const char *key, const char *extension)
 {
@@ -135,7 +139,7 @@ static json_t *free_node(struct gltf_doc *doc, int node, const char *key, const 
     if (taken && extension) taken = json_object_get(taken, extension);
     if (!taken) return at;
     const size_t added = gltf_doc_add(doc, "nodes", json_object());
-    append(doc, at, "children", added);
+    gltf_doc_append(doc, at, "children", added);
     return node_at(doc, added);
 }
 
@@ -156,22 +160,23 @@ static json_t *light_json(const struct light *light)
     return out;
 }
 
+void gltf_doc_light(struct gltf_doc *doc, json_t *node, const struct light *light)
+{
+    gltf_doc_use_extension(doc, LIGHTS);
+    json_t *root = gltf_doc_child(doc, gltf_doc_child(doc, doc->root, "extensions"), LIGHTS);
+    if (!json_object_get(root, "lights")) gltf_doc_set(doc, root, "lights", json_array());
+    json_t *list = json_object_get(root, "lights");
+    if (json_array_append_new(list, light_json(light)) != 0) doc->failed = true;
+    gltf_doc_set(doc, gltf_doc_child(doc, gltf_doc_child(doc, node, "extensions"), LIGHTS), "light",
+                 json_integer((json_int_t)json_array_size(list) - 1));
+}
+
 static void add_lights(struct scene_export *x)
 {
-    static const char EXTENSION[] = "KHR_lights_punctual";
-    struct gltf_doc *doc = x->doc;
     for (int i = 0; i < x->scene->light_count; i++) {
         const struct light *light = &x->scene->lights[i];
-        if (light->off) continue;
-        gltf_doc_use_extension(doc, EXTENSION);
-        json_t *root = gltf_doc_child(doc, gltf_doc_child(doc, doc->root, "extensions"), EXTENSION);
-        json_t *list = json_object_get(root, "lights");
-        if (!list) gltf_doc_set(doc, root, "lights", json_array());
-        list = json_object_get(root, "lights");
-        if (json_array_append_new(list, light_json(light)) != 0) doc->failed = true;
-        json_t *node = free_node(doc, light->node, "extensions", EXTENSION);
-        gltf_doc_set(doc, gltf_doc_child(doc, gltf_doc_child(doc, node, "extensions"), EXTENSION),
-                     "light", json_integer((json_int_t)json_array_size(list) - 1));
+        if (!light->off)
+            gltf_doc_light(x->doc, free_node(x->doc, light->node, "extensions", LIGHTS), light);
     }
 }
 
@@ -203,7 +208,7 @@ static void add_skins(struct scene_export *x)
         json_t *out =
             json_pack("{s:[], s:I}", "joints", "inverseBindMatrices", (json_int_t)matrices);
         for (int k = 0; out && k < skin->joint_count; k++)
-            append(doc, out, "joints", (size_t)skin->joints[k]);
+            gltf_doc_append(doc, out, "joints", (size_t)skin->joints[k]);
         gltf_doc_add(doc, "skins", out);
     }
 }
@@ -212,9 +217,8 @@ bool gltf_doc_of_scene(struct gltf_doc *doc, struct host *host, const struct sce
 {
     if (!gltf_doc_init(doc, host)) return false;
     struct scene_export x = { .doc = doc, .scene = scene };
-    const size_t instances = (size_t)scene->instance_count, meshes = (size_t)scene->mesh_count;
-    doc->places = host_alloc(host, instances, sizeof *doc->places);
-    x.primitives = host_alloc(host, meshes, sizeof(json_t *));
+    doc->places = host_alloc(host, (size_t)scene->instance_count, sizeof *doc->places);
+    x.primitives = host_alloc(host, (size_t)scene->mesh_count, sizeof(json_t *));
     const bool ok = doc->places && x.primitives;
     if (ok) {
         doc->place_count = scene->instance_count;
@@ -229,8 +233,7 @@ bool gltf_doc_of_scene(struct gltf_doc *doc, struct host *host, const struct sce
         add_skins(&x);
         gltf_doc_animations(&x);
     }
-    for (size_t i = 0; x.primitives && i < meshes; i++) json_decref(x.primitives[i]);
-    host_free(host, x.primitives);
+    gltf_doc_finish_primitives(&x);
     return ok &&
            (!doc->failed || host_fail(host, FAIL_MEMORY, "%s: glTF: out of memory", scene->name));
 }

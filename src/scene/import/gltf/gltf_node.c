@@ -118,6 +118,14 @@ static bool load_spot(struct gltf_object object, struct light *light)
     return !object.gltf->failed;
 }
 
+// {"afterglow_lightmap": {"indirect": false}} in the extras of a light: the bake of the light map
+// was without it, and it emits nothing.
+static bool is_left_out(json_t *light)
+{
+    json_t *map = json_object_get(json_object_get(light, "extras"), "afterglow_lightmap");
+    return json_is_false(json_object_get(map, "indirect"));
+}
+
 // KHR_lights_punctual.
 static bool load_light(struct gltf *gltf, size_t i)
 {
@@ -128,7 +136,7 @@ static bool load_light(struct gltf *gltf, size_t i)
     struct gltf_object object = gltf_element(gltf, gltf->lights, "light", (size_t)index);
     const char *type = gltf_string(object, "type");
     struct light *light = &scene->lights[scene->light_count];
-    *light = (struct light){ .node = (int)gltf->scene_node[i] };
+    *light = (struct light){ .node = (int)gltf->scene_node[i], .off = is_left_out(object.json) };
     light->name = import_name(gltf->import, gltf_string(object, "name"), "light", (size_t)index);
     light->intensity = vec3_of(1.0f, 1.0f, 1.0f);
     gltf_floats(object, "color", 3, light->intensity.raw);
