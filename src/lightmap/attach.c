@@ -8,6 +8,7 @@
 
 struct variant {
     vec2s uv;
+    uint32_t chart;
     uint32_t vertex; // of which it is a copy
     uint32_t next;   // variant of that vertex; CHART_NONE: none
 };
@@ -61,12 +62,12 @@ static bool has_charts(const struct attaching *a, int instance)
 
 // ---- vertices
 
-static uint32_t variant_of(struct unwrapped *u, uint32_t vertex, vec2s uv)
+static uint32_t variant_of(struct unwrapped *u, uint32_t vertex, uint32_t chart, vec2s uv)
 {
     uint32_t at = vertex;
     if (!u->used[vertex]) {
         u->used[vertex] = true;
-        u->variants[vertex] = (struct variant){ uv, vertex, CHART_NONE };
+        u->variants[vertex] = (struct variant){ uv, chart, vertex, CHART_NONE };
         return vertex;
     }
     for (;; at = u->variants[at].next) {
@@ -75,7 +76,7 @@ static uint32_t variant_of(struct unwrapped *u, uint32_t vertex, vec2s uv)
         if (u->variants[at].next == CHART_NONE) break;
     }
     u->variants[at].next = u->count;
-    u->variants[u->count] = (struct variant){ uv, vertex, CHART_NONE };
+    u->variants[u->count] = (struct variant){ uv, chart, vertex, CHART_NONE };
     return u->count++;
 }
 
@@ -100,7 +101,12 @@ static vec2s place_of(const struct charts *charts, uint32_t triangle, uint32_t k
     return chart->spot ? place_in_spot(chart, triangle, k) : t->place[k];
 }
 
-// Triangles without an area are in no chart: their corners have the coordinates of others there.
+static vec2s coordinates_of(const struct charts *charts, uint32_t triangle, uint32_t k)
+{
+    const vec2s place = place_of(charts, triangle, k);
+    return (vec2s){ { place.x / (float)charts->width, place.y / (float)charts->height } };
+}
+
 static void unwrap_corner(const struct attaching *a, struct unwrapped *u, const struct mesh *mesh,
                           uint32_t chart_triangle, uint32_t corner)
 {
@@ -108,10 +114,68 @@ static void unwrap_corner(const struct attaching *a, struct unwrapped *u, const 
     u->indices[corner] = vertex;
     u->kept[vertex] = true;
     if (chart_triangle == CHART_NONE) return;
-    const vec2s place = place_of(a->charts, chart_triangle, corner % 3);
-    const vec2s uv = { { place.x / (float)a->charts->width, place.y / (float)a->charts->height } };
-    u->indices[corner] = variant_of(u, vertex, uv);
+    u->indices[corner] = variant_of(u, vertex, a->charts->triangles[chart_triangle].chart,
+                                    coordinates_of(a->charts, chart_triangle, corner % 3));
 }
+
+// ---- triangles without an area, which are in no chart
+
+// The vertex's variant in the chart; CHART_NONE: none.
+static uint32_t variant_in(const struct unwrapped *u, uint32_t vertex, uint32_t chart)
+{
+    uint32_t at = u->used[vertex] ? vertex : CHART_NONE;
+    while (at != CHART_NONE && u->variants[at].chart != chart) at = u->variants[at].next;
+    return at;
+}
+
+// The chart in which most of the vertices have a variant; CHART_NONE where none has one.
+static uint32_t common_chart(const struct unwrapped *u, const uint32_t vertex[3])
+{
+    uint32_t best = CHART_NONE;
+    int most = 0;
+    for (int k = 0; k < 3; k++) {
+        uint32_t at = u->used[vertex[k]] ? vertex[k] : CHART_NONE;
+        for (; at != CHART_NONE; at = u->variants[at].next) {
+            const uint32_t chart = u->variants[at].chart;
+            int count = 0;
+            for (int j = 0; j < 3; j++) count += variant_in(u, vertex[j], chart) != CHART_NONE;
+            if (count <= most) continue;
+            most = count;
+            best = chart;
+        }
+    }
+    return best;
+}
+
+// Corners get their coordinates in a chart that they have in common with others, or where they have
+// none those of another corner there. fallback: a chart triangle, for corners without any.
+static void unwrap_degenerate(const struct attaching *a, struct unwrapped *u, uint32_t first,
+                              uint32_t fallback)
+{
+    const uint32_t vertex[3] = { u->indices[first], u->indices[first + 1], u->indices[first + 2] };
+    uint32_t chart = common_chart(u, vertex), variant[3];
+    vec2s uv = coordinates_of(a->charts, fallback, 0);
+    for (int k = 0; k < 3; k++) {
+        variant[k] = chart == CHART_NONE ? CHART_NONE : variant_in(u, vertex[k], chart);
+        if (variant[k] != CHART_NONE) uv = u->variants[variant[k]].uv;
+    }
+    if (chart == CHART_NONE) chart = a->charts->triangles[fallback].chart;
+    for (uint32_t k = 0; k < 3; k++)
+        u->indices[first + k] =
+            variant[k] != CHART_NONE ? variant[k] : variant_of(u, vertex[k], chart, uv);
+}
+
+static void unwrap_degenerates(const struct attaching *a, struct unwrapped *u, int instance)
+{
+    const size_t first = a->triangle_0[instance], end = a->triangle_0[instance + 1];
+    uint32_t fallback = CHART_NONE;
+    for (size_t t = first; t < end && fallback == CHART_NONE; t++) fallback = a->chart_triangle[t];
+    for (size_t t = first; t < end; t++)
+        if (a->chart_triangle[t] == CHART_NONE)
+            unwrap_degenerate(a, u, 3 * (uint32_t)(t - first), fallback);
+}
+
+// ---- the vertices of an instance
 
 // Primitives may share one large vertex buffer, which is not copied for each of them: where at most
 // half of it is used, only those vertices stay.
@@ -151,6 +215,7 @@ static bool unwrap(const struct attaching *a, int instance, struct unwrapped *u)
     u->count = u->total;
     for (uint32_t i = 0; i < mesh->index_count; i++)
         unwrap_corner(a, u, mesh, a->chart_triangle[a->triangle_0[instance] + i / 3], i);
+    unwrap_degenerates(a, u, instance);
     u->changed = u->count > u->total;
     return drop_unused(u, mesh->index_count);
 }

@@ -313,6 +313,81 @@ TEST(files_that_have_changed_since_are_not_copied)
     scene_destroy(scene);
 }
 
+// ---- triangles without an area
+
+// Three squares around a corner, and between them a triangle on an edge, one whose corners are in
+// two charts, and one of vertices that nothing else uses.
+static struct scene *make_slivers(void)
+{
+    static vec3s positions[] = { { { 0, 0, 0 } },    { { 1, 0, 0 } }, { { 1, 1, 0 } },
+                                 { { 0, 1, 0 } },    { { 0, 0, 1 } }, { { 0, 1, 1 } },
+                                 { { 0.5f, 0, 0 } }, { { 9, 9, 9 } }, { { 1, 0, 1 } } };
+    static uint32_t triangles[] = { 0, 1, 2, 0, 2, 3, 0, 3, 5, 0, 5, 4, 0, 4, 8,
+                                    0, 8, 1, 0, 6, 1, 2, 5, 5, 7, 7, 7, 6, 7, 7 };
+    struct scene *scene = scene_create(test_host(), "slivers");
+    assert_non_null(scene);
+    const struct material material = material_default();
+    const struct node node = node_default();
+    vec3s normals[9];
+    for (int v = 0; v < 9; v++) normals[v] = vec3_of(0, 1, 0);
+    const struct mesh mesh = { .name = "slivers",
+                               .vertex_count = 9,
+                               .index_count = 30,
+                               .positions = positions,
+                               .normals = normals,
+                               .indices = triangles,
+                               .material = scene_add_material(scene, &material) };
+    const struct instance instance = { .node = scene_add_node(scene, &node),
+                                       .mesh = scene_add_mesh(scene, &mesh),
+                                       .skin = -1 };
+    CHECK(scene_add_instance(scene, &instance) == 0);
+    return scene;
+}
+
+// A chart whose rectangle contains the triangle's coordinates.
+static bool is_in_a_chart(const struct charts *charts, const struct mesh *mesh, uint32_t triangle)
+{
+    const float size[2] = { (float)charts->width, (float)charts->height };
+    for (uint32_t c = 0; c < charts->count; c++) {
+        const struct chart *chart = &charts->charts[c];
+        const float low[2] = { (float)chart->x, (float)chart->y };
+        const float high[2] = { (float)(chart->x + chart->width),
+                                (float)(chart->y + chart->height) };
+        bool inside = true;
+        for (uint32_t i = 0; i < 6; i++) {
+            const uint32_t v = mesh->indices[3 * triangle + i / 2];
+            const float at = mesh->uv[1][v].raw[i % 2] * size[i % 2];
+            inside = inside && at >= low[i % 2] && at <= high[i % 2];
+        }
+        if (inside) return true;
+    }
+    return false;
+}
+
+TEST(coordinates_of_a_triangle_are_in_one_chart_even_without_an_area)
+{
+    struct scene *scene = make_slivers();
+    struct scene_pose pose;
+    struct charts charts;
+    struct gltf_doc doc;
+    CHECK(pose_init(&pose, scene, -1, 0));
+    CHECK(charts_init(&charts, test_host(), &pose,
+                      &(struct charts_options){ .texels_per_m = 16, .max_texels = 1 << 20 }));
+    assert_int_equal(charts.count, 3);
+    assert_int_equal(charts.without_area, 4);
+    CHECK(gltf_doc_of_scene(&doc, test_host(), scene) && lightmap_attach(&doc, &charts, scene));
+    struct scene *copy = written(&doc);
+    const struct mesh *mesh = scene_mesh_of(copy, 0);
+    check_corners(scene_mesh_of(scene, 0), mesh);
+    for (uint32_t t = 0; t < mesh->index_count / 3; t++)
+        if (!is_in_a_chart(&charts, mesh, t)) fail_msg("triangle %u is in no chart", t);
+    charts_finish(&charts);
+    pose_finish(&pose);
+    scene_destroy(copy);
+    scene_destroy(scene);
+    gltf_doc_finish(&doc);
+}
+
 // ---- what the file has not
 
 #define TWO_LAMPS                                                                                  \
