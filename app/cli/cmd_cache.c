@@ -33,10 +33,10 @@ static json_t *listing_json(const struct listing *l)
         const struct cache_entry *entry = &l->entries[i];
         char used[32];
         print_time(entry->used_s, true, used);
-        json_array_append_new(files, json_pack("{s:s, s:o, s:I, s:s}", "kind",
-                                               cache_kind_name(entry->kind), "path",
-                                               json_text(entry->path), "bytes",
-                                               (json_int_t)entry->bytes, "used", used));
+        json_array_append_new(files,
+                              json_pack("{s:s, s:o, s:I, s:s}", "kind", cache_entry_kind(entry),
+                                        "path", json_text(entry->path), "bytes",
+                                        (json_int_t)entry->bytes, "used", used));
     }
     return json_pack("{s:o, s:I, s:I, s:o}", "folder", json_text(l->root), "bytes",
                      (json_int_t)l->bytes, "limit_bytes", (json_int_t)cache_limit(), "files",
@@ -49,8 +49,8 @@ static void print_listing(const struct listing *l)
         const struct cache_entry *entry = &l->entries[i];
         char used[32];
         print_time(entry->used_s, false, used);
-        printf("%-10s %9.1f MB  %s  %s\n", cache_kind_name(entry->kind),
-               (double)entry->bytes * 1e-6, used, strrchr(entry->path, '/') + 1);
+        printf("%-10s %9.1f MB  %s  %s\n", cache_entry_kind(entry), (double)entry->bytes * 1e-6,
+               used, strrchr(entry->path, '/') + 1);
     }
     printf("%d files, %.1f MB of at most %.0f MB in %s\n", l->count, (double)l->bytes * 1e-6,
            (double)cache_limit() * 1e-6, printable(l->root).s);
@@ -60,7 +60,7 @@ static enum status clear(struct listing *l)
 {
     int removed = 0;
     for (int i = 0; i < l->count; i++) {
-        if (unlink(l->entries[i].path) != 0 && access(l->entries[i].path, F_OK) == 0)
+        if (!cache_remove(&l->entries[i]))
             return fail("cannot remove %s: it may belong to another user", l->entries[i].path);
         removed++;
     }

@@ -47,13 +47,18 @@ static bool make_name(char path[TEMPORARY_PATH], const char *target)
     return false;
 }
 
+size_t temporary_stem(const char *name)
+{
+    const size_t length = strlen(name), stem = length > SUFFIX ? length - SUFFIX : 0;
+    const bool temporary = strncmp(name + stem, MARK, strlen(MARK)) == 0 &&
+                           strspn(name + stem + strlen(MARK), "0123456789abcdef") == DIGITS;
+    return temporary ? stem : 0;
+}
+
 // Whether the name in a folder is `stem` with the suffix of a temporary one.
 static bool is_temporary(const char *name, const char *stem, size_t stem_size)
 {
-    return strncmp(name, stem, stem_size) == 0 &&
-           strncmp(name + stem_size, MARK, strlen(MARK)) == 0 &&
-           strspn(name + stem_size + strlen(MARK), "0123456789abcdef") == DIGITS &&
-           name[stem_size + SUFFIX] == 0;
+    return temporary_stem(name) == stem_size && strncmp(name, stem, stem_size) == 0;
 }
 
 // ---- creation
@@ -144,6 +149,19 @@ static bool remove_unlocked(int folder, const char *name)
     }
     close(fd);
     return removed;
+}
+
+bool temporary_remove(const char *path)
+{
+    return remove_unlocked(AT_FDCWD, path);
+}
+
+bool temporary_is_held(const char *path)
+{
+    const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    const bool held = fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    if (fd >= 0) close(fd);
+    return held;
 }
 
 void temporary_remove_stale(const char *target, void (*removed)(void *user, const char *path),

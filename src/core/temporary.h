@@ -4,6 +4,7 @@
 #pragma once
 
 #include <stdbool.h>
+#include <stddef.h>
 
 enum { TEMPORARY_PATH = 4096 };
 
@@ -23,3 +24,9 @@ void temporary_release(struct temporary *temporary);
 // folder only files are removed: one with folders in it stays.
 void temporary_remove_stale(const char *target, void (*removed)(void *user, const char *path),
                             void *user);
+
+// Length of the target's name in the name of a temporary file or folder; 0: it is not one.
+size_t temporary_stem(const char *name);
+bool temporary_is_held(const char *path); // by a process
+// Removes one that no process holds, as above. False: it is still there, or was not.
+bool temporary_remove(const char *path);

@@ -2,10 +2,12 @@
 // `sample` bakes.
 #include "cli/program.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -307,7 +309,7 @@ TEST(cache_lists_and_clears_references_and_bakes)
 // A sparse file of 3 GiB takes no space.
 static void write_old_bake(const char *folder, const char *name, time_t used, off_t bytes)
 {
-    char path[700];
+    char path[800];
     snprintf(path, sizeof path, "%s/%s", folder, name);
     write_file(path, "", 0);
     CHECK(truncate(path, bytes) == 0);
@@ -325,4 +327,49 @@ TEST(cache_over_its_limit_loses_the_least_recently_used_files)
     CHECK(strstr(r->err, "00000000000000000000000000000001.safetensors"));
     CHECK(strstr(r->err, "made room"));
     assert_int_equal(count_files(folder), 3);
+}
+
+#define LEFT_BAKE      "00000000000000000000000000000001.safetensors.tmp-0123456789abcdef"
+#define LEFT_REFERENCE "reference-1-0123456789abcdef.exr.tmp-0123456789abcdef"
+
+static const char *kind_of(const json_t *list, size_t i)
+{
+    const json_t *file = json_array_get(json_object_get(list, "files"), i);
+    return json_string_value(json_object_get(file, "kind"));
+}
+
+// Both kinds, and one that a process is writing.
+TEST(cache_lists_and_clears_what_killed_writers_left)
+{
+    char references[700], held[800];
+    const char *bakes = use_cache("cache-left");
+    snprintf(references, sizeof references, "%s/references", getenv("AFTERGLOW_CACHE"));
+    snprintf(held, sizeof held, "%s/%s", bakes,
+             "00000000000000000000000000000002.safetensors.tmp-0123456789abcdef");
+    CHECK(mkdir(bakes, 0700) == 0 && mkdir(references, 0700) == 0);
+    write_old_bake(bakes, LEFT_BAKE, 1000, 1000000);
+    write_old_bake(references, LEFT_REFERENCE, 2000, 2000000);
+    write_file(held, "half", 4);
+    const int lock = open(held, O_RDONLY | O_CLOEXEC);
+    CHECK(lock >= 0 && flock(lock, LOCK_EX) == 0);
+    json_t *list = run_json(run_expect(0, "cache --json", NULL));
+    assert_int_equal(json_array_size(json_object_get(list, "files")), 2);
+    CHECK_STRING(kind_of(list, 0), "left-over");
+    CHECK_STRING(kind_of(list, 1), "left-over");
+    CHECK_NEAR(number(list, "bytes"), 3000000.0, 0);
+    json_decref(list);
+    CHECK(strstr(run_expect(0, "cache", NULL)->out, "left-over"));
+    CHECK(strstr(run_expect(0, "cache --clear", NULL)->err, "removed 2 files, 3.0 MB"));
+    assert_int_equal(count_files(bakes), 1);
+    assert_int_equal(count_files(references), 0);
+    CHECK(file_exists(held) && close(lock) == 0);
+}
+
+TEST(cache_over_its_limit_loses_what_killed_writers_left)
+{
+    const char *folder = use_cache("cache-limit-left");
+    CHECK(mkdir(folder, 0700) == 0);
+    write_old_bake(folder, LEFT_BAKE, 1000, 3LL << 30);
+    run_expect(0, "bake @cornell --gi sample --quiet", NULL);
+    assert_int_equal(count_files(folder), 1);
 }

@@ -132,3 +132,25 @@ TEST(the_next_write_names_what_was_left_and_replaces_it)
     CHECK(exists(target));
     assert_int_equal(remove_stale(target), 0);
 }
+
+TEST(name_of_a_temporary_file_states_its_target)
+{
+    assert_int_equal(temporary_stem("a.exr.tmp-0123456789abcdef"), 5);
+    assert_int_equal(temporary_stem("a.exr.tmp-0123456789abcde"), 0);
+    assert_int_equal(temporary_stem("a.exr.tmp-0123456789abcdeg"), 0);
+    assert_int_equal(temporary_stem("a.exr.tmp-0123456789abcdef0"), 0);
+    assert_int_equal(temporary_stem("a.exr"), 0);
+    assert_int_equal(temporary_stem(""), 0);
+}
+
+TEST(only_a_file_that_no_process_holds_is_removed_by_its_path)
+{
+    struct temporary t;
+    char path[TEMPORARY_PATH];
+    CHECK(temporary_file(&t, test_path("held")));
+    memcpy(path, t.path, sizeof path);
+    CHECK(temporary_is_held(path) && !temporary_remove(path));
+    temporary_release(&t);
+    CHECK(!temporary_is_held(path) && temporary_remove(path));
+    CHECK(!temporary_remove(path));
+}

@@ -2,10 +2,13 @@
 #include "cache.h"
 #include "cli/files/interrupt.h"
 
+#include "core/temporary.h"
+
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,9 +66,9 @@ void cache_touch(const char *path)
         detail("cannot touch %s: %s", path, strerror(errno));
 }
 
-const char *cache_kind_name(enum cache_kind kind)
+const char *cache_entry_kind(const struct cache_entry *entry)
 {
-    return kinds[kind].name;
+    return entry->left_over ? "left-over" : kinds[entry->kind].name;
 }
 
 long long cache_limit(void)
@@ -76,12 +79,13 @@ long long cache_limit(void)
 // ---- files
 
 // A reference is named "reference-1-0123456789abcdef.exr", a bake by 32 digits; an interrupted one
-// has a checkpoint beside it. A temporary file has a longer name.
+// has a checkpoint beside it.
 static bool is_ours(enum cache_kind kind, const char *name)
 {
     char hash[33], rest[32] = "";
     if (kind == CACHE_REFERENCE)
-        return sscanf(name, "reference-%*d-%16[0-9a-f].exr", hash) == 1 && strlen(hash) == 16;
+        return sscanf(name, "reference-%*d-%16[0-9a-f]%31s", hash, rest) == 2 &&
+               strlen(hash) == 16 && strcmp(rest, ".exr") == 0;
     return sscanf(name, "%32[0-9a-f]%31s", hash, rest) == 2 && strlen(hash) == 32 &&
            (strcmp(rest, ".safetensors") == 0 || strcmp(rest, ".safetensors.checkpoint") == 0);
 }
@@ -107,12 +111,16 @@ static struct cache_entry *append(struct list *list)
 static bool add_file(struct list *list, enum cache_kind kind, const char *folder, const char *name)
 {
     struct stat info;
-    char path[PATH_SIZE];
-    if (!is_ours(kind, name) || !join(path, folder, name)) return true;
+    char path[PATH_SIZE], target[NAME_MAX + 1];
+    const size_t stem = temporary_stem(name);
+    snprintf(target, sizeof target, "%.*s", (int)(stem > 0 ? stem : strlen(name)), name);
+    if (!is_ours(kind, target) || !join(path, folder, name)) return true;
     if (lstat(path, &info) != 0 || !S_ISREG(info.st_mode)) return true;
+    if (stem > 0 && temporary_is_held(path)) return true;
     struct cache_entry *entry = append(list);
     if (!entry) return false;
     *entry = (struct cache_entry){ .kind = kind,
+                                   .left_over = stem > 0,
                                    .bytes = (long long)info.st_size,
                                    .used_s = (long long)info.st_mtim.tv_sec,
                                    .used_ns = (long long)info.st_mtim.tv_nsec };
@@ -156,6 +164,13 @@ int cache_list(const char *root, struct cache_entry **out)
     return list.count;
 }
 
+bool cache_remove(const struct cache_entry *entry)
+{
+    const bool removed =
+        entry->left_over ? temporary_remove(entry->path) : unlink(entry->path) == 0;
+    return removed || access(entry->path, F_OK) != 0;
+}
+
 // ---- size limit
 
 // The parent folder, in place.
@@ -177,7 +192,7 @@ void cache_trim(const char *path)
     const int count = cache_list(root, &entries);
     for (int i = 0; i < count; i++) sum += entries[i].bytes;
     for (int i = 0; i < count && sum > MAX_BYTES; i++) {
-        if (strcmp(entries[i].path, path) == 0 || unlink(entries[i].path) != 0) continue;
+        if (strcmp(entries[i].path, path) == 0 || !cache_remove(&entries[i])) continue;
         detail("cache: %s (%.1f MB) made room", entries[i].path, (double)entries[i].bytes * 1e-6);
         sum -= entries[i].bytes;
     }

@@ -20,11 +20,15 @@ void cache_trim(const char *path);
 
 struct cache_entry {
     enum cache_kind kind;
+    bool left_over; // a temporary file of a writer that was ended
     char path[PATH_SIZE];
     long long bytes;
     long long used_s, used_ns; // since 1970
 };
-const char *cache_kind_name(enum cache_kind kind);
-long long cache_limit(void); // bytes
-// All files of a cache, the least recently used first; the caller frees *out. -1: out of memory.
+const char *cache_entry_kind(const struct cache_entry *entry); // "reference", "bake", "left-over"
+long long cache_limit(void);                                   // bytes
+// All files of a cache but those that are being written, the least recently used first; the caller
+// frees *out. -1: out of memory.
 int cache_list(const char *root, struct cache_entry **out);
+// False: it is still there.
+bool cache_remove(const struct cache_entry *entry);
