@@ -189,6 +189,64 @@ enum status baking_run(struct baking *b, bool shard)
     return status == DONE ? write_file(b, shard) : status;
 }
 
+// ---- the files of --bake
+
+enum { TECHNIQUE_SIZE = 32 };
+
+static enum status technique_of(const struct session *session, const char *path,
+                                char name[TECHNIQUE_SIZE])
+{
+    const enum ag_result result = ag_bake_file_technique(session->context, path, name);
+    if (result == AG_OK) return DONE;
+    fail_library(session->context, result);
+    return FAILED; // a file's content is not wrong usage
+}
+
+static enum status find_use(const struct session *session, const char *technique, const char *gi,
+                            bool *used)
+{
+    for (int i = 0; !*used; i++) {
+        const char *name = NULL;
+        const enum ag_result result = ag_bake_technique_in_file(session->context, gi, i, &name);
+        if (result != AG_OK) return fail_library(session->context, result);
+        if (!name) break;
+        *used = strcmp(name, technique) == 0;
+    }
+    return DONE;
+}
+
+static enum status check_use(const struct session *session, const char *path, const char *technique,
+                             const char *const *gis, int gi_count)
+{
+    bool used = false;
+    for (int i = 0; i < gi_count; i++) {
+        const enum status status = find_use(session, technique, gis[i], &used);
+        if (status != DONE) return status;
+    }
+    if (used) return DONE;
+    if (gi_count > 1)
+        return fail("cannot use --bake %s: it is of %s, which no --gi uses; leave it out", path,
+                    technique);
+    return fail("cannot use --bake %s: it is of %s, which --gi %s does not use; leave it out", path,
+                technique, gis[0]);
+}
+
+enum status bakes_check_files(const struct session *session, const char *const *gis, int gi_count)
+{
+    const struct arguments *a = session->arguments;
+    char names[MAX_BAKE_FILES][TECHNIQUE_SIZE];
+    for (int i = 0; i < a->bake_file_count; i++) {
+        enum status status = technique_of(session, a->bake_files[i], names[i]);
+        if (status == DONE) status = check_use(session, a->bake_files[i], names[i], gis, gi_count);
+        if (status != DONE) return status;
+        for (int k = 0; k < i; k++)
+            if (strcmp(names[k], names[i]) == 0)
+                return fail("cannot use --bake %s: --bake %s is of %s too; leave one of them out",
+                            a->bake_files[i], a->bake_files[k], names[i]);
+    }
+    return DONE;
+}
+
 // ---- the bakes of a renderer
 
 // The --bake file that names this technique.
@@ -196,14 +254,11 @@ static enum status find_given(const struct session *session, const char *techniq
                               const char **path)
 {
     const struct arguments *a = session->arguments;
-    char name[32];
+    char name[TECHNIQUE_SIZE];
     *path = NULL;
     for (int i = 0; i < a->bake_file_count; i++) {
-        enum ag_result result = ag_bake_file_technique(session->context, a->bake_files[i], name);
-        if (result != AG_OK) {
-            fail_library(session->context, result);
-            return FAILED; // a file's content is not wrong usage
-        }
+        const enum status status = technique_of(session, a->bake_files[i], name);
+        if (status != DONE) return status;
         if (strcmp(name, technique) == 0) *path = a->bake_files[i];
     }
     return DONE;

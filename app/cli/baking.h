@@ -35,6 +35,8 @@ struct bakes {
     double seconds; // NaN: not known
     uint64_t bytes;
 };
+// Fails unless each --bake file is of a technique of one of the GI specs, and of another one.
+enum status bakes_check_files(const struct session *session, const char *const *gis, int gi_count);
 // From --bake, the cache or a run, unless --no-bake forbids it.
 enum status bakes_prepare(struct bakes *bakes, struct session *session, const char *gi);
 void bakes_finish(struct bakes *bakes); // accepts zero

@@ -1,4 +1,5 @@
 // afterglow compare: measures methods against the reference.
+#include "baking.h"
 #include "commands.h"
 #include "cli/compare/compare.h"
 #include "cli/files/json.h"
@@ -30,6 +31,13 @@ static enum status plan(struct comparison *c)
     if (status == DONE)
         status = folder_plan(&c->folder, a->output ? a->output : folder, REPORT, files_are_named);
     return status;
+}
+
+static enum status check_bakes(const struct comparison *c)
+{
+    const char *gis[MAX_METHODS];
+    for (int i = 0; i < c->method_count; i++) gis[i] = c->methods[i].gi;
+    return bakes_check_files(&c->session, gis, c->method_count);
 }
 
 // A software device has its images in main memory.
@@ -111,6 +119,7 @@ static enum status compare(const struct arguments *arguments)
     c->arguments = arguments;
     enum status status = session_begin(&c->session, arguments);
     if (status == DONE) status = plan(c);
+    if (status == DONE) status = check_bakes(c);
     if (status == DONE) status = prepare(c);
     for (int i = 0; i < c->method_count && status == DONE; i++) status = method_render(c, i);
     if (status == DONE) status = check_device(c);

@@ -270,6 +270,7 @@ static enum status render(const struct arguments *arguments)
     enum status status = session_begin(&job->session, arguments);
     if (status == DONE) status = check_usage(job);
     if (status == DONE) status = check_outputs(job);
+    if (status == DONE) status = bakes_check_files(&job->session, &arguments->gi, 1);
     if (status == DONE) status = prepare(job);
     if (status == DONE) session_say(&job->session);
     if (status == DONE) status = render_frames(job, path);

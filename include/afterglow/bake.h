@@ -33,6 +33,9 @@ AG_API void ag_bake_desc_default(struct ag_bake_desc *desc);
 /// The index-th technique of a GI spec that needs a bake; *name is NULL past the last.
 AG_API enum ag_result ag_bake_technique(struct ag_context *context, const char *gi, int index,
                                         const char **name);
+/// The technique that files of that bake name: mrt for drt, which has the same bake.
+AG_API enum ag_result ag_bake_technique_in_file(struct ag_context *context, const char *gi,
+                                                int index, const char **name);
 /// The technique that a bake file names, at most 31 characters.
 AG_API enum ag_result ag_bake_file_technique(struct ag_context *context, const char *path,
                                              char name[32]);

@@ -32,20 +32,42 @@ void ag_bake_desc_default(struct ag_bake_desc *desc)
     if (desc) *desc = (struct ag_bake_desc){ .checkpoint_every_s = CHECKPOINT_EVERY_S };
 }
 
+// The index-th technique of the spec that bakes; *out is NULL past the last.
+static enum ag_result find_technique(const char *function, struct ag_context *context,
+                                     const char *gi, int index, const struct technique **out)
+{
+    *out = NULL;
+    AG_REQUIRE_FOR(function, context, gi, "gi is NULL");
+    AG_REQUIRE_FOR(function, context, index >= 0, "index %d is negative", index);
+    struct gi_spec spec;
+    int term = -1;
+    const bool ok = gi_spec_parse(&spec, &context->host, gi);
+    if (ok) gi_spec_bakes(&spec, index, &term);
+    if (term >= 0) *out = spec.technique[term];
+    gi_spec_finish(&spec);
+    return api_done(context, ok);
+}
+
 enum ag_result ag_bake_technique(struct ag_context *context, const char *gi, int index,
                                  const char **name)
 {
     AG_REQUIRE_OUT(context, name);
     AG_REQUIRE_POINTER(context, context);
-    AG_REQUIRE_POINTER(context, gi);
-    AG_REQUIRE(context, index >= 0, "index %d is negative", index);
-    struct gi_spec spec;
-    int term = -1;
-    const bool ok = gi_spec_parse(&spec, &context->host, gi);
-    if (ok) gi_spec_bakes(&spec, index, &term);
-    if (term >= 0) *name = spec.technique[term]->name;
-    gi_spec_finish(&spec);
-    return api_done(context, ok);
+    const struct technique *found;
+    const enum ag_result result = find_technique(__func__, context, gi, index, &found);
+    if (found) *name = found->name;
+    return result;
+}
+
+enum ag_result ag_bake_technique_in_file(struct ag_context *context, const char *gi, int index,
+                                         const char **name)
+{
+    AG_REQUIRE_OUT(context, name);
+    AG_REQUIRE_POINTER(context, context);
+    const struct technique *found;
+    const enum ag_result result = find_technique(__func__, context, gi, index, &found);
+    if (found) *name = gi_bake_name(found);
+    return result;
 }
 
 enum ag_result ag_bake_file_technique(struct ag_context *context, const char *path, char name[32])

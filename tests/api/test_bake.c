@@ -34,6 +34,20 @@ TEST(bake_of_techniques_that_need_none_is_refused_in_one_sentence)
     close_scene(&s);
 }
 
+TEST(techniques_with_the_same_bake_name_one_of_them_in_its_files)
+{
+    struct opened s = open_scene();
+    const char *name = NULL;
+    assert_int_equal(ag_bake_technique(s.context, "drt", 0, &name), AG_OK);
+    CHECK_STRING(name, "drt");
+    assert_int_equal(ag_bake_technique_in_file(s.context, "drt", 0, &name), AG_OK);
+    CHECK_STRING(name, "mrt");
+    assert_int_equal(ag_bake_technique_in_file(s.context, "drt", 1, &name), AG_OK);
+    CHECK(name == NULL);
+    assert_int_equal(ag_bake_technique_in_file(s.context, "drt", -1, &name), AG_ERROR_ARGUMENT);
+    close_scene(&s);
+}
+
 TEST(bake_functions_refuse_missing_arguments)
 {
     struct opened s = open_scene();

@@ -264,6 +264,35 @@ TEST(render_with_a_bake_of_another_scene_fails_and_says_so)
     run_expect(0, "render @diagonal --size 16x16 --gi sample -o", image, "--bake", bake, NULL);
 }
 
+static void check_refused_bake(const char *words, const char *bake, const char *more,
+                               const char *image, const char *names)
+{
+    const struct run *r =
+        run_expect(1, words, image, "--bake", bake, more ? "--bake" : NULL, more, NULL);
+    check_one_error_line(r);
+    if (!strstr(r->err, names)) fail_msg("%s: %s", words, r->err);
+    CHECK(strstr(r->err, bake) && !file_exists(image));
+}
+
+// Before the scene is loaded: there is none of that name.
+TEST(bake_file_that_no_technique_of_the_run_uses_is_refused)
+{
+    use_cache("bake-unused");
+    const char *bake = path_of("unused.safetensors"), *copy = path_of("unused-2.safetensors"),
+               *absent = path_of("absent.safetensors"), *out = path_of("unused.png"),
+               *folder = path_of("unused-compare");
+    run_expect(0, "bake @cornell --gi sample --quiet -o", bake, NULL);
+    run_expect(0, "bake @cornell --gi sample --quiet -o", copy, NULL);
+    check_refused_bake("render absent.glb --gi none -o", bake, NULL, out,
+                       "it is of sample, which --gi none does not use");
+    check_refused_bake("compare absent.glb --gi none --gi none -o", bake, NULL, folder,
+                       "it is of sample, which no --gi uses");
+    check_refused_bake("render absent.glb --gi sample -o", bake, copy, out, "is of sample too");
+    check_refused_bake("render absent.glb --gi none -o", absent, NULL, out, "absent.safetensors");
+    check_refused_bake("compare absent.glb --gi none -o", absent, NULL, folder,
+                       "absent.safetensors");
+}
+
 TEST(compare_says_what_the_bake_of_a_method_cost)
 {
     require_device();
