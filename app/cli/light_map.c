@@ -5,6 +5,7 @@
 #include "cli/files/interrupt.h"
 #include "cli/files/json.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,6 +61,33 @@ static enum status check_usage(const struct arguments *a)
                                               : NULL;
     if (!option) return DONE;
     return wrong_usage("cannot use %s with --lightmap: choose one", option);
+}
+
+// "radiosity, other": techniques that have a light map.
+static void list_techniques(char *out, size_t size)
+{
+    struct ag_technique_info info;
+    size_t used = 0;
+    out[0] = 0;
+    for (int i = 0; ag_technique_get(i, &info) && used < size; i++) {
+        if (!info.has_lightmap) continue;
+        const int wrote = snprintf(out + used, size - used, "%s%s", used ? ", " : "", info.name);
+        used += wrote > 0 ? (size_t)wrote : 0;
+    }
+}
+
+static enum status check_technique(const struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    const char *found = NULL;
+    char list[SPEC_SIZE];
+    const enum ag_result result = ag_lightmap_technique(job->session.context, gi_of(a), &found);
+    if (result != AG_OK) return fail_library(job->session.context, result);
+    list_techniques(list, sizeof list);
+    return found ? DONE
+                 : wrong_usage("cannot bake a light map with --gi %s: no technique of it has one; "
+                               "techniques that do: %s",
+                               a->gi, list);
 }
 
 static enum status check_scene(const struct job *job)
@@ -180,8 +208,9 @@ static enum status run(struct job *job)
     desc.indirect_only = a->indirect_only;
     desc.denoise = a->denoise;
     enum status status = check_usage(a);
-    if (status == DONE) status = folder_plan(&job->folder, a->lightmap, MARK, is_ours);
     if (status == DONE) status = session_begin(&job->session, a);
+    if (status == DONE) status = check_technique(job);
+    if (status == DONE) status = folder_plan(&job->folder, a->lightmap, MARK, is_ours);
     if (status == DONE) status = session_load(&job->session, a->positional[0]);
     if (status == DONE) status = check_scene(job);
     if (status == DONE) status = session_light(&job->session);

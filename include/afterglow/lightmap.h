@@ -24,6 +24,10 @@ struct ag_lightmap_desc {
 };
 AG_API void ag_lightmap_desc_default(struct ag_lightmap_desc *desc);
 
+/// The technique of a GI spec that has a light map; *name is NULL where none has one.
+AG_API enum ag_result ag_lightmap_technique(struct ag_context *context, const char *gi,
+                                            const char **name);
+
 /// Of a complete bake with lightmap_samples. The scene must outlive it. desc NULL: the defaults.
 AG_API enum ag_result ag_lightmap_from_bake(const struct ag_bake *bake,
                                             const struct ag_lightmap_desc *desc,

@@ -26,6 +26,19 @@ void ag_lightmap_desc_default(struct ag_lightmap_desc *desc)
     if (desc) *desc = (struct ag_lightmap_desc){ 0 };
 }
 
+enum ag_result ag_lightmap_technique(struct ag_context *context, const char *gi, const char **name)
+{
+    AG_REQUIRE_OUT(context, name);
+    AG_REQUIRE_POINTER(context, context);
+    AG_REQUIRE_POINTER(context, gi);
+    struct gi_spec spec;
+    const bool ok = gi_spec_parse(&spec, &context->host, gi);
+    for (int i = 0; ok && i < spec.count && !*name; i++)
+        if (spec.technique[i]->light_map) *name = spec.technique[i]->name;
+    gi_spec_finish(&spec);
+    return api_done(context, ok);
+}
+
 // ---- creation
 
 static bool make_map(struct ag_lightmap *l, const struct gi_spec *spec, int term,

@@ -104,6 +104,21 @@ TEST_GPU(light_maps_are_of_techniques_that_have_one)
     fixture_close(&s);
 }
 
+TEST(technique_of_a_light_map_is_the_one_of_the_stack_that_has_it)
+{
+    struct ag_context *context = fixture_context();
+    struct ag_technique_info info;
+    const char *name = NULL;
+    for (int i = 0; ag_technique_get(i, &info); i++)
+        CHECK(info.has_lightmap == (strcmp(info.name, "radiosity") == 0));
+    assert_int_equal(ag_lightmap_technique(context, "radiosity:texels=4096+vo", &name), AG_OK);
+    CHECK_STRING(name, "radiosity");
+    assert_int_equal(ag_lightmap_technique(context, "vct", &name), AG_OK);
+    CHECK(name == NULL);
+    assert_int_equal(ag_lightmap_technique(context, "radiosty", &name), AG_ERROR_ARGUMENT);
+    ag_context_destroy(context);
+}
+
 TEST(light_map_functions_refuse_wrong_arguments)
 {
     struct ag_context *context = fixture_context();

@@ -56,7 +56,9 @@ TEST(light_maps_that_cannot_be_are_refused_in_one_line)
     const char *maps = path_of("maps-x"), *ours = make_folder("maps-full");
     check_one_error_line(run_expect(2, "bake @cornell --gi radiosity --spp 4", NULL));
     check_one_error_line(run_expect(2, BAKE " --shard 0/2 --lightmap", maps, NULL));
-    check_one_error_line(run_expect(2, "bake @cornell --gi mrt --spp 1 --lightmap", maps, NULL));
+    const struct run *mrt = run_expect(2, "bake @cornell --gi mrt --spp 1 --lightmap", maps, NULL);
+    check_one_error_line(mrt);
+    CHECK(strstr(mrt->err, "--gi mrt") && strstr(mrt->err, "radiosity"));
     check_one_error_line(run_expect(1, BAKE " --lightmap", path_of("absent/maps"), NULL));
     write_file(path_of("maps-full/letter.txt"), "x", 1);
     check_one_error_line(run_expect(1, BAKE " --lightmap", ours, NULL));
@@ -67,6 +69,18 @@ TEST(light_maps_that_cannot_be_are_refused_in_one_line)
     check_one_error_line(r);
     CHECK(strstr(r->err, "it has no triangles"));
     CHECK(!file_exists(maps));
+}
+
+// Before the scene is loaded: there is none of that name.
+TEST(technique_without_a_light_map_is_wrong_usage_before_any_work)
+{
+    use_cache("lightmap-technique");
+    const char *maps = path_of("maps-vct");
+    const struct run *r = run_expect(2, "bake absent.glb --gi vct --lightmap", maps, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "--gi vct") && strstr(r->err, "radiosity") && !file_exists(maps));
+    r = run_expect(1, "bake absent.glb --gi radiosity+vo --lightmap", maps, NULL);
+    CHECK(strstr(r->err, "absent.glb"));
 }
 
 TEST(denoising_without_its_library_is_a_warning)
