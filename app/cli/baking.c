@@ -1,6 +1,5 @@
 // Finding, running and caching bakes.
 #include "baking.h"
-#include "cli/cache/cache.h"
 #include "cli/files/interrupt.h"
 
 #include <math.h>
@@ -38,7 +37,7 @@ static enum status find_path(struct baking *b, const char *path)
                            sizeof b->path - sizeof CHECKPOINT);
     if (path)
         snprintf(b->path, sizeof b->path, "%s", path);
-    else if (!cache_file(CACHE_BAKE, info.key, b->path))
+    else if (!cache_file(CACHE_BAKE, info.key, b->path, b->no_cache))
         b->path[0] = 0;
     return DONE;
 }
@@ -82,7 +81,7 @@ bool baking_load(struct baking *b)
         if (b->in_cache) cache_touch(b->path);
         return true;
     }
-    if (b->in_cache || !cache_file(CACHE_BAKE, info.key, cached) || !load_from(b, cached))
+    if (b->in_cache || !cache_file(CACHE_BAKE, info.key, cached, NULL) || !load_from(b, cached))
         return false;
     cache_touch(cached);
     return true;
@@ -184,6 +183,9 @@ enum status baking_run(struct baking *b, bool shard)
     struct ag_bake_info info;
     ag_bake_get_info(b->bake, &info);
     const bool run_it = !info.complete || shard; // which a complete bake refuses
+    if (!b->path[0])
+        note("warning: the bake of %s is not kept for the next run: no cache: %s; " CACHE_REMEDY,
+             b->technique, b->no_cache);
     enum status status = info.complete ? DONE : estimate(b);
     if (status == DONE && run_it) status = run(b);
     return status == DONE ? write_file(b, shard) : status;

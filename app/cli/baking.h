@@ -1,6 +1,7 @@
 // Bakes of a command: a given file, a cached one, or a run with a progress bar.
 #pragma once
 
+#include "cli/cache/cache.h"
 #include "output.h"
 
 enum { MAX_BAKES = 3 };
@@ -8,11 +9,12 @@ enum { MAX_BAKES = 3 };
 struct baking {
     struct session *session;
     struct ag_bake *bake;
-    const char *technique;   // owned by the bake
-    char path[PATH_SIZE];    // of its file; "": kept in memory only
-    bool in_cache;           // the path is in the cache
-    bool loaded;             // from a file, not run
-    double estimate_seconds; // of the whole run, before it; NaN: nothing was estimated
+    const char *technique;         // owned by the bake
+    char path[PATH_SIZE];          // of its file; "": kept in memory only
+    bool in_cache;                 // the path is in the cache
+    char no_cache[CACHE_WHY_SIZE]; // why the path is ""
+    bool loaded;                   // from a file, not run
+    double estimate_seconds;       // of the whole run, before it; NaN: nothing was estimated
 };
 // Creates the bake of one technique of the spec. path NULL: a file in the cache. desc: see
 // ag_bake_create.

@@ -29,9 +29,18 @@ static enum status check_usage(const struct arguments *a)
     return light_map_check_others(a);
 }
 
+static enum status check_cache(const struct arguments *a)
+{
+    char folder[PATH_SIZE], why[CACHE_WHY_SIZE];
+    if (cache_folder(CACHE_BAKE, folder, why)) return DONE;
+    return fail("cannot bake %s: no cache for the result: %s; use -o FILE.safetensors, "
+                "or " CACHE_REMEDY,
+                a->positional[0], why);
+}
+
 static enum status check_outputs(const struct arguments *a)
 {
-    enum status status = a->output ? whole_file_check(a->output) : DONE;
+    enum status status = a->output ? whole_file_check(a->output) : check_cache(a);
     return status == DONE && a->report ? whole_file_check(a->report) : status;
 }
 

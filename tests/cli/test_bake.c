@@ -3,6 +3,7 @@
 #include "cli/program.h"
 
 #include <fcntl.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -356,6 +357,48 @@ TEST(cache_over_its_limit_loses_the_least_recently_used_files)
     CHECK(strstr(r->err, "00000000000000000000000000000001.safetensors"));
     CHECK(strstr(r->err, "made room"));
     assert_int_equal(count_files(folder), 3);
+}
+
+static const struct run *run_without_cache(int status, const char *words, const char *path)
+{
+    const struct run *r = run_expect(status, words, path, NULL);
+    if (!strstr(r->err, "no cache") || !strstr(r->err, "set AFTERGLOW_CACHE"))
+        fail_msg("%s: %s", words, r->err);
+    return r;
+}
+
+// Checks what is said with the cache that the environment names.
+static void check_without_cache(const char *why)
+{
+    const char *file = path_of("uncached.safetensors"), *image = path_of("uncached.png");
+    const struct run *r = run_without_cache(1, "bake @cornell --gi sample", NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, why) && strstr(r->err, "use -o FILE.safetensors"));
+    r = run_expect(0, "bake @cornell --gi sample -o", file, NULL);
+    CHECK(!strstr(r->err, "no cache") && file_exists(file));
+    r = run_without_cache(0, "render @cornell --size 16x16 --gi sample -o", image);
+    CHECK(strstr(r->err, "no cache") < strstr(r->err, "texels")); // before the work
+    r = run_expect(0, "render @cornell --size 16x16 --gi sample -o", image, "--bake", file, NULL);
+    CHECK(!strstr(r->err, "no cache"));
+    r = run_without_cache(0, "compare @cornell --size 16x16 --spp 1 --frames 1 --gi none -o",
+                          path_of("uncached-compare"));
+    CHECK(strstr(r->err, "use --reference FILE.exr"));
+    unlink(file);
+}
+
+TEST(results_that_no_cache_keeps_are_announced_before_the_work)
+{
+    require_device();
+    char home[PATH_MAX];
+    const char *given = getenv("HOME");
+    snprintf(home, sizeof home, "%s", given ? given : "/");
+    setenv("AFTERGLOW_CACHE", "/dev/null/cache", 1);
+    check_without_cache("/dev/null/cache");
+    unsetenv("AFTERGLOW_CACHE");
+    unsetenv("XDG_CACHE_HOME");
+    unsetenv("HOME");
+    check_without_cache("neither AFTERGLOW_CACHE, XDG_CACHE_HOME nor HOME names a folder");
+    setenv("HOME", home, 1);
 }
 
 #define LEFT_BAKE      "00000000000000000000000000000001.safetensors.tmp-0123456789abcdef"

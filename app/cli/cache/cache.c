@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,22 +43,35 @@ static bool make_folder(char *path)
     return (mkdir(path, 0700) == 0 || errno == EEXIST) && access(path, W_OK | X_OK) == 0;
 }
 
-bool cache_file(enum cache_kind kind, const char *key, char out[PATH_SIZE])
+__attribute__((format(printf, 2, 3))) static bool no_cache(char why[CACHE_WHY_SIZE],
+                                                           const char *format, ...)
 {
-    char root[PATH_SIZE], folder[PATH_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    if (why) vsnprintf(why, CACHE_WHY_SIZE, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+bool cache_folder(enum cache_kind kind, char out[PATH_SIZE], char why[CACHE_WHY_SIZE])
+{
+    char root[PATH_SIZE];
+    if (!cache_root(root, sizeof root) || !join(out, root, kinds[kind].folder))
+        return no_cache(why, "neither AFTERGLOW_CACHE, XDG_CACHE_HOME nor HOME names a folder");
+    return make_folder(out) || no_cache(why, "%s: %s", out, strerror(errno));
+}
+
+bool cache_file(enum cache_kind kind, const char *key, char out[PATH_SIZE],
+                char why[CACHE_WHY_SIZE])
+{
+    char folder[PATH_SIZE];
     const char *ending = kinds[kind].ending;
-    if (!cache_root(root, sizeof root) || !join(folder, root, kinds[kind].folder)) {
-        detail("no cache: neither AFTERGLOW_CACHE nor HOME names a folder");
-        return false;
-    }
-    if (!make_folder(folder)) {
-        detail("no cache: %s: %s", folder, strerror(errno));
-        return false;
-    }
+    if (!cache_folder(kind, folder, why)) return false;
     int used = snprintf(out, PATH_SIZE, "%s/", folder);
     for (const char *c = key; *c && used < PATH_SIZE - 16; c++)
         out[used++] = isalnum((unsigned char)*c) ? *c : '-';
-    return snprintf(out + used, (size_t)(PATH_SIZE - used), "%s", ending) < PATH_SIZE - used;
+    return snprintf(out + used, (size_t)(PATH_SIZE - used), "%s", ending) < PATH_SIZE - used ||
+           no_cache(why, "%s: the path is too long", folder);
 }
 
 void cache_touch(const char *path)

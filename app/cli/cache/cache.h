@@ -9,9 +9,14 @@
 enum cache_kind { CACHE_REFERENCE, CACHE_BAKE };
 enum { CACHE_KINDS = CACHE_BAKE + 1 };
 
-// Path of the cached file for `key` (letters, digits, blanks). Creates the folder. False: no
-// cache; --verbose shows the reason.
-bool cache_file(enum cache_kind kind, const char *key, char out[PATH_SIZE]);
+// The folder of a kind, created. False: no cache; why (may be NULL) states the reason.
+enum { CACHE_WHY_SIZE = 512 };
+bool cache_folder(enum cache_kind kind, char out[PATH_SIZE], char why[CACHE_WHY_SIZE]);
+// Path of the cached file for `key` (letters, digits, blanks), in that folder.
+bool cache_file(enum cache_kind kind, const char *key, char out[PATH_SIZE],
+                char why[CACHE_WHY_SIZE]);
+// The remedy for a cache that is not there, in messages.
+#define CACHE_REMEDY "set AFTERGLOW_CACHE to a folder that can be written"
 // Marks a file as recently used.
 void cache_touch(const char *path);
 // Removes the least recently used files, except `path`, until the cache of which it is a file is

@@ -182,9 +182,14 @@ static double cached_number(struct comparison *c, const char *name)
 static void take_cached(struct comparison *c)
 {
     struct reference *reference = &c->reference;
+    char why[CACHE_WHY_SIZE];
     if (!cache_file(CACHE_REFERENCE, ag_reference_checkpoint(reference->tracing.reference),
-                    reference->cache_path))
+                    reference->cache_path, why)) {
+        note("warning: the reference is not kept for the next run: no cache: %s; use --reference "
+             "FILE.exr, or " CACHE_REMEDY,
+             why);
         return;
+    }
     if (access(reference->cache_path, F_OK) != 0) return;
     if (tracing_resume(&reference->tracing, reference->cache_path) != AG_OK) {
         note("warning: the reference is traced again: %s",
