@@ -87,6 +87,41 @@ bool baking_load(struct baking *b)
     return true;
 }
 
+// ---- parts
+
+enum status baking_check_parts(const struct arguments *a, bool file)
+{
+    const bool shard = a->shard_count > 0;
+    if (shard && a->merge && !file)
+        return wrong_usage("cannot use --shard with --merge for a light map: choose one");
+    if (!a->output && (shard || (a->merge && file)))
+        return wrong_usage("cannot use --%s: it requires -o FILE.safetensors",
+                           a->merge ? "merge" : "shard");
+    if (shard && a->report)
+        return wrong_usage("cannot use --report with --shard: the bake is complete after --merge");
+    return DONE;
+}
+
+enum status baking_origin(const struct session *session, struct ag_bake_origin *out)
+{
+    const char *part = session->arguments->positional[0];
+    if (ag_bake_partial_origin(session->context, part, out) == AG_OK) return DONE;
+    fail_library(session->context, AG_ERROR_FORMAT);
+    return FAILED; // a file's content is not wrong usage
+}
+
+enum status baking_merge(struct baking *b)
+{
+    const struct arguments *a = b->session->arguments;
+    for (int i = 0; i < a->positional_count; i++) {
+        const enum ag_result result = ag_bake_merge(b->bake, a->positional[i]);
+        if (result == AG_OK) continue;
+        fail_bake(b, result);
+        return FAILED;
+    }
+    return DONE;
+}
+
 // ---- the run
 
 // 1234567 as "1.23 million".
@@ -183,7 +218,7 @@ enum status baking_run(struct baking *b, bool shard)
     struct ag_bake_info info;
     ag_bake_get_info(b->bake, &info);
     const bool run_it = !info.complete || shard; // which a complete bake refuses
-    if (!b->path[0])
+    if (!b->path[0] && !info.complete)
         note("warning: the bake of %s is not kept for the next run: no cache: %s; " CACHE_REMEDY,
              b->technique, b->no_cache);
     enum status status = info.complete ? DONE : estimate(b);

@@ -18,14 +18,11 @@ struct job {
 
 static enum status check_usage(const struct arguments *a)
 {
-    if ((a->shard_count > 0 || a->merge) && !a->output)
-        return wrong_usage("cannot use --%s: it requires -o FILE.safetensors",
-                           a->merge ? "merge" : "shard");
+    enum status status = baking_check_parts(a, true);
+    if (status != DONE) return status;
     if (!a->merge && !a->has_gi)
         return wrong_usage("cannot bake %s: --gi SPEC is missing (see afterglow list)",
                            a->positional[0]);
-    if (a->shard_count > 0 && a->report)
-        return wrong_usage("cannot use --report with --shard: the bake is complete after --merge");
     return light_map_check_others(a);
 }
 
@@ -51,11 +48,11 @@ static enum status find_origin(struct job *job)
 {
     const struct arguments *a = job->arguments;
     if (!a->merge) return DONE;
-    enum ag_result result =
-        ag_bake_partial_origin(job->session.context, a->positional[0], &job->origin);
-    if (result == AG_OK) return DONE;
-    fail_library(job->session.context, result);
-    return FAILED; // the file's content is not wrong usage
+    const enum status status = baking_origin(&job->session, &job->origin);
+    if (status == DONE && job->origin.lightmap_samples > 0)
+        return fail("cannot merge %s: it is part of a light map; add --lightmap DIR",
+                    a->positional[0]);
+    return status;
 }
 
 static enum status begin(struct job *job)
@@ -73,18 +70,6 @@ static enum status begin(struct job *job)
                         a->output);
 }
 
-static enum status merge(struct job *job)
-{
-    const struct arguments *a = job->arguments;
-    for (int i = 0; a->merge && i < a->positional_count; i++) {
-        enum ag_result result = ag_bake_merge(job->baking.bake, a->positional[i]);
-        if (result == AG_OK) continue;
-        fail_library(job->session.context, result);
-        return FAILED;
-    }
-    return DONE;
-}
-
 // What only the report shows is not in the file.
 static bool may_load(const struct arguments *a)
 {
@@ -99,7 +84,7 @@ static enum status bake_it(struct job *job)
              job->baking.path);
         return a->output ? baking_run(&job->baking, false) : DONE; // writes the file
     }
-    enum status status = merge(job);
+    const enum status status = a->merge ? baking_merge(&job->baking) : DONE;
     return status == DONE ? baking_run(&job->baking, a->shard_count > 0) : status;
 }
 
@@ -154,15 +139,12 @@ static enum status publish(struct job *job, json_t *report)
     return status == DONE && a->json ? json_print(json_incref(report)) : status;
 }
 
-// What to do with the parts of this shard and the others.
 static enum status describe_shard(const struct job *job)
 {
     const struct arguments *a = job->arguments;
-    struct ag_bake_info info;
-    ag_bake_get_info(job->baking.bake, &info);
-    note("written: %s, part %d of %d up to %s; with the others: afterglow bake --merge PART… -o "
-         "FILE",
-         a->output, a->shard, a->shard_count, info.split_stage ? info.split_stage : "the end");
+    note("written: %s, part %d of %d; afterglow bake --merge with all parts finishes the bake, or "
+         "continues it in parts with --shard",
+         a->output, a->shard, a->shard_count);
     return DONE;
 }
 
@@ -234,6 +216,10 @@ const struct command command_bake = {
         "  afterglow bake house.glb --lightmap maps\n"
         "      light map of radiosity: maps/irradiance.exr and maps/scene.glb\n"
         "  afterglow bake house.glb --lightmap maps --spp 256\n"
-        "      the same by path tracing, which Ctrl-C interrupts and the next run continues\n",
+        "      the same by path tracing, which Ctrl-C interrupts and the next run continues\n"
+        "  afterglow bake house.glb --lightmap maps --spp 256 --shard 0/2 -o p0.safetensors\n"
+        "  afterglow bake house.glb --lightmap maps --spp 256 --shard 1/2 -o p1.safetensors\n"
+        "  afterglow bake --merge p0.safetensors p1.safetensors --lightmap maps\n"
+        "      the same in two parts\n",
     .run = bake,
 };

@@ -17,8 +17,9 @@ struct job {
     const struct arguments *arguments;
     struct session session;
     struct folder folder;
-    struct baking baking; // with --spp
-    struct bakes bakes;   // of the technique
+    struct ag_bake_origin origin; // of the parts, with --merge
+    struct baking baking;         // by paths
+    struct bakes bakes;           // of the technique
     struct ag_device *device;
     struct ag_renderer *renderer;
     struct ag_lightmap *lightmap;
@@ -32,9 +33,15 @@ static bool is_ours(const char *name)
            strcmp(name, "scene.glb") == 0;
 }
 
-static const char *gi_of(const struct arguments *a)
+static const char *gi_of(const struct job *job)
 {
-    return a->has_gi ? a->gi : DEFAULT_GI;
+    const struct arguments *a = job->arguments;
+    return a->merge ? job->origin.gi : a->has_gi ? a->gi : DEFAULT_GI;
+}
+
+static bool is_part(const struct arguments *a)
+{
+    return a->shard_count > 0;
 }
 
 enum status light_map_check_others(const struct arguments *a)
@@ -53,14 +60,39 @@ enum status light_map_check_others(const struct arguments *a)
 
 static enum status check_usage(const struct arguments *a)
 {
-    const char *option = a->output            ? "-o"
-                         : a->report          ? "--report"
-                         : a->report_full     ? "--report-full"
-                         : a->shard_count > 0 ? "--shard"
-                         : a->merge           ? "--merge"
-                                              : NULL;
-    if (!option) return DONE;
-    return wrong_usage("cannot use %s with --lightmap: choose one", option);
+    const char *option = a->report                  ? "--report"
+                         : a->report_full           ? "--report-full"
+                         : a->output && !is_part(a) ? "-o"
+                                                    : NULL;
+    if (option) return wrong_usage("cannot use %s with --lightmap: choose one", option);
+    return baking_check_parts(a, false);
+}
+
+static enum status check_part(const struct arguments *a)
+{
+    const char *option = a->denoise ? "--denoise" : a->indirect_only ? "--indirect-only" : NULL;
+    if (is_part(a) && !a->has_spp)
+        return wrong_usage("cannot use --shard with --lightmap: only a light map by paths has "
+                           "parts; add --spp N");
+    if (is_part(a) && option)
+        return wrong_usage("cannot use %s with --shard: give it with --merge", option);
+    option = a->has_gi ? "--gi" : a->has_spp ? "--spp" : NULL;
+    if (a->merge && option)
+        return wrong_usage("cannot use %s with --merge: it is that of the parts; leave it out",
+                           option);
+    return DONE;
+}
+
+static enum status find_origin(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    if (!a->merge) return DONE;
+    const enum status status = baking_origin(&job->session, &job->origin);
+    if (status == DONE && job->origin.lightmap_samples == 0)
+        return fail("cannot merge %s: it is no part of a light map; use -o FILE.safetensors "
+                    "instead of --lightmap",
+                    a->positional[0]);
+    return status;
 }
 
 // "radiosity, other": techniques that have a light map.
@@ -78,16 +110,15 @@ static void list_techniques(char *out, size_t size)
 
 static enum status check_technique(const struct job *job)
 {
-    const struct arguments *a = job->arguments;
     const char *found = NULL;
     char list[SPEC_SIZE];
-    const enum ag_result result = ag_lightmap_technique(job->session.context, gi_of(a), &found);
+    const enum ag_result result = ag_lightmap_technique(job->session.context, gi_of(job), &found);
     if (result != AG_OK) return fail_library(job->session.context, result);
     list_techniques(list, sizeof list);
     return found ? DONE
                  : wrong_usage("cannot bake a light map with --gi %s: no technique of it has one; "
                                "techniques that do: %s",
-                               a->gi, list);
+                               gi_of(job), list);
 }
 
 static enum status check_scene(const struct job *job)
@@ -95,8 +126,7 @@ static enum status check_scene(const struct job *job)
     struct ag_scene_info info = { 0 };
     ag_scene_get_info(job->session.scene, -1, 0.0, &info);
     if (info.triangles > 0) return DONE;
-    return fail("cannot bake a light map of %s: it has no triangles",
-                job->arguments->positional[0]);
+    return fail("cannot bake a light map of %s: it has no triangles", job->session.name);
 }
 
 static enum status fail_call(const struct job *job, enum ag_result result)
@@ -107,26 +137,36 @@ static enum status fail_call(const struct job *job, enum ag_result result)
 
 // ---- by paths
 
-static enum status gather_paths(struct job *job)
+static enum status begin_paths(struct job *job)
 {
     const struct arguments *a = job->arguments;
     struct ag_bake_desc desc;
     ag_bake_desc_default(&desc);
-    desc.seed = a->seed;
+    desc.seed = a->merge ? job->origin.seed : a->seed;
     desc.threads = a->threads;
+    desc.shard = a->shard;
+    desc.shard_count = a->shard_count;
     desc.max_memory_bytes = (uint64_t)a->max_memory_mib << 20;
-    desc.lightmap_samples = a->spp;
-    enum status status = baking_begin(&job->baking, &job->session, gi_of(a), &desc, NULL);
+    desc.lightmap_samples = a->merge ? job->origin.lightmap_samples : a->spp;
+    return baking_begin(&job->baking, &job->session, gi_of(job), &desc, a->output);
+}
+
+static enum status gather_paths(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    enum status status = begin_paths(job);
     if (status != DONE) return status;
     session_say(&job->session);
-    if (a->force || !baking_load(&job->baking)) status = baking_run(&job->baking, false);
-    return status;
+    if (a->merge) status = baking_merge(&job->baking);
+    if (status != DONE) return status;
+    if (!a->merge && !is_part(a) && !a->force && baking_load(&job->baking)) return DONE;
+    return baking_run(&job->baking, is_part(a));
 }
 
 static enum status take_paths(struct job *job, const struct ag_lightmap_desc *desc)
 {
     enum status status = gather_paths(job);
-    if (status != DONE) return status;
+    if (status != DONE || is_part(job->arguments)) return status;
     const enum ag_result result = ag_lightmap_from_bake(job->baking.bake, desc, &job->lightmap);
     return result == AG_OK ? DONE : fail_call(job, result);
 }
@@ -143,7 +183,7 @@ static enum ag_result create_renderer(struct job *job)
     if (result != AG_OK) return result;
     ag_renderer_desc_default(&desc);
     desc.width = desc.height = FRAME_SIDE;
-    desc.gi = gi_of(job->arguments);
+    desc.gi = gi_of(job);
     desc.bakes = job->bakes.bakes;
     desc.bake_count = job->bakes.count;
     return ag_renderer_create(job->device, job->session.scene, &desc, &job->renderer);
@@ -166,7 +206,7 @@ static enum status take_technique(struct job *job, const struct ag_lightmap_desc
     enum status status = session_camera(&job->session, 0.0, &camera);
     if (status != DONE) return status;
     session_say(&job->session);
-    status = bakes_prepare(&job->bakes, &job->session, gi_of(job->arguments));
+    status = bakes_prepare(&job->bakes, &job->session, gi_of(job));
     if (status != DONE) return status;
     enum ag_result result = create_renderer(job);
     if (result == AG_OK) result = render(job, &camera);
@@ -200,6 +240,24 @@ static enum status report(const struct job *job)
                                 json_double((double)info.texels_per_m), "back", info.has_back));
 }
 
+// Everything that can fail before the work.
+static enum status prepare(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    enum status status = check_usage(a);
+    if (status == DONE) status = check_part(a);
+    if (status == DONE) status = session_begin(&job->session, a);
+    if (status == DONE) status = find_origin(job);
+    if (status == DONE) status = check_technique(job);
+    if (status == DONE)
+        status = is_part(a) ? whole_file_check(a->output)
+                            : folder_plan(&job->folder, a->lightmap, MARK, is_ours);
+    if (status == DONE)
+        status = session_load(&job->session, a->merge ? job->origin.scene_name : a->positional[0]);
+    if (status == DONE) status = check_scene(job);
+    return status == DONE ? session_light(&job->session) : status;
+}
+
 static enum status run(struct job *job)
 {
     const struct arguments *a = job->arguments;
@@ -207,15 +265,11 @@ static enum status run(struct job *job)
     ag_lightmap_desc_default(&desc);
     desc.indirect_only = a->indirect_only;
     desc.denoise = a->denoise;
-    enum status status = check_usage(a);
-    if (status == DONE) status = session_begin(&job->session, a);
-    if (status == DONE) status = check_technique(job);
-    if (status == DONE) status = folder_plan(&job->folder, a->lightmap, MARK, is_ours);
-    if (status == DONE) status = session_load(&job->session, a->positional[0]);
-    if (status == DONE) status = check_scene(job);
-    if (status == DONE) status = session_light(&job->session);
-    if (status == DONE) status = a->has_spp ? take_paths(job, &desc) : take_technique(job, &desc);
-    if (status == DONE) status = write_folder(job);
+    enum status status = prepare(job);
+    if (status == DONE)
+        status = a->has_spp || a->merge ? take_paths(job, &desc) : take_technique(job, &desc);
+    if (status != DONE || is_part(a)) return status;
+    status = write_folder(job);
     return status == DONE ? report(job) : status;
 }
 

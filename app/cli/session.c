@@ -71,7 +71,7 @@ static enum status unknown_animation(struct session *session, int count)
         used += wrote > 0 ? (size_t)wrote : 0;
     }
     return fail("cannot find animation %s in %s: it has %s", session->arguments->animation,
-                session->arguments->positional[0], list);
+                session->name, list);
 }
 
 static enum status find_animation(struct session *session)
@@ -99,13 +99,14 @@ static void remember_still_scene(struct session *session)
     const struct arguments *a = session->arguments;
     if ((a->time_s != 0.0 || a->time_step_s != 0.0) && animation_count(session) == 0)
         remember(session, "%s has no effect: %s has no animation",
-                 a->time_s != 0.0 ? "--time" : "--time-step", a->positional[0]);
+                 a->time_s != 0.0 ? "--time" : "--time-step", session->name);
 }
 
 enum status session_load(struct session *session, const char *name)
 {
     enum ag_result result = ag_scene_load(session->context, name, &session->scene);
     if (result != AG_OK) return fail_library(session->context, result);
+    session->name = name;
     remember_still_scene(session);
     return find_animation(session);
 }
@@ -139,8 +140,7 @@ enum status defaults_light(struct session *session, struct defaults *out)
     if (wrote < (int)sizeof out->light && value_light(out->light, &out->light_value, &why) &&
         value_floats(out->sky, 3, out->sky_radiance))
         return DONE;
-    return fail("cannot light %s: its default light %s is not finite",
-                session->arguments->positional[0], out->light);
+    return fail("cannot light %s: its default light %s is not finite", session->name, out->light);
 }
 
 enum status defaults_camera(struct session *session, double time_s, struct defaults *out)
@@ -158,8 +158,7 @@ enum status defaults_camera(struct session *session, double time_s, struct defau
     double fov_deg;
     if (!value_floats(out->eye, 3, eye) || !value_floats(out->target, 3, target) ||
         !value_number(out->fov, &fov_deg))
-        return fail("cannot look at %s: its default camera is not finite",
-                    session->arguments->positional[0]);
+        return fail("cannot look at %s: its default camera is not finite", session->name);
     result = ag_scene_look_at(session->scene, eye, target, radians(fov_deg), &out->camera);
     if (result == AG_OK) return DONE;
     fail_library(session->context, result);
@@ -183,7 +182,7 @@ static enum status add_default_light(struct session *session)
     struct ag_scene_info info = { 0 };
     ag_scene_get_info(session->scene, -1, 0.0, &info);
     remember(session, "%s in %s: using %s", info.emissive ? "only negligible emission" : "no light",
-             session->arguments->positional[0], session->light);
+             session->name, session->light);
     return DONE;
 }
 
@@ -229,8 +228,7 @@ static void warn_of_empty_scene(struct session *session)
     struct ag_scene_info info = { 0 };
     ag_scene_get_info(session->scene, -1, 0.0, &info);
     if (info.triangles == 0)
-        remember(session, "nothing to see in %s: it has no triangles",
-                 session->arguments->positional[0]);
+        remember(session, "nothing to see in %s: it has no triangles", session->name);
 }
 
 static enum status set_sky(struct session *session)
@@ -300,8 +298,8 @@ static enum status camera_default(struct session *session, double time_s, struct
     }
     session->made_up = true;
     session->made_up_camera = defaults.camera;
-    remember(session, "no camera in %s: using --eye %s --target %s --fov %s",
-             session->arguments->positional[0], defaults.eye, defaults.target, defaults.fov);
+    remember(session, "no camera in %s: using --eye %s --target %s --fov %s", session->name,
+             defaults.eye, defaults.target, defaults.fov);
     snprintf(session->camera_name, sizeof session->camera_name,
              "--eye %.70s --target %.70s --fov %.20s", defaults.eye, defaults.target, defaults.fov);
     return DONE;

@@ -11,6 +11,7 @@ struct session {
     const struct arguments *arguments;
     struct ag_context *context;
     struct ag_scene *scene;
+    const char *name;            // of the scene, as given to session_load
     int animation;               // index for API calls
     char camera_name[SPEC_SIZE]; // in results: a name, or the options for it
     char light[LIGHT_SIZE];      // in results: the options for it; "": that of the scene

@@ -118,6 +118,7 @@ static struct bake *create_lightmap(struct ag_bake *b, struct bake_identity iden
     identity.technique = LIGHTMAP_NAME;
     identity.version = LIGHTMAP_VERSION * LIGHTMAP_VERSIONS + technique->bake_version;
     identity.options = text;
+    identity.of_light = true;
     struct bake *bake = text ? bake_create(host, &identity) : NULL;
     const struct lightmap_bake how = { .pose = &b->pose,
                                        .samples = b->lightmap_samples,
@@ -311,9 +312,23 @@ enum ag_result ag_bake_merge(struct ag_bake *b, const char *path)
     return api_done(context, bake_merge(b->bake, path));
 }
 
+// Of the options that create_lightmap prints; 0: not stated.
+static int samples_of(const char *options)
+{
+    static const char KEY[] = ",samples=";
+    const char *last = NULL;
+    for (const char *at = options; (at = strstr(at, KEY)); at++) last = at;
+    const long samples = last ? strtol(last + sizeof KEY - 1, NULL, 10) : 0;
+    return samples >= 1 && samples <= MOST_SAMPLES ? (int)samples : 0;
+}
+
 static bool take_origin(struct host *host, const char *path, const struct bake_origin *origin,
                         struct ag_bake_origin *out)
 {
+    const bool lightmap = strcmp(origin->technique, LIGHTMAP_NAME) == 0;
+    if (lightmap) out->lightmap_samples = samples_of(origin->options);
+    if (lightmap && out->lightmap_samples == 0)
+        return host_fail(host, FAIL_FORMAT, "cannot use %s: it does not state its samples", path);
     if (strlen(origin->gi) >= sizeof out->gi ||
         strlen(origin->scene_name) >= sizeof out->scene_name)
         return host_fail(host, FAIL_FORMAT, "cannot use %s: its GI spec or scene is too long",
@@ -335,8 +350,7 @@ enum ag_result ag_bake_partial_origin(struct ag_context *context, const char *pa
     struct bake_origin origin;
     const bool ok =
         bake_partial_origin(host, path, &origin) && take_origin(host, path, &origin, out);
-    host_free(host, origin.gi);
-    host_free(host, origin.scene_name);
+    bake_origin_finish(host, &origin);
     return api_done(context, ok);
 }
 

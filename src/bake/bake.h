@@ -16,6 +16,7 @@ struct bake_identity {
     const char *program; // its version, for files only
     // GI spec and scene, so that partial files can be merged without them; may be NULL.
     const char *gi, *scene_name;
+    bool of_light; // the scene's hash includes its light, for messages
 };
 
 // An empty plan; `bake` owns it. Copies the identity. NULL: out of memory.
@@ -78,9 +79,10 @@ const char *bake_split_stage(const struct bake *bake);
 
 // What a partial file is a part of: new texts owned by the caller, and its seed.
 struct bake_origin {
-    char *gi, *scene_name;
+    char *technique, *options, *gi, *scene_name;
     uint64_t seed;
 };
+void bake_origin_finish(struct host *host, struct bake_origin *origin);
 bool bake_partial_origin(struct host *host, const char *path, struct bake_origin *out);
 
 // ---- the result

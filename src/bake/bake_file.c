@@ -140,7 +140,10 @@ bool identity_check(struct host *host, const struct bake *bake, const char *kind
         return fail_value(host, path, "bake version", set, VERSION, text.version);
     if (differs(set, OPTIONS, bake->identity.options))
         return fail_value(host, path, "list of options", set, OPTIONS, bake->identity.options);
-    if (differs(set, SCENE, text.scene)) return fail_use(host, path, "it is of another scene");
+    if (differs(set, SCENE, text.scene))
+        return fail_use(host, path,
+                        bake->identity.of_light ? "it is of another scene or of other light"
+                                                : "it is of another scene");
     // Partial results of two seeds are no bake of either.
     if (strcmp(kind, BAKE) != 0 && differs(set, SEED, text.seed))
         return fail_value(host, path, "seed", set, SEED, text.seed);
@@ -269,13 +272,25 @@ static bool take_origin(struct host *host, const char *path, const struct tensor
                         struct bake_origin *out)
 {
     const char *gi = tensors_metadata(set, GI), *name = tensors_metadata(set, SCENE_NAME);
-    const char *seed = tensors_metadata(set, SEED);
-    if (differs(set, KIND, PARTIAL) || !gi || !name || !seed)
+    const char *seed = tensors_metadata(set, SEED), *options = tensors_metadata(set, OPTIONS);
+    const char *technique = tensors_metadata(set, TECHNIQUE);
+    if (differs(set, KIND, PARTIAL) || !gi || !name || !seed || !options || !technique)
         return fail_use(host, path, "it is not part of a bake, as --shard writes it");
+    out->technique = host_strdup(host, technique);
+    out->options = host_strdup(host, options);
     out->gi = host_strdup(host, gi);
     out->scene_name = host_strdup(host, name);
     out->seed = strtoull(seed, NULL, 10);
-    return out->gi && out->scene_name;
+    return out->technique && out->options && out->gi && out->scene_name;
+}
+
+void bake_origin_finish(struct host *host, struct bake_origin *origin)
+{
+    host_free(host, origin->technique);
+    host_free(host, origin->options);
+    host_free(host, origin->gi);
+    host_free(host, origin->scene_name);
+    *origin = (struct bake_origin){ 0 };
 }
 
 bool bake_partial_origin(struct host *host, const char *path, struct bake_origin *out)
@@ -285,9 +300,6 @@ bool bake_partial_origin(struct host *host, const char *path, struct bake_origin
     if (!safetensors_read(host, path, &file)) return false;
     const bool ok = take_origin(host, path, &file.set, out);
     safetensors_finish(host, &file);
-    if (ok) return true;
-    host_free(host, out->gi);
-    host_free(host, out->scene_name);
-    *out = (struct bake_origin){ 0 };
-    return false;
+    if (!ok) bake_origin_finish(host, out);
+    return ok;
 }

@@ -71,6 +71,77 @@ TEST(light_maps_that_cannot_be_are_refused_in_one_line)
     CHECK(!file_exists(maps));
 }
 
+// ---- parts
+
+#define LIGHT " --light point:0,3,1:90,80,70 --sky 1,2,3"
+
+static void bake_part(const char *scene, const char *shard, const char *part, const char *folder)
+{
+    run_expect(0, "bake --gi radiosity:texels=2048 --spp 2 --seed 7 --quiet" LIGHT " --lightmap",
+               folder, "-o", part, "--shard", shard, scene, NULL);
+    CHECK(file_exists(part) && !file_exists(folder));
+}
+
+static void check_merged(const char *scene, const char *more)
+{
+    const char *a = path_of("parts-0.safetensors"), *b = path_of("parts-1.safetensors"),
+               *c = path_of("parts-2.safetensors"), *whole = path_of("parts-whole"),
+               *merged = path_of("parts-merged");
+    char words[300];
+    bake_part(scene, "0/3", a, merged);
+    bake_part(scene, "1/3", b, merged);
+    bake_part(scene, "2/3", c, merged);
+    snprintf(words, sizeof words, "bake --merge --quiet%s" LIGHT " --lightmap", more);
+    run_expect(0, words, merged, b, c, a, NULL);
+    snprintf(words, sizeof words,
+             "bake --gi radiosity:texels=2048 --spp 2 --seed 7 --force --quiet%s" LIGHT
+             " --lightmap",
+             more);
+    run_expect(0, words, whole, scene, NULL);
+    assert_int_equal(count_files(merged), count_files(whole));
+    CHECK(files_are_equal(path_of("parts-merged/irradiance.exr"),
+                          path_of("parts-whole/irradiance.exr")));
+    CHECK(files_are_equal(path_of("parts-merged/scene.glb"), path_of("parts-whole/scene.glb")));
+    unlink(path_of("parts-merged/irradiance.exr"));
+    unlink(path_of("parts-merged/scene.glb"));
+    CHECK(rmdir(merged) == 0);
+}
+
+TEST(light_map_of_merged_parts_has_the_same_bytes_as_that_of_one_run)
+{
+    use_cache("lightmap-parts");
+    check_merged("@cornell", "");
+    check_merged("@cornell", " --indirect-only --denoise");
+    run_expect(0, BAKE " --lightmap", path_of("maps-parts"), NULL);
+    check_merged(path_of("maps-parts/scene.glb"), "");
+}
+
+TEST(parts_of_a_light_map_are_refused_where_they_do_not_fit)
+{
+    use_cache("lightmap-parts-refused");
+    const char *part = path_of("part-x.safetensors"), *maps = path_of("part-x"),
+               *other = path_of("part-y.safetensors");
+    bake_part("@cornell", "0/2", part, maps);
+    const struct run *r = run_expect(1, "bake --merge --lightmap", maps, part, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "of other light"));
+    r = run_expect(1, "bake --merge -o", other, part, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "add --lightmap DIR"));
+    run_expect(0, "bake @cornell --gi radiosity:texels=2048 --quiet --shard 0/2 -o", other, NULL);
+    r = run_expect(1, "bake --merge --lightmap", maps, other, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "no part of a light map"));
+    check_one_error_line(run_expect(2, "bake --merge --spp 2 --lightmap", maps, part, NULL));
+    check_one_error_line(
+        run_expect(2, BAKE " --shard 0/2 --denoise --lightmap", maps, "-o", other, NULL));
+    r = run_expect(2, "bake @cornell --shard 0/2 --lightmap", maps, "-o", other, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "add --spp N") && !file_exists(maps));
+}
+
+// ---- techniques
+
 // Before the scene is loaded: there is none of that name.
 TEST(technique_without_a_light_map_is_wrong_usage_before_any_work)
 {
