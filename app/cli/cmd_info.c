@@ -44,9 +44,9 @@ static json_t *light_json(struct session *session, int index)
     if (ag_scene_get_light(session->scene, index, session->animation, time_s, &light) != AG_OK)
         return NULL;
     const struct ag_light_desc *l = &light.light;
-    json_t *object = json_pack("{s:o, s:s, s:s, s:o}", "name", json_text(light.name), "type",
+    json_t *object = json_pack("{s:o, s:s, s:s, s:o, s:b}", "name", json_text(light.name), "type",
                                light_types[l->type], "unit", l->type == AG_LIGHT_SUN ? "lx" : "cd",
-                               "intensity", json_floats(l->intensity, 3));
+                               "intensity", json_floats(l->intensity, 3), "enabled", l->enabled);
     if (l->type != AG_LIGHT_SUN)
         json_object_set_new(object, "position", json_floats(l->position, 3));
     if (l->type != AG_LIGHT_POINT)
@@ -192,7 +192,8 @@ static void print_lights(struct session *session, int count)
         if (l->type != AG_LIGHT_POINT) print_vector(" towards ", l->direction, "");
         if (l->type == AG_LIGHT_SPOT)
             printf(", %.4g to %.4g degrees", degrees(l->inner_rad), degrees(l->outer_rad));
-        print_vector(", ", l->intensity, l->type == AG_LIGHT_SUN ? " lx\n" : " cd\n");
+        print_vector(", ", l->intensity, l->type == AG_LIGHT_SUN ? " lx" : " cd");
+        printf("%s\n", l->enabled ? "" : ", off");
     }
 }
 

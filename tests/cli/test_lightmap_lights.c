@@ -94,6 +94,12 @@ TEST(lights_that_the_bake_is_without_stay_in_the_file_and_emit_nothing_when_it_i
     check_light(glb, 0, "point", false, false);
     check_light(glb, 1, "directional", true, true);
     json_decref(glb);
+    json_t *info = run_json(run_expect(0, "info --json", copy_of("lights-off"), NULL));
+    const json_t *lights = json_object_get(info, "lights");
+    CHECK(json_is_false(json_object_get(json_array_get(lights, 0), "enabled")));
+    CHECK(json_is_true(json_object_get(json_array_get(lights, 1), "enabled")));
+    json_decref(info);
+    CHECK(strstr(run_expect(0, "info", copy_of("lights-off"), NULL)->out, " cd, off\n"));
     // A copy of the copy: the light stays off.
     run_expect(0, "bake" POINT GI, test_path("lights-off-again"), copy_of("lights-off"), NULL);
     glb = read_glb(copy_of("lights-off-again"));
