@@ -176,12 +176,16 @@ static bool job_decode(const struct png_job *job, struct image *out)
     return true;
 }
 
+// A signature and the chunk IHDR, which is the first (PNG specification, section 5.6). libpng takes
+// others before it.
 static bool is_png(const struct file_bytes *bytes)
 {
-    return bytes->size >= 8 && png_sig_cmp(bytes->data, 0, 8) == 0;
+    enum { TYPE_AT = 12, TYPE_END = 16 };
+    return bytes->size >= TYPE_END && png_sig_cmp(bytes->data, 0, 8) == 0 &&
+           memcmp(bytes->data + TYPE_AT, "IHDR", TYPE_END - TYPE_AT) == 0;
 }
 
-// The first chunk is IHDR, which begins with width and height.
+// IHDR begins with width and height.
 bool png_read_size(struct host *host, const char *path, int *width, int *height)
 {
     enum { WIDTH_AT = 16, HEIGHT_AT = 20, END = 24 };
