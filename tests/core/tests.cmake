@@ -1,4 +1,4 @@
-foreach(name arena file ggx_albedo hash host linalg option parallel process rng sampling sh temporary text vec)
+foreach(name arena file ggx_albedo hash host linalg option parallel process rng sampling saturate sh temporary text vec)
   ag_test(core/${name} USES core)
 endforeach()
 
