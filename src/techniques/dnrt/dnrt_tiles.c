@@ -2,6 +2,8 @@
 // outer volume. Pixels of its own are in the rectangle around its bounding sphere.
 #include "techniques/dnrt/dnrt_state.h"
 
+#include "core/saturate.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -49,8 +51,8 @@ static struct rectangle rectangle_of(const struct frame_view *view,
         if (behind == 8) r.end[i] = 0;
         if (behind > 0) continue;
         const float scale = 0.5f * (float)size[i] / DNRT_TILE;
-        r.first[i] = (int)fmaxf(floorf((least[i] + 1.0f) * scale), 0.0f);
-        r.end[i] = (int)fminf(floorf((most[i] + 1.0f) * scale) + 1.0f, (float)tiles[i]);
+        r.first[i] = int_saturated((double)((least[i] + 1.0f) * scale), 0, tiles[i]);
+        r.end[i] = int_saturated((double)(floorf((most[i] + 1.0f) * scale) + 1.0f), 0, tiles[i]);
     }
     return r;
 }
