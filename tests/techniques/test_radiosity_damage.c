@@ -1,8 +1,6 @@
 // Damaged bakes of radiosity: each tensor that is missing, of another shape, or out of range is
 // refused by name; what cannot be told from a bake is read within its bounds.
-#include "frame/frame_fixture.h"
-#include "techniques/gi_bake.h"
-#include "techniques/gi_spec.h"
+#include "techniques/damage_fixture.h"
 
 #include "core/half.h"
 #include "core/rng.h"
@@ -13,91 +11,33 @@
 #define SPARSE  "radiosity:texels=2048,rays=64,sources=8"
 #define LOWRANK SPARSE ",transfer=lowrank,modes=16"
 
-struct subject {
-    struct frame_fixture s;
-    struct gi_spec spec;
-    struct technique_bake how;
-    struct bake *bake;
-    struct tensor *at; // a copy of the bake's, whose data may be replaced
-    struct tensors set;
-};
-
-static void open_subject(struct subject *u, struct gpu *gpu, const char *text)
+static void open_subject(struct damage_fixture *u, struct gpu *gpu, const char *text)
 {
     struct material m = material_default();
     m.metallic = 0;
+    *u = (struct damage_fixture){ 0 };
     fixture_init(&u->s, gpu);
     fixture_box(&u->s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, fixture_material(&u->s, &m));
     fixture_look(&u->s, vec3_of(-1.7f, 2.6f, 1.7f), vec3_of(0.2f, 0.8f, -0.2f));
-    fixture_open(&u->s);
-    CHECK(gi_spec_parse(&u->spec, test_host(), text));
-    u->how = (struct technique_bake){ .pose = &u->s.pose, .options = u->spec.options[0] };
-    u->bake = gi_bake_create(test_host(), u->spec.technique[0], &u->how,
-                             (struct bake_identity){ .program = "test" });
-    CHECK(u->bake && bake_run(u->bake, &(struct bake_run_options){ .threads = 2 }));
-    const struct tensors *saved = bake_tensors(u->bake);
-    u->at = host_alloc(test_host(), saved->count, sizeof *u->at);
-    memcpy(u->at, saved->at, saved->count * sizeof *u->at);
-    u->set = (struct tensors){ .at = u->at, .count = saved->count };
-}
-
-static void close_subject(struct subject *u)
-{
-    host_free(test_host(), u->at);
-    bake_destroy(u->bake);
-    gi_spec_finish(&u->spec);
-    fixture_finish(&u->s);
-}
-
-// A copy of exactly its size: the sanitizer sees reads beyond it.
-static void *own_data(struct tensor *tensor)
-{
-    void *data = host_alloc(test_host(), 1, tensor->bytes);
-    memcpy(data, tensor->data, tensor->bytes);
-    tensor->data = data;
-    return data;
-}
-
-static void give_back(struct subject *u, size_t i)
-{
-    const struct tensor *saved = &bake_tensors(u->bake)->at[i];
-    if (u->at[i].data != saved->data) host_free(test_host(), (void *)u->at[i].data);
-    u->at[i] = *saved;
-}
-
-// Where it is accepted, light is also computed and looked up.
-static bool loads(struct subject *u)
-{
-    const struct gi_bakes bakes = { { &u->set } };
-    test_forget_messages();
-    struct gi *gi = gi_create_baked(test_host(), u->s.gpu, &u->spec, &bakes, &u->s.pose, u->s.width,
-                                    u->s.height);
-    if (!gi) {
-        CHECK(test_host()->failure == FAIL_FORMAT);
-        return false;
-    }
-    u->s.indirect = gi_hook(gi);
-    fixture_render(&u->s);
-    gi_destroy(gi);
-    return true;
+    damage_open(u, text, 0);
 }
 
 static void check_shapes(struct gpu *gpu, const char *text)
 {
-    struct subject u;
+    struct damage_fixture u;
     open_subject(&u, gpu, text);
-    CHECK(loads(&u));
+    CHECK(damage_loads(&u));
     for (size_t i = 0; i < u.set.count; i++) {
         u.at[i].name = "another";
-        CHECK(!loads(&u) && strstr(test_last_message(), bake_tensors(u.bake)->at[i].name));
-        give_back(&u, i);
+        CHECK(!damage_loads(&u) && strstr(test_last_message(), u.from->at[i].name));
+        damage_restore(&u, i);
         for (int axis = 0; axis < u.at[i].rank; axis++) {
             u.at[i].shape[axis]--;
-            CHECK(!loads(&u) && strstr(test_last_message(), u.at[i].name));
-            give_back(&u, i);
+            CHECK(!damage_loads(&u) && strstr(test_last_message(), u.at[i].name));
+            damage_restore(&u, i);
         }
     }
-    close_subject(&u);
+    damage_close(&u);
 }
 
 TEST_GPU(a_bake_without_a_tensor_or_with_another_shape_is_refused)
@@ -123,39 +63,32 @@ struct damage {
     const char *message;
 };
 
-static size_t index_of(const struct subject *u, const char *name)
-{
-    for (size_t i = 0; i < u->set.count; i++)
-        if (strcmp(u->at[i].name, name) == 0) return i;
-    fail_msg("the bake lacks %s", name);
-    return 0;
-}
-
 // The first element of the first row, of one within and of the last. Rows of clusters have room for
 // clusters of two parts: the first half is in use.
-static void check_value(struct subject *u, const struct damage *d)
+static void check_value(struct damage_fixture *u, const struct damage *d)
 {
-    const size_t i = index_of(u, d->tensor), size = tensor_type_bytes(u->at[i].type);
+    const size_t i = damage_index(u, d->tensor), size = tensor_type_bytes(u->at[i].type);
     const int rank = u->at[i].rank;
     const size_t row = rank > 1 ? u->at[i].shape[rank - 1] : 1, rows = u->at[i].bytes / size / row;
     const size_t used = strncmp(d->tensor, "clusters/", 9) == 0 ? rows / 2 : rows;
     const size_t places[] = { 0, used / 2 * row, (used - 1) * row };
     for (size_t k = 0; k < 3; k++) {
-        uint8_t *data = own_data(&u->at[i]);
+        uint8_t *data = damage_own(u, i);
         memcpy(data + places[k] * size, &d->value, size);
-        if (loads(u)) fail_msg("%s: element %zu was changed and it loaded", d->tensor, places[k]);
+        if (damage_loads(u))
+            fail_msg("%s: element %zu was changed and it loaded", d->tensor, places[k]);
         if (!strstr(test_last_message(), d->message)) fail_msg("%s", test_last_message());
-        give_back(u, i);
+        damage_restore(u, i);
     }
 }
 
 static void check_values(struct gpu *gpu, const char *text, const struct damage *damages, size_t n)
 {
-    struct subject u;
+    struct damage_fixture u;
     open_subject(&u, gpu, text);
     for (size_t i = 0; i < n; i++) check_value(&u, &damages[i]);
-    CHECK(loads(&u));
-    close_subject(&u);
+    CHECK(damage_loads(&u));
+    damage_close(&u);
 }
 
 #define BEYOND                                                                                     \
@@ -221,17 +154,17 @@ static void fill_random(const struct tensor *tensor, uint8_t *data, uint64_t see
 // sanitizer where it is on, say so.
 static void check_noise(struct gpu *gpu, const char *text)
 {
-    struct subject u;
+    struct damage_fixture u;
     int accepted = 0, refused = 0;
     open_subject(&u, gpu, text);
     for (size_t i = 0; i < u.set.count; i++) {
-        fill_random(&u.at[i], own_data(&u.at[i]), i << 32);
-        ++*(loads(&u) ? &accepted : &refused);
-        give_back(&u, i);
+        fill_random(&u.at[i], damage_own(&u, i), i << 32);
+        ++*(damage_loads(&u) ? &accepted : &refused);
+        damage_restore(&u, i);
     }
     print_message("%d tensors of noise were refused, %d not\n", refused, accepted);
     CHECK(refused > 0 && accepted > 0);
-    close_subject(&u);
+    damage_close(&u);
 }
 
 TEST_GPU(a_bake_of_noise_is_read_within_its_bounds)

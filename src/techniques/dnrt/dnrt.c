@@ -37,6 +37,17 @@ static bool resize(void *state, int view, uint32_t width, uint32_t height)
     return dnrt_make_tiles(s);
 }
 
+// A matrix without an inverse leaves zero.
+static bool find_frames(struct dnrt *s, const struct scene_pose *pose)
+{
+    mat3s stretch;
+    s->frames = host_alloc(s->host, (size_t)s->baked.shape_count, sizeof *s->frames);
+    for (int i = 0; s->frames && i < s->baked.shape_count; i++)
+        if (!dnrt_object_frame(&s->baked, pose, s->baked.shapes[i].object, &s->frames[i], &stretch))
+            s->frames[i] = (struct dnrt_frame){ .scale = 0.0f };
+    return s->frames != NULL;
+}
+
 static bool create(void *state, const struct technique_create *how)
 {
     struct dnrt *s = state;
@@ -51,7 +62,8 @@ static bool create(void *state, const struct technique_create *how)
         host_log(s->host, LOG_WARNING,
                  "dnrt: %s has no dynamic objects: it changes nothing (docs/library.md: mobility)",
                  how->pose->scene->name);
-    return s->volumes && resize(s, 0, how->width, how->height) && dnrt_find_objects(s, how->pose);
+    return s->volumes && find_frames(s, how->pose) && resize(s, 0, how->width, how->height) &&
+           dnrt_find_objects(s, how->pose);
 }
 
 static bool make_apply_pipelines(struct dnrt *s, const struct gpu_constant constants[2])
@@ -347,6 +359,7 @@ static void destroy(void *state)
     host_free(s->host, s->own);
     host_free(s->host, s->gpu_objects);
     host_free(s->host, s->volumes);
+    host_free(s->host, s->frames);
     host_free(s->host, s->tiles);
     dnrt_objects_finish(&s->objects);
     dnrt_objects_finish(&s->baked);

@@ -43,6 +43,7 @@ struct dnrt {
     bool warned;                 // of objects without a volume
     int animation;               // of the key frames
     struct dnrt_volume *volumes; // [baked.volume_count]
+    struct dnrt_frame *frames;   // [baked.shape_count] of their objects in the pose of `create`
     int slots[3];                // room for objects along x, y, z of the image
     gpu_buffer shapes, samples, light, changed;
     bool stale;      // all volumes of `image`

@@ -3,6 +3,8 @@
 
 #include "techniques/dnrt/dnrt_tensors.h"
 
+#include "scene/limits.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,14 +25,30 @@ static const void *expect(struct dnrt *s, const struct tensors *bake, const char
     return tensors_expect(s->host, bake, name, type, rank, extent);
 }
 
-static bool take_bounds(struct dnrt *s, int shape, const float *sphere, const float *box)
+// The geometry of the scene is within its limits: so are bounds of it.
+static bool is_near(const struct dnrt_volume *volume, const struct dnrt_frame *frame)
 {
-    s->volumes[shape] =
-        (struct dnrt_volume){ vec3_of(sphere[0], sphere[1], sphere[2]), sphere[3],
-                              vec3_of(box[0], box[1], box[2]), vec3_of(box[3], box[4], box[5]) };
-    if (sphere[3] >= 0.0f) return true;
-    return host_fail(s->host, FAIL_FORMAT, "bake of dnrt: the radius of shape %d is negative",
-                     shape);
+    const mat4s world_from_object = dnrt_world_from_object(frame);
+    const vec3s half = glms_vec3_scale(volume->box_half, frame->scale);
+    return limits_position(mat4_point(world_from_object, volume->centre)) &&
+           limits_position(mat4_point(world_from_object, volume->box_centre)) &&
+           limits_position(half) && volume->radius * frame->scale <= SCENE_MAX_DISTANCE_M;
+}
+
+static bool take_bounds(struct dnrt *s, int index, const float *sphere, const float *box)
+{
+    const struct dnrt_volume volume = { vec3_of(sphere[0], sphere[1], sphere[2]), sphere[3],
+                                        vec3_of(box[0], box[1], box[2]),
+                                        vec3_of(box[3], box[4], box[5]) };
+    const char *fault = NULL;
+    s->volumes[index] = volume;
+    if (!(volume.radius >= 0.0f)) fault = "radius is negative";
+    for (int i = 0; i < 3; i++)
+        if (!(volume.box_half.raw[i] >= 0.0f)) fault = "box has a negative edge";
+    if (!is_near(&volume, &s->frames[dnrt_shape_of_volume(&s->baked, index)]))
+        fault = "bounds reach beyond the limits of a scene";
+    return !fault || host_fail(s->host, FAIL_FORMAT, "bake of dnrt: shape %d: its %s; bake again",
+                               index, fault);
 }
 
 static size_t planes_of(const struct dnrt_options *options)

@@ -9,3 +9,4 @@ ag_test(techniques/dnrt/keys USES techniques LIBRARIES ag_test_dnrt ag_test_tech
 ag_test(techniques/dnrt/self USES techniques LIBRARIES ag_test_dnrt)
 ag_test(techniques/dnrt/normals USES techniques LIBRARIES ag_test_dnrt)
 ag_test(techniques/dnrt/tiles USES techniques LIBRARIES ag_test_dnrt)
+ag_test(techniques/dnrt/damage USES techniques LIBRARIES ag_test_dnrt ag_test_techniques ag_test_frame_fixture)

@@ -1,0 +1,33 @@
+// Damaged bakes: a bake of a frame_fixture, of which tensors are changed before it is loaded.
+//
+//     struct damage_fixture u = { 0 };
+//     fixture_init(&u.s, gpu); // and its geometry
+//     damage_open(&u, "radiosity", 0);
+//     *(float *)damage_own(&u, damage_index(&u, "regions/scale")) = NAN;
+//     CHECK(!damage_loads(&u));
+//     damage_restore(&u, i);
+//     damage_close(&u);
+#pragma once
+
+#include "frame/frame_fixture.h"
+#include "techniques/gi_bake.h"
+#include "techniques/gi_spec.h"
+
+struct damage_fixture {
+    struct frame_fixture s;
+    struct gi_spec spec;
+    struct gi_baked baked;
+    int term;                   // whose bake is damaged
+    const struct tensors *from; // the whole bake
+    struct tensor *at;          // a copy of its tensors, whose data may be replaced
+    struct tensors set;
+};
+
+void damage_open(struct damage_fixture *u, const char *text, int term); // also opens u->s
+void damage_close(struct damage_fixture *u);
+size_t damage_index(const struct damage_fixture *u, const char *tensor);
+// A copy of the tensor's data of exactly its size: the sanitizer sees reads beyond it.
+void *damage_own(struct damage_fixture *u, size_t tensor);
+void damage_restore(struct damage_fixture *u, size_t tensor);
+// Where the bake is accepted, a frame is rendered, too. Refused: by FAIL_FORMAT, with a message.
+bool damage_loads(struct damage_fixture *u);
