@@ -10,6 +10,11 @@ static bool is_within(vec3s p, float limit)
     return fabsf(p.x) <= limit && fabsf(p.y) <= limit && fabsf(p.z) <= limit;
 }
 
+bool limits_vertex(vec3s p)
+{
+    return is_within(p, SCENE_MAX_COORDINATE_M);
+}
+
 bool limits_position(vec3s p)
 {
     return is_within(p, SCENE_MAX_DISTANCE_M);
@@ -88,8 +93,8 @@ static bool geometry_is_near(const struct scene_pose *pose)
 {
     const struct scene *scene = pose->scene;
     const struct box3 *bounds = &pose->bounds;
-    bool near = box3_is_empty(*bounds) || (is_within(bounds->min, SCENE_MAX_COORDINATE_M) &&
-                                           is_within(bounds->max, SCENE_MAX_COORDINATE_M));
+    bool near =
+        box3_is_empty(*bounds) || (limits_vertex(bounds->min) && limits_vertex(bounds->max));
     for (int i = 0; near && i < scene->instance_count; i++) near = vertices_are_finite(pose, i);
     return near || too_far(scene, "its", "geometry", SCENE_MAX_COORDINATE_M);
 }

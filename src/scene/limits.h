@@ -14,6 +14,7 @@
 // the largest scene, 1e33 lumens, is finite. The sun's disc has 1.6e9 cd/m².
 #define SCENE_MAX_RADIANCE 1e15f
 
+bool limits_vertex(vec3s position);   // finite, and within SCENE_MAX_COORDINATE_M
 bool limits_position(vec3s position); // finite, and within SCENE_MAX_DISTANCE_M
 bool limits_light(vec3s intensity);   // each from 0 to SCENE_MAX_RADIANCE
 

@@ -198,11 +198,20 @@ TEST(malformed_maps_are_refused_with_the_name_of_the_block)
               "[1,1,1]]}"),
           "fold", "fold over" },
         { MAP("{'name':'flat','box':[[0,0,0],[1,0,1]]}"), "flat", "flat" },
-        { MAP("{'name':'far','box':[[0,0,0],[1e39,1,1]]}"), "far", "finite" },
+        { MAP("{'name':'far','box':[[0,0,0],[1e39,1,1]]}"), "far", "largest coordinate, 1e+08 m" },
+        { MAP("{'name':'far','box':[[0,0,0],[1e20,1,1]]}"), "far", "largest coordinate" },
+        { MAP("{'name':'far','box':[[0,-1.1e8,0],[1,1,1]]}"), "far", "largest coordinate" },
+        { MAP("{'name':'far','corners':[[0,0,0],[1,0,0],[0,1,0],[1,1,0],[0,0,1],[1,0,1],[0,1,1],"
+              "[1,1,1e9]]}"),
+          "far", "largest coordinate" },
         { MAP("{'name':'short','box':[[0,0,0],[1,1]]}"), "short", "box" },
         { MAP("{'name':'few','corners':[[0,0,0]]}"), "few", "corners" },
         { MAP("{" BOX_A "},{" BOX_A "}"), "hall", "name" },
-        { MAP("{" BOX_A ",'colour':'red'}"), "hall", "member" },
+        { MAP("{" BOX_A ",'colour':'red'}"), "hall", "unknown member colour; remove it" },
+        { MAP("{" BOX_A ",'neighbours':{}}"), "hall",
+          "unknown member neighbours: did you mean neighbors?" },
+        { NAMED("'cluter':['table']"), "the map", "unknown member cluter: did you mean clutter?" },
+        { NAMED("'comment':'a'"), "the map", "unknown member comment; remove it" },
         { MAP("{" BOX_A ",'open':['-x','+x','-y','+y','-z','+z']}"), "hall", "no wall" },
         { MAP("{'name':'pipe','shape':'straight','open':['+x'],'box':[[0,0,0],[1,1,1]]}"), "pipe",
           "openings" },
@@ -248,6 +257,13 @@ TEST(a_file_names_clutter_and_walls)
     CHECK_STRING(map.named[1].node, "lamp");
     CHECK_STRING(map.named[2].node, "door");
     CHECK(map.named[1].clutter && !map.named[2].clutter);
+    mrt_block_map_finish(&map);
+}
+
+TEST(a_file_may_name_its_schema)
+{
+    struct mrt_block_map map;
+    CHECK(read_map(NAMED("'$schema':'block-maps.schema.json'"), &map));
     mrt_block_map_finish(&map);
 }
 
@@ -347,22 +363,51 @@ TEST(a_scene_without_blocks_has_an_empty_map)
     mrt_block_map_finish(&map);
 }
 
-TEST(blocks_come_from_the_extras_of_gltf_nodes)
+// ' stands for ".
+static const char *write_gltf(const char *text)
 {
-    static const char text[] =
-        "{'asset':{'version':'2.0'},'scene':0,'scenes':[{'nodes':[0]}],'nodes':["
-        "{'name':'group','translation':[10,0,0],'children':[1,2],'extras':'text'},"
-        "{'name':'a','scale':[2,2,2],'extras':{'other':1,'afterglow_block':"
-        "{'neighbors':{'+x':'b'}}}},"
-        "{'name':'b','translation':[2,0,0],'scale':[2,2,2],'extras':{'afterglow_block':{}}}]}";
     const char *path = test_path("blocks.gltf");
     FILE *file = fopen(path, "wb");
     CHECK(file);
     for (const char *c = text; *c; c++) fputc(*c == '\'' ? '"' : *c, file);
     CHECK(fclose(file) == 0);
-    struct mrt_block_map map = map_of(path);
+    return path;
+}
+
+#define GLTF(nodes)                                                                                \
+    "{'asset':{'version':'2.0'},'scene':0,'scenes':[{'nodes':[0]}],'nodes':[" nodes "]}"
+
+TEST(blocks_come_from_the_extras_of_gltf_nodes)
+{
+    static const char text[] =
+        GLTF("{'name':'group','translation':[10,0,0],'children':[1,2],'extras':'text'},"
+             "{'name':'a','scale':[2,2,2],'extras':{'other':1,'afterglow_block':"
+             "{'neighbors':{'+x':'b'}}}},"
+             "{'name':'b','translation':[2,0,0],'scale':[2,2,2],'extras':{'afterglow_block':{}}}");
+    struct mrt_block_map map = map_of(write_gltf(text));
     CHECK(map.count == 2 && connections(&map) == 1);
     CHECK_NEAR(map.blocks[0].corner[0].x, 9, 1e-5);
     CHECK_NEAR(map.blocks[1].corner[7].x, 13, 1e-5);
     mrt_block_map_finish(&map);
+}
+
+static void check_refused(const char *gltf, const char *why)
+{
+    struct scene *scene = scene_load(test_host(), write_gltf(gltf));
+    struct mrt_block_map map;
+    CHECK(scene);
+    test_forget_messages();
+    CHECK(!mrt_block_map_of_scene(test_host(), scene, &map));
+    if (!strstr(test_last_message(), why)) fail_msg("%s", test_last_message());
+    scene_destroy(scene);
+}
+
+TEST(malformed_blocks_in_extras_are_refused_with_the_name_of_the_node)
+{
+    check_refused(GLTF("{'name':'a','extras':{'afterglow_block':{'box':[[0,0,0],[1e20,1,1]]}}}"),
+                  "block a reaches beyond the largest coordinate");
+    check_refused(GLTF("{'name':'a','scale':[3e8,1,1],'extras':{'afterglow_block':{}}}"),
+                  "block a reaches beyond the largest coordinate");
+    check_refused(GLTF("{'name':'a','extras':{'afterglow_block':{'opne':['+y']}}}"),
+                  "block a: unknown member opne: did you mean open?");
 }

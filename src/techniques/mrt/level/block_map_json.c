@@ -3,7 +3,9 @@
 #include "block_map.h"
 
 #include "core/file.h"
+#include "core/option.h"
 
+#include "scene/limits.h"
 #include "scene/pose.h"
 
 #include <jansson.h>
@@ -33,6 +35,48 @@ static bool wrong(const struct source *source, const char *name, const char *why
 {
     return host_fail(source->host, FAIL_FORMAT, "%s: block %.*s: %s", source->what,
                      MRT_NAME_BYTES - 1, name, why);
+}
+
+// ---- members
+
+static bool is_one_of(const char *name, const char *const *known, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(name, known[i]) == 0) return true;
+    return false;
+}
+
+static const char *unknown_member(const json_t *json, const char *const *known, size_t count)
+{
+    const char *key;
+    json_t *value;
+    json_object_foreach((json_t *)json, key, value)
+    {
+        if (!is_one_of(key, known, count)) return key;
+    }
+    return NULL;
+}
+
+// `where` is a part of `what`: "block hall".
+static bool check_members(struct host *host, const char *what, const char *where,
+                          const json_t *json, const char *const *known, size_t count)
+{
+    const char *key = unknown_member(json, known, count);
+    const char *nearest = key ? nearest_name(key, known, count) : NULL;
+    if (nearest)
+        return host_fail(host, FAIL_FORMAT, "%s: %s: unknown member %.100s: did you mean %s?", what,
+                         where, key, nearest);
+    return !key || host_fail(host, FAIL_FORMAT, "%s: %s: unknown member %.100s; remove it", what,
+                             where, key);
+}
+
+static bool check_block(const struct source *source, const struct source_block *from)
+{
+    static const char *const known[] = { "name", "shape", "corners", "box", "open", "neighbors" };
+    char where[sizeof "block " + MRT_NAME_BYTES];
+    snprintf(where, sizeof where, "block %.*s", MRT_NAME_BYTES - 1, from->name);
+    return check_members(source->host, source->what, where, from->json, known,
+                         sizeof known / sizeof *known);
 }
 
 // ---- one block
@@ -78,8 +122,14 @@ static bool read_geometry(const struct source *source, const struct source_block
         return wrong(source, block->name, "its corners are not 8 arrays of 3 numbers");
     if (box && !read_box(box, block))
         return wrong(source, block->name, "its box is not 2 arrays of 3 numbers");
-    for (int c = 0; c < MRT_CORNERS; c++)
+    for (int c = 0; c < MRT_CORNERS; c++) {
         block->corner[c] = mat4_point(from->world_from_block, block->corner[c]);
+        if (limits_vertex(block->corner[c])) continue;
+        return host_fail(
+            source->host, FAIL_FORMAT,
+            "%s: block %s reaches beyond the largest coordinate, %g m; make it smaller",
+            source->what, block->name, (double)SCENE_MAX_COORDINATE_M);
+    }
     return true;
 }
 
@@ -110,25 +160,10 @@ static bool read_open(const struct source *source, const struct source_block *fr
     return true;
 }
 
-static bool check_members(const struct source *source, const struct source_block *from)
-{
-    static const char *const known[] = { "name", "shape", "corners", "box", "open", "neighbors" };
-    const char *key;
-    json_t *value;
-    json_object_foreach((json_t *)from->json, key, value)
-    {
-        bool found = false;
-        for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-            found = found || strcmp(key, known[i]) == 0;
-        if (!found) return wrong(source, from->name, "it has a member that does not exist");
-    }
-    return true;
-}
-
 static bool read_block(const struct source *source, const struct source_block *from,
                        struct mrt_block *block)
 {
-    if (!check_members(source, from) || !read_kind(source, from, block)) return false;
+    if (!check_block(source, from) || !read_kind(source, from, block)) return false;
     snprintf(block->name, MRT_NAME_BYTES, "%s", from->name);
     return read_geometry(source, from, block) && read_open(source, from, block);
 }
@@ -233,6 +268,13 @@ static bool read_names(const char *path, const json_t *root, struct mrt_block_ma
 
 // ---- a file
 
+static bool check_root(struct host *host, const char *path, const json_t *root)
+{
+    static const char *const known[] = { "$schema", "afterglow_block_map", "blocks", "clutter",
+                                         "walls" };
+    return check_members(host, path, "the map", root, known, sizeof known / sizeof *known);
+}
+
 static bool read_document(struct host *host, const char *path, const json_t *root,
                           struct mrt_block_map *map)
 {
@@ -241,6 +283,7 @@ static bool read_document(struct host *host, const char *path, const json_t *roo
     if (json_integer_value(json_object_get(root, "afterglow_block_map")) != 1 ||
         !json_is_array(array) || source.count == 0)
         return host_fail(host, FAIL_FORMAT, "%s: it is not a block map of version 1", path);
+    if (!check_root(host, path, root)) return false;
     source.blocks = host_alloc(host, source.count, sizeof *source.blocks);
     bool ok = source.blocks != NULL;
     for (size_t i = 0; ok && i < source.count; i++) {
