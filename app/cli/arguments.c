@@ -74,7 +74,7 @@ static bool set_target(struct arguments *a, const char *value, const char **why)
 
 static bool set_fov(struct arguments *a, const char *value, const char **why)
 {
-    *why = "it must be more than 0 and less than 180 degrees";
+    *why = "it must be 0.001 to 179.999 degrees";
     a->has_fov = true;
     return value_number(value, &a->fov_deg) && a->fov_deg >= 0.001 && a->fov_deg <= 179.999;
 }
