@@ -41,11 +41,12 @@ static const char *accepted(const struct gpu *gpu, const void *bytes, size_t siz
                             size_t *data_bytes)
 {
     struct header header;
-    const char *data = (const char *)bytes + sizeof header, *why = "it is not a pipeline cache";
+    const char *data = NULL, *why = "it is not a pipeline cache";
     *data_bytes = 0;
     if (!bytes || size == 0) return NULL;
     if (size >= sizeof header) {
         memcpy(&header, bytes, sizeof header);
+        data = (const char *)bytes + sizeof header;
         if (memcmp(header.magic, MAGIC, MAGIC_BYTES) == 0 && header.zero == 0)
             why =
                 header.bytes == size - sizeof header ? misfit(gpu, &header, data) : "it is damaged";
