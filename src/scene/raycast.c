@@ -4,6 +4,7 @@
 #include "scene/raycast.h"
 
 #include "core/hash.h"
+#include "core/saturate.h"
 
 #include <math.h>
 #include <string.h>
@@ -65,8 +66,7 @@ struct bins {
 
 static int bin_of(vec3s centre, int axis, float low, float scale)
 {
-    int bin = (int)((centre.raw[axis] - low) * scale);
-    return bin < 0 ? 0 : bin >= BIN_COUNT ? BIN_COUNT - 1 : bin;
+    return int_saturated((double)((centre.raw[axis] - low) * scale), 0, BIN_COUNT - 1);
 }
 
 // The bin border of the lowest estimated cost: triangle count times area, summed over both sides.

@@ -375,6 +375,18 @@ TEST(zero_stays_zero_in_a_plane)
     CHECK(bytes[1] == 128);
 }
 
+// No smaller than 0 by half a step of a byte, and not the largest byte of the other sign.
+TEST(a_plane_of_denormal_numbers_is_zero)
+{
+    const float values[4] = { 1e-44f, 0, -1e-44f, 3e-38f };
+    uint8_t bytes[4];
+    for (int count = 3; count <= 4; count++) {
+        const float scale = dnrt_encode_byte(values, count, 1, bytes);
+        CHECK(scale == values[count == 3 ? 0 : 3]);
+        for (int i = 0; i < count; i++) assert_int_equal(bytes[i], 128);
+    }
+}
+
 TEST(samples_inside_get_the_mean_of_their_neighbours)
 {
     enum { N = 4 };

@@ -147,6 +147,45 @@ TEST(without_a_seed_in_a_room_the_default_camera_is_one)
     finish(&made);
 }
 
+// The inside of a box around the origin.
+static struct scene *make_box(vec3s half)
+{
+    static uint32_t indices[] = { 0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1,
+                                  2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3 };
+    vec3s positions[8], normals[8];
+    for (int i = 0; i < 8; i++) {
+        const vec3s corner = vec3_of(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+        positions[i] = glms_vec3_mul(half, corner);
+        normals[i] = vec3_unit(glms_vec3_negate(corner));
+    }
+    struct scene *scene = scene_create(test_host(), "box");
+    const struct material material = material_default();
+    const struct node node = node_default();
+    const struct mesh mesh = { .vertex_count = 8,
+                               .index_count = 36,
+                               .positions = positions,
+                               .normals = normals,
+                               .indices = indices,
+                               .material = scene_add_material(scene, &material) };
+    const struct instance it = { .node = scene_add_node(scene, &node),
+                                 .mesh = scene_add_mesh(scene, &mesh),
+                                 .skin = -1 };
+    CHECK(scene_add_instance(scene, &it) == 0);
+    return scene;
+}
+
+// As long as the limits of a scene allow: an int would not count its cubes.
+TEST(a_room_longer_than_an_int_of_cubes_is_divided)
+{
+    const vec3s inside = vec3_of(0, 0, 0);
+    struct made made = { .scene = make_box(vec3_of(5e7f, 1e-3f, 1e-3f)) };
+    CHECK(pose_init(&made.pose, made.scene, -1, 0.0f));
+    CHECK(mrt_map_auto(test_host(), &made.pose, &inside, 1, &made.map));
+    print_map("box", &made.map);
+    CHECK(made.map.count > 1 && connections(&made.map) == made.map.count - 1);
+    finish(&made);
+}
+
 TEST(a_scene_without_a_room_is_a_single_block)
 {
     struct made made = make_from("@spheres", vec3_of(1000, 0, 0));

@@ -1,7 +1,9 @@
 #include "techniques/dnrt/bake/volume.h"
 
 #include "core/half.h"
+#include "core/saturate.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -77,8 +79,9 @@ float dnrt_encode_half(const float *from, int samples, int stride, uint16_t *to)
 float dnrt_encode_byte(const float *from, int samples, int stride, uint8_t *to)
 {
     const float scale = largest(from, samples, stride);
-    const float steps = scale > 0.0f ? 127.0f / scale : 0.0f;
+    const float steps = scale > 127.0f / FLT_MAX ? 127.0f / scale : 0.0f; // else it overflows
     for (int i = 0; i < samples; i++)
-        to[i] = (uint8_t)(128.0f + roundf(from[(size_t)i * (size_t)stride] * steps));
+        to[i] = (uint8_t)int_saturated(
+            (double)(128.0f + roundf(from[(size_t)i * (size_t)stride] * steps)), 1, 255);
     return scale;
 }

@@ -1,6 +1,8 @@
 // Planes that separate nothing are dropped, planes that keep blocks near cubes are added.
 #include "map_cells.h"
 
+#include "core/saturate.h"
+
 #include <math.h>
 
 static bool is_cubic(const struct mrt_cells *cells, const int at[3], int axis, float max_aspect)
@@ -80,7 +82,7 @@ static int pieces_between(const struct mrt_cells *cells, int axis, int plane)
         volumes += area;
         sum += area * sqrtf(area);
     }
-    return volumes > 0.0f ? (int)(length * volumes / sum + 0.5f) : 1;
+    return int_saturated((double)(length * volumes / sum + 0.5f), 1, MRT_MAX_PLANES);
 }
 
 void mrt_cells_split(struct mrt_cells *cells)

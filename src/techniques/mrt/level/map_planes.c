@@ -1,6 +1,8 @@
 // Planes of large axis-aligned surfaces, from rays along the axes.
 #include "map_cells.h"
 
+#include "core/saturate.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -26,8 +28,8 @@ static void add_line(const struct mrt_cells *cells, int axis, vec3s from, struct
         from.raw[axis] += hit.distance;
         if (fabsf(hit.normal.raw[axis]) >= ALIGNED) {
             float share = 1.0f / (float)(LINES * LINES);
-            int bin = (int)((from.raw[axis] - low) / size * (float)BINS);
-            bin = bin < 0 ? 0 : bin < BINS ? bin : BINS - 1;
+            const float at = (from.raw[axis] - low) / size * (float)BINS;
+            const int bin = int_saturated((double)at, 0, BINS - 1);
             out->share[bin] += share;
             out->sum[bin] += share * from.raw[axis];
         }
