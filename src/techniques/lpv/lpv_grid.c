@@ -25,11 +25,22 @@ bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *ou
     return isfinite(out->cell_m) && out->cell_m > 0.0f;
 }
 
+// Of the largest coordinate: four steps of the rounding of positions. Numbers of cells below 2^22
+// are exact.
+static const float LEAST_CELL = 0x1p-22f;
+
+static float largest_coordinate(struct box3 bounds)
+{
+    return fmaxf(glms_vec3_max(glms_vec3_abs(bounds.min)),
+                 glms_vec3_max(glms_vec3_abs(bounds.max)));
+}
+
 void lpv_grid_around(struct box3 bounds, int dim, float margin, float cell_m, vec3s camera,
                      struct lpv_grid *out)
 {
-    const double cell = (double)cell_m;
-    out->cell_m = cell_m;
+    const float least = LEAST_CELL * largest_coordinate(bounds);
+    const double cell = (double)fmaxf(cell_m, least);
+    out->cell_m = (float)cell;
     out->open = 0;
     for (int axis = 0; axis < 3; axis++) {
         const double low = floor((double)bounds.min.raw[axis] / cell - (double)margin);

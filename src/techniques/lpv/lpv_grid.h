@@ -22,9 +22,9 @@ struct lpv_grid {
 // a little. Larger scenes get larger cells. false: the bounds are empty, a point or not finite.
 bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *out);
 
-// One of several cascades, with cells of cell_m: covers the bounds along axes where they need at
-// most `dim` cells, else the part around the camera. Moves by two cells at a time, one cell of the
-// next coarser cascade.
+// One of several cascades, with cells of cell_m, or the least that positions tell apart: covers the
+// bounds along axes where they need at most `dim` cells, else the part around the camera. Moves by
+// two cells at a time, one cell of the next coarser cascade.
 void lpv_grid_around(struct box3 bounds, int dim, float margin, float cell_m, vec3s camera,
                      struct lpv_grid *out);
 bool lpv_grid_equal(const struct lpv_grid *a, const struct lpv_grid *b);

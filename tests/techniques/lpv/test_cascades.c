@@ -49,6 +49,21 @@ TEST(lpv_cascades_are_nested_and_the_coarsest_contains_the_scene)
     }
 }
 
+TEST(lpv_cascades_have_one_to_dim_cells_along_an_axis_however_small_these_are)
+{
+    struct rng rng = rng_for(4, 0, 0);
+    for (float cell_m = 1e-44f; cell_m < 1e4f; cell_m *= 3.7f)
+        for (int i = 0; i < 32; i++) {
+            const vec3s camera = vec3_of(30 * rng_float(&rng) - 15, 20 * rng_float(&rng) - 10,
+                                         i % 4 ? 20 * rng_float(&rng) - 10 : 1e9f);
+            struct lpv_grid grid;
+            lpv_grid_around(HALL, 16, 0.5f * (float)(i % 3), cell_m, camera, &grid);
+            CHECK(grid.cell_m >= cell_m);
+            for (int axis = 0; axis < 3; axis++)
+                CHECK(grid.cells[axis] >= 1 && grid.cells[axis] <= 16);
+        }
+}
+
 TEST(lpv_cascade_moves_by_two_cells_at_a_time)
 {
     struct lpv_grid a, b, c;
