@@ -1,12 +1,8 @@
 #include "framework/gpu_test.h"
 
-#include <stdlib.h>
+#include "framework/drivers.h"
 
-#ifdef __SANITIZE_ADDRESS__
-#include <dlfcn.h>
-#include <link.h>
-#include <sanitizer/lsan_interface.h>
-#endif
+#include <stdlib.h>
 
 static struct gpu *device;
 static bool unfinished; // a test began and has not finished
@@ -25,30 +21,15 @@ static bool check_end(void)
     return false;
 }
 
-#ifdef __SANITIZE_ADDRESS__
-static int pin(struct dl_phdr_info *info, size_t size, void *user)
-{
-    (void)size;
-    (void)user;
-    if (info->dlpi_name[0]) (void)dlopen(info->dlpi_name, RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE);
-    return 0;
-}
-#endif
-
-// Keeps drivers, layers and their dependencies loaded, so that the leak sanitizer can match them
-// against lsan.supp. Leaks of the first load cannot be attributed and are ignored.
 static void pin_drivers(void)
 {
-#ifdef __SANITIZE_ADDRESS__
     static bool done;
-    if (done) return;
+    if (done || !drivers_are_checked()) return;
     done = true;
-    __lsan_disable();
+    drivers_load_begin();
     struct gpu *gpu = gpu_create(test_host(), &(struct gpu_desc){ .validation = true });
-    dl_iterate_phdr(pin, NULL);
+    drivers_load_end();
     gpu_destroy(gpu);
-    __lsan_enable();
-#endif
 }
 
 void test_gpu_require(void)

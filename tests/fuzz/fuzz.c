@@ -4,6 +4,7 @@
 #include "core/host.h"
 #include "core/text.h"
 
+#include <dirent.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -65,7 +66,13 @@ char *fuzz_text(const uint8_t *data, size_t size)
 
 static void remove_folder(void)
 {
-    if (file[0]) unlink(file);
+    char path[2 * PATH_SIZE];
+    DIR *open = opendir(folder);
+    for (struct dirent *entry; open && (entry = readdir(open));) {
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        unlink(path); // fails for . and ..
+    }
+    if (open) closedir(open);
     rmdir(folder);
 }
 
@@ -78,10 +85,15 @@ static void make_folder(void)
     FUZZ_CHECK(atexit(remove_folder) == 0);
 }
 
-const char *fuzz_file(const uint8_t *data, size_t size, const char *extension)
+const char *fuzz_folder(void)
 {
     if (!folder[0]) make_folder();
-    const int length = snprintf(file, sizeof file, "%s/input.%s", folder, extension);
+    return folder;
+}
+
+const char *fuzz_file(const uint8_t *data, size_t size, const char *extension)
+{
+    const int length = snprintf(file, sizeof file, "%s/input.%s", fuzz_folder(), extension);
     FUZZ_CHECK(length > 0 && length < PATH_SIZE);
     FILE *stream = fopen(file, "wb");
     FUZZ_CHECK(stream);

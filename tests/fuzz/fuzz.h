@@ -29,6 +29,7 @@ struct host *fuzz_host(void);
 
 // The input as a string, up to its first zero byte. The caller frees it.
 char *fuzz_text(const uint8_t *data, size_t size);
-// Writes the input to a file in a temporary folder of its own, which exit removes. The next call
-// replaces the file.
+// A temporary folder of this process, which exit removes with all files in it.
+const char *fuzz_folder(void);
+// Writes the input to a file in that folder. The next call replaces the file.
 const char *fuzz_file(const uint8_t *data, size_t size, const char *extension);
