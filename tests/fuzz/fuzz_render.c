@@ -43,7 +43,10 @@ static void create_device(void)
     ag_device_desc_default(&desc);
     desc.validation = true;
     if (!loaded) drivers_load_begin();
-    (void)ag_device_create(context, &desc, &device);
+    if (ag_device_create(context, &desc, &device) != AG_OK) {
+        desc.validation = false; // there are no layers
+        (void)ag_device_create(context, &desc, &device);
+    }
     if (!loaded) drivers_load_end();
     loaded = true;
 }

@@ -282,8 +282,12 @@ static int technique_of(const char *role, int n)
 void input_spec(struct render_input *in, char out[INPUT_SPEC_SIZE])
 {
     const uint8_t more = input_byte(in);
+    const int source = technique_of("source", input_byte(in));
+    struct ag_technique_info technique;
+    FUZZ_CHECK(ag_technique_get(source, &technique));
+    const bool delta = more & 1 && technique.publishes_probes;
     out[0] = 0;
-    print_technique(in, technique_of("source", input_byte(in)), more & 1, out);
-    if (more & 1) print_technique(in, technique_of("delta", 0), false, out);
+    print_technique(in, source, delta, out);
+    if (delta) print_technique(in, technique_of("delta", 0), false, out);
     if (more & 2) print_technique(in, technique_of("visibility", more >> 2), false, out);
 }
