@@ -8,7 +8,9 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 static struct scene *open_scene(const char *name, struct scene_pose *pose)
 {
@@ -491,6 +493,42 @@ TEST(many_separate_triangles_fit_or_are_refused)
     options.max_texels = 2000 * 25 - 1; // gutters alone
     CHECK(!charts_init(&charts, test_host(), &pose, &options));
     CHECK(test_host()->failure == FAIL_MEMORY && charts.texels == NULL);
+    CHECK(strstr(test_last_message(), "do not fit in 49999 texels; merge meshes"));
+    options.atlas_per_texel = 64;
+    options.most_texels = 1u << 22;
+    options.most_charts = 2000;
+    CHECK(!charts_init(&charts, test_host(), &pose, &options));
+    const char *remedy = strstr(test_last_message(), "do not fit in 49999 texels; try texels=");
+    CHECK(remedy != NULL);
+    options.max_texels = 64 * (uint32_t)atoi(strchr(remedy, '=') + 1);
+    CHECK(charts_init(&charts, test_host(), &pose, &options));
+    charts_finish(&charts);
+    close_scene(scene, &pose);
+}
+
+static double processor_s(void)
+{
+    return (double)clock() / CLOCKS_PER_SEC;
+}
+
+// Tries at lower densities do not make charts of one texel smaller.
+TEST(charts_of_one_texel_that_do_not_fit_are_refused_soon)
+{
+    enum { TRIANGLES = 60000, ROOM = 40 * TRIANGLES };
+    struct scene *scene = soup(TRIANGLES, 1e-4f);
+    struct scene_pose pose;
+    struct charts charts;
+    struct charts_options options = { .texels_per_m = 1.0f, .max_texels = ROOM };
+    CHECK(pose_init(&pose, scene, -1, 0.0f));
+    const double begun = processor_s();
+    CHECK(charts_init(&charts, test_host(), &pose, &options));
+    charts_finish(&charts);
+    const double fitted = processor_s();
+    options.max_texels = 20 * TRIANGLES;
+    CHECK(!charts_init(&charts, test_host(), &pose, &options));
+    const double refused = processor_s();
+    if (refused - fitted > 4.0 * (fitted - begun))
+        fail_msg("refused in %g s, fitted in %g s", refused - fitted, fitted - begun);
     close_scene(scene, &pose);
 }
 

@@ -6,6 +6,7 @@
 #include "scene/charts/texels.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 // A density at which charts may fit: their surfaces, and their edges as far as triangles share
@@ -112,24 +113,58 @@ static void clear(struct charts *charts)
     *charts = (struct charts){ .host = charts->host, .without_area = charts->without_area };
 }
 
-// Gutters do not shrink with the density: beyond some tries no density helps.
+// The option that makes twice the room of the smallest atlas so far; 0: it is out of range.
+static uint64_t enough_texels(const struct charts *out, const struct charts_options *options)
+{
+    const uint64_t least = (uint64_t)out->width * out->height;
+    if (options->atlas_per_texel == 0 || least <= options->max_texels ||
+        out->count > options->most_charts)
+        return 0;
+    const uint64_t enough = 2 * least / options->atlas_per_texel + 1;
+    return enough <= options->most_texels ? enough : 0;
+}
+
+static bool refuse(const struct charts *out, const char *scene,
+                   const struct charts_options *options)
+{
+    const uint64_t enough = enough_texels(out, options);
+    char remedy[64] = "merge meshes of few triangles";
+    if (enough > 0) snprintf(remedy, sizeof remedy, "try texels=%llu", (unsigned long long)enough);
+    return host_fail(out->host, FAIL_MEMORY, "charts of %s: %u charts do not fit in %u texels; %s",
+                     scene, out->count, options->max_texels, remedy);
+}
+
 enum { DENSITY_TRIES = 12 };
 
+static bool are_least(const struct charts *charts)
+{
+    for (uint32_t i = 0; i < charts->count; i++) {
+        const struct chart *chart = &charts->charts[i];
+        const uint32_t least = 1 + 2 * gutter_of(chart->spot);
+        if (chart->width > least || chart->height > least) return false;
+    }
+    return true;
+}
+
+// Charts of one texel do not shrink with the density, nor do gutters. At a lower one more of them
+// may be joined: where none was, no density helps.
 static bool find_density(struct charts *out, const struct scene_pose *pose,
                          const struct surface *surface, const struct charts_options *options)
 {
     double density = first_density(surface, options);
+    uint32_t before = 0;
     for (int i = 0; i < DENSITY_TRIES && density > 0.0; i++) {
         bool packed;
+        clear(out);
         if (!try_density(out, surface, density, options, &packed)) return false;
         if (packed) return true;
+        if (out->count == before && are_least(out)) break;
         const double texels = (double)out->width * (double)out->height;
         const double ratio = sqrt((double)options->max_texels / fmax(texels, 1.0));
         density *= fmin(fmax(0.97 * ratio, 0.25), 0.9);
-        if (i + 1 < DENSITY_TRIES) clear(out);
+        before = out->count;
     }
-    return host_fail(out->host, FAIL_MEMORY, "charts of %s: %u charts do not fit in %u texels",
-                     pose->scene->name, out->count, options->max_texels);
+    return refuse(out, pose->scene->name, options);
 }
 
 bool charts_init(struct charts *out, struct host *host, const struct scene_pose *pose,

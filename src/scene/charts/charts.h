@@ -35,6 +35,9 @@ struct charts_options {
     // Of the surface, wanted: its area is so many texels. Charts touch more. 0: no wish.
     uint32_t surface_texels;
     enum charts_join join;
+    // For the message where charts do not fit: texels of the atlas for one of the option `texels`,
+    // the maximum of that option, and of charts. 0: there is no such option.
+    uint32_t atlas_per_texel, most_texels, most_charts;
 };
 
 struct chart {

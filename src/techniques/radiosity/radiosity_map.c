@@ -194,7 +194,10 @@ bool radiosity_charts_init(struct charts *out, struct host *host, const struct s
                                                     ? texels * ATLAS_ROOM
                                                     : MOST_ATLAS,
                                   .surface_texels = texels,
-                                  .join = CHARTS_JOINED };
+                                  .join = CHARTS_JOINED,
+                                  .atlas_per_texel = ATLAS_ROOM,
+                                  .most_texels = MOST_TEXELS,
+                                  .most_charts = RADIOSITY_MAX_CLUSTERS / 2 };
     if (options->density > 0.0f) return charts_at(out, host, pose, options->density);
     for (int i = 0; i < DENSITY_TRIES; i++) {
         if (!charts_init(out, host, pose, &how)) return false;
