@@ -1,5 +1,6 @@
 // Finding, running and caching bakes.
 #include "baking.h"
+#include "cli/files/disk.h"
 #include "cli/files/interrupt.h"
 
 #include <math.h>
@@ -135,6 +136,26 @@ static void print_count(double count, char out[32])
         snprintf(out, 32, "%.0f", count);
 }
 
+// Before hours of work: without room a render goes on and keeps nothing.
+static enum status check_disk(const struct baking *b, uint64_t needed)
+{
+    uint64_t room = 0;
+    if (!b->path[0] || !disk_free(b->path, &room) || room >= needed) return DONE;
+    char what[128];
+    snprintf(what, sizeof what, "%.1f MB are free there, it needs %.1f MB", (double)room * 1e-6,
+             (double)needed * 1e-6);
+    if (!b->in_cache)
+        return fail("cannot write %s: %s; make room or choose another folder", b->path, what);
+    if (b->must_keep)
+        return fail("cannot write %s: %s; make room (afterglow cache --clear), use -o "
+                    "FILE.safetensors, or " CACHE_REMEDY,
+                    b->path, what);
+    note("warning: the bake of %s is not kept for the next run: %s in %s; make room (afterglow "
+         "cache --clear), or " CACHE_REMEDY,
+         b->technique, what, b->path);
+    return DONE;
+}
+
 static enum status estimate(struct baking *b)
 {
     const long long mib = b->session->arguments->max_memory_mib;
@@ -144,6 +165,7 @@ static enum status estimate(struct baking *b)
     // Refused before the probe, which takes memory too.
     if (result == AG_OK && mib > 0 && needs.peak_memory_bytes > (uint64_t)mib << 20)
         return fail_bake(b, ag_bake_run(b->bake, NULL, NULL));
+    if (result == AG_OK && check_disk(b, needs.file_bytes) != DONE) return FAILED;
     if (result == AG_OK) result = ag_bake_estimate(b->bake, true, &needs);
     if (result != AG_OK) return fail_bake(b, result);
     b->estimate_seconds = needs.seconds;

@@ -12,6 +12,7 @@ struct baking {
     const char *technique;         // owned by the bake
     char path[PATH_SIZE];          // of its file; "": kept in memory only
     bool in_cache;                 // the path is in the cache
+    bool must_keep;                // fail where the cache has no room for it
     char no_cache[CACHE_WHY_SIZE]; // why the path is ""
     bool loaded;                   // from a file, not run
     double estimate_seconds;       // of the whole run, before it; NaN: nothing was estimated

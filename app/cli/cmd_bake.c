@@ -66,8 +66,10 @@ static enum status begin(struct job *job)
     desc.shard_count = a->shard_count;
     desc.max_memory_bytes = (uint64_t)a->max_memory_mib << 20;
     desc.full_report = a->report_full;
-    return baking_begin(&job->baking, &job->session, a->merge ? job->origin.gi : a->gi, &desc,
-                        a->output);
+    enum status status = baking_begin(&job->baking, &job->session,
+                                      a->merge ? job->origin.gi : a->gi, &desc, a->output);
+    job->baking.must_keep = true;
+    return status;
 }
 
 // What only the report shows is not in the file.

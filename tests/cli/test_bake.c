@@ -401,6 +401,24 @@ TEST(results_that_no_cache_keeps_are_announced_before_the_work)
     setenv("HOME", home, 1);
 }
 
+// The disk of tests/cli/full_disk.c.
+TEST(bake_that_the_disk_has_no_room_for_is_refused_before_the_work)
+{
+    require_device();
+    const char *path = test_path("no-room.safetensors");
+    use_cache("cache-full");
+    setenv("LD_PRELOAD", FULL_DISK, 1);
+    const struct run *r = run_expect(1, "bake @cornell --gi sample -o", path, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "0.0 MB are free there, it needs") && !file_exists(path));
+    r = run_expect(1, "bake @cornell --gi sample", NULL);
+    CHECK(strstr(r->err, "afterglow cache --clear") && !strstr(r->err, "baking sample"));
+    r = run_expect(0, "render @cornell:light=point --size 16x16 --gi sample -o",
+                   test_path("no-room.png"), NULL);
+    unsetenv("LD_PRELOAD");
+    CHECK(strstr(r->err, "is not kept for the next run: 0.0 MB are free there"));
+}
+
 #define LEFT_BAKE      "00000000000000000000000000000001.safetensors.tmp-0123456789abcdef"
 #define LEFT_REFERENCE "reference-1-0123456789abcdef.exr.tmp-0123456789abcdef"
 

@@ -16,6 +16,9 @@ add_library(ag_test_sample_program STATIC ${CMAKE_CURRENT_LIST_DIR}/program.c)
 target_compile_definitions(ag_test_sample_program PUBLIC AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow_sample>")
 target_link_libraries(ag_test_sample_program PUBLIC ag_test_framework PkgConfig::JANSSON PRIVATE afterglow_flags)
 ag_test(cli/bake LIBRARIES ag_test_sample_program)
+add_library(ag_test_full_disk MODULE ${CMAKE_CURRENT_LIST_DIR}/full_disk.c)
+target_compile_definitions(test_cli_bake PRIVATE FULL_DISK="$<TARGET_FILE:ag_test_full_disk>")
+add_dependencies(test_cli_bake ag_test_full_disk)
 add_dependencies(test_cli_bake afterglow_sample)
 
 # The page of compare, written by the program's own code and used in a browser, where there is one.
