@@ -107,10 +107,10 @@ AG_API enum ag_result ag_bake_partial_origin(struct ag_context *context, const c
 struct ag_bake_info {
     /// Owned by the bake. technique: as in its file, mrt for drt, which has the same bake.
     const char *technique, *options;
-    char key[33];         ///< names what it depends on: a file KEY.safetensors in a cache
-    bool complete;        ///< run to its end, or loaded
-    double seconds;       ///< wall time of all runs; NaN: loaded from a file that does not state it
-    uint64_t bytes;       ///< of its arrays; 0 until complete
+    char key[33];   ///< names what it depends on: a file KEY.safetensors in a cache
+    bool complete;  ///< run to its end, or loaded
+    double seconds; ///< wall time of all runs; NaN: loaded from a file that does not state it
+    uint64_t bytes; ///< of its arrays; 0 until complete
     /// The costliest stage of those that a run with a shard would split now; NULL: what is left
     /// is not worth splitting.
     const char *split_stage;

@@ -1,5 +1,5 @@
 // Memory that the process keeps after hundreds of frames with each technique, the driver's
-// included: lavapipe compiles a pipeline anew for values of uniforms that decide a branch, and
+// included: lavapipe compiles a pipeline again for values of uniforms that decide a branch, and
 // keeps each version. No validation: its layer keeps records of its own.
 #include "api/renderer_fixture.h"
 

@@ -135,8 +135,7 @@ TEST(bake_part_says_what_it_is_a_part_of)
     CHECK_STRING(origin.gi, "sample:rows=23");
     CHECK_STRING(origin.scene_name, "@sample");
     CHECK(origin.seed == 5);
-    host_free(test_host(), origin.gi);
-    host_free(test_host(), origin.scene_name);
+    bake_origin_finish(test_host(), &origin);
     bake_destroy(bake);
     CHECK(!bake_partial_origin(test_host(), write_sample(false), &origin) && !origin.gi);
 }
