@@ -156,7 +156,8 @@ static enum status check_disk(const struct baking *b, uint64_t needed)
     return DONE;
 }
 
-static enum status estimate(struct baking *b)
+// shard: the file has intermediate results, whose bytes are not known.
+static enum status estimate(struct baking *b, bool shard)
 {
     const long long mib = b->session->arguments->max_memory_mib;
     struct ag_bake_estimate needs;
@@ -165,7 +166,7 @@ static enum status estimate(struct baking *b)
     // Refused before the probe, which takes memory too.
     if (result == AG_OK && mib > 0 && needs.peak_memory_bytes > (uint64_t)mib << 20)
         return fail_bake(b, ag_bake_run(b->bake, NULL, NULL));
-    if (result == AG_OK && check_disk(b, needs.file_bytes) != DONE) return FAILED;
+    if (result == AG_OK && !shard && check_disk(b, needs.file_bytes) != DONE) return FAILED;
     if (result == AG_OK) result = ag_bake_estimate(b->bake, true, &needs);
     if (result != AG_OK) return fail_bake(b, result);
     b->estimate_seconds = needs.seconds;
@@ -243,7 +244,7 @@ enum status baking_run(struct baking *b, bool shard)
     if (!b->path[0] && !info.complete)
         note("warning: the bake of %s is not kept for the next run: no cache: %s; " CACHE_REMEDY,
              b->technique, b->no_cache);
-    enum status status = info.complete ? DONE : estimate(b);
+    enum status status = info.complete ? DONE : estimate(b, shard);
     if (status == DONE && run_it) status = run(b);
     return status == DONE ? write_file(b, shard) : status;
 }

@@ -24,7 +24,7 @@ enum status baking_begin(struct baking *b, struct session *session, const char *
 void baking_end(struct baking *b); // accepts zero
 // Wrong usage of --shard and --merge. file: a merged bake is written to -o.
 enum status baking_check_parts(const struct arguments *arguments, bool file);
-// Of the first of the parts that --merge joins.
+// The origin that the first of the merged parts states.
 enum status baking_origin(const struct session *session, struct ag_bake_origin *out);
 enum status baking_merge(struct baking *b); // adds the tasks of all parts
 // Reads the file of `path`, or of the cache. False: there is none, or it does not fit, which a note

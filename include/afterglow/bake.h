@@ -97,7 +97,8 @@ struct ag_bake_origin {
     char gi[4096];         ///< GI spec
     char scene_name[4096]; ///< as given to ag_scene_load
     uint64_t seed;
-    int lightmap_samples; ///< of a light map by paths, whose light must be that of its parts; 0
+    /// Paths per texel of a light map; 0: it is not one. Its merge needs the light of the parts.
+    int lightmap_samples;
     uint64_t reserved[3]; ///< 0; see ABI in types.h
 };
 /// What such a file is a part of, for ag_bake_create.

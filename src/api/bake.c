@@ -312,7 +312,7 @@ enum ag_result ag_bake_merge(struct ag_bake *b, const char *path)
     return api_done(context, bake_merge(b->bake, path));
 }
 
-// Of the options that create_lightmap prints; 0: not stated.
+// The number of samples in the options of a light map; 0: not stated.
 static int samples_of(const char *options)
 {
     static const char KEY[] = ",samples=";

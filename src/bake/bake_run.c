@@ -27,20 +27,34 @@ static bool check_memory(const struct bake *bake, const struct bake_run_options 
                      (double)options->max_memory_bytes / MIB, advice);
 }
 
+// A merged part that was forgotten would be run again by each shard.
 static bool check_shard(const struct bake *bake, const struct bake_run_options *options)
 {
-    if (options->shard_count <= 0 || split_wave(bake) < bake->plan.waves) return true;
-    return host_fail(
-        bake->host, FAIL_ARGUMENT,
-        "cannot bake part %d of %d of %s: the work that is left is not worth splitting; "
-        "finish it without a shard",
-        options->shard, options->shard_count, bake->identity.technique);
+    const struct merged *merged = &bake->merged;
+    const char *technique = bake->identity.technique;
+    if (options->shard_count <= 0 || !merged->some) return true;
+    if (merged->missing > 0)
+        return host_fail(bake->host, FAIL_ARGUMENT,
+                         "cannot bake part %d of %d of %s: %zu of %zu tasks are in none of the "
+                         "merged files; merge all parts",
+                         options->shard, options->shard_count, technique, merged->missing,
+                         merged->expected);
+    if (split_wave(bake) < bake->plan.waves) return true;
+    return host_fail(bake->host, FAIL_ARGUMENT,
+                     "cannot bake part %d of %d of %s: the work that is left is not worth "
+                     "splitting; finish it without a shard",
+                     options->shard, options->shard_count, technique);
 }
 
 bool bake_run(struct bake *bake, const struct bake_run_options *options)
 {
+    const struct merged *merged = &bake->merged;
     if (!check_shard(bake, options)) return false;
     if (bake_is_complete(bake)) return true;
+    if (merged->missing > 0)
+        host_log(bake->host, LOG_WARNING,
+                 "a part is missing: %zu of %zu tasks are in none of the merged files and run now",
+                 merged->missing, merged->expected);
     if (!check_memory(bake, options) || !bake_resume(bake, options->checkpoint)) return false;
     return bake_is_complete(bake) || run_bake(bake, options, false);
 }

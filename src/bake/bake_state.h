@@ -46,8 +46,13 @@ struct bake {
     pthread_mutex_t memory; // of the host's allocator while tasks run
     double seconds;         // wall time of all runs; NaN: unknown
     double prepare_seconds; // of the newest run's job.prepare
-    bool has_parts;         // bake_merge has read a file
-    char *checkpoint;       // that was read, or would have been; NULL: none
+    // Of the merged partial files; zero: none.
+    struct merged {
+        bool some;
+        int waves;                // complete ones
+        size_t missing, expected; // tasks of the wave that they have in part
+    } merged;
+    char *checkpoint; // that was read, or would have been; NULL: none
     // The result, once complete: of the plan's outputs, or of a file.
     struct safetensors file;
     struct tensor *tensors; // saved ones, then reported ones
@@ -106,7 +111,7 @@ double prediction_left(const struct bake *bake, const struct prediction *predict
                        const struct bake_run_options *options, int threads);
 // ---- split.c: shards
 
-// The wave that shards split now: the next of enough work; plan.waves: there is none.
+// The wave that shards split; plan.waves: none that is left is worth it.
 int split_wave(const struct bake *bake);
 // The tasks of a stage that a run with these options covers now: first … first + *count − 1.
 size_t run_tasks(const struct bake *bake, const struct bake_stage *stage,

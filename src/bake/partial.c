@@ -319,9 +319,24 @@ bool partial_read(struct host *host, struct bake *bake, const char *path)
     return ok;
 }
 
+// Tasks of an incomplete wave of which the files have some.
+static void count_missing(struct bake *bake)
+{
+    struct merged *merged = &bake->merged;
+    *merged = (struct merged){ .some = true, .waves = bake->plan.waves_done };
+    for (int s = 0; s < bake->plan.stage_count; s++) {
+        const struct planned_stage *stage = &bake->plan.stages[s];
+        if (stage->what.wave != merged->waves) continue;
+        merged->expected += stage->what.task_count;
+        merged->missing += stage->what.task_count - stage->done_count;
+    }
+    if (merged->missing == merged->expected) merged->missing = 0; // the wave has not begun
+}
+
 bool bake_merge(struct bake *bake, const char *path)
 {
     if (bake_is_complete(bake)) return true;
-    bake->has_parts = true;
-    return partial_read(bake->host, bake, path);
+    if (!partial_read(bake->host, bake, path)) return false;
+    count_missing(bake);
+    return true;
 }

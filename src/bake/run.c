@@ -382,8 +382,9 @@ static bool run_wave(struct bake_run *run, int wave)
 // The waves of this run end before this one.
 static int end_of_run(const struct bake_run *run)
 {
+    const int waves = run->bake->plan.waves, split = split_wave(run->bake);
     if (run->probe) return 1;
-    return run->options->shard_count > 0 ? split_wave(run->bake) + 1 : run->bake->plan.waves;
+    return run->options->shard_count > 0 && split < waves ? split + 1 : waves;
 }
 
 static bool run_waves(struct bake_run *run)
@@ -416,22 +417,6 @@ static bool allocate_run(struct bake_run *run)
     return run->queue && run->messages;
 }
 
-// Tasks of a wave of which the merged files have others.
-static void warn_of_missing_parts(const struct bake *bake)
-{
-    size_t missing = 0, all = 0;
-    for (int s = 0; s < bake->plan.stage_count; s++) {
-        const struct planned_stage *stage = &bake->plan.stages[s];
-        if (stage->what.wave != bake->plan.waves_done) continue;
-        all += stage->what.task_count;
-        missing += stage->what.task_count - stage->done_count;
-    }
-    if (missing > 0 && missing < all)
-        host_log(bake->host, LOG_WARNING,
-                 "a part is missing: %zu of %zu tasks are in none of the merged files and run now",
-                 missing, all);
-}
-
 bool run_bake(struct bake *bake, const struct bake_run_options *options, bool probe)
 {
     struct bake_run run = { .bake = bake,
@@ -441,7 +426,6 @@ bool run_bake(struct bake *bake, const struct bake_run_options *options, bool pr
                             .begun_s = now_s(),
                             .per_flop_s = prediction_flop_seconds(bake->host) };
     run.checkpoint_s = run.begun_s;
-    if (bake->has_parts && options->shard_count <= 0 && !probe) warn_of_missing_parts(bake);
     pthread_cond_init(&run.ended, NULL);
     const bool ok = allocate_run(&run) && run_job(&run);
     bake->seconds = run_seconds(&run);

@@ -28,7 +28,7 @@ int split_wave(const struct bake *bake)
     const struct bake_plan *plan = &bake->plan;
     double all = 0.0;
     for (int s = 0; s < plan->stage_count; s++) all += cost_of(&plan->stages[s].what);
-    int wave = plan->waves_done;
+    int wave = bake->merged.waves;
     while (wave > 0 && wave < plan->waves && !(cost_of_wave(plan, wave) >= SPLIT_SHARE * all))
         wave++;
     return wave;

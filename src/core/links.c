@@ -23,7 +23,8 @@ static bool is_below(const char *path, const char *folder)
 bool link_leads_out(const char *path, const char *main)
 {
     char *real = realpath(path, NULL);
-    if (!real) return errno == ENOMEM; // otherwise it cannot be opened either
+    // Without a target nothing is opened. Other failures, as of too long a path, are no proof.
+    if (!real) return errno != ENOENT && errno != ENOTDIR && errno != EACCES && errno != ELOOP;
     char *folder = real_folder_of(main);
     const bool out = !folder || !is_below(real, folder);
     free(folder);

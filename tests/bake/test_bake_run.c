@@ -235,6 +235,38 @@ static void bake_round(const char *const before[2], const char *const parts[2])
     }
 }
 
+// The probe of a small bake may run all of the first wave.
+TEST(bake_whose_probe_did_the_first_wave_is_made_in_shards)
+{
+    const struct bake_run_options options = { .shard = 1, .shard_count = 2 };
+    struct bake_sample sample = bake_sample_default();
+    struct bake *bake = bake_sample_create(&sample, NULL);
+    struct bake *merged = bake_sample_create(&sample, NULL);
+    struct bake_estimate estimate;
+    const char *part = test_path("probed"), *path = test_path("probed.safetensors");
+    CHECK(bake_run(bake, &(struct bake_run_options){ .shard = 0, .shard_count = 1 }));
+    CHECK(bake_estimate(bake, &options, true, &estimate) && bake_run(bake, &options));
+    CHECK(sample.runs == 7 + 5 && bake_save_partial(bake, part));
+    CHECK(bake_merge(merged, part) && bake_run(merged, &(struct bake_run_options){ 0 }));
+    CHECK(bake_save(merged, path, false));
+    bake_destroy(merged);
+    bake_destroy(bake);
+    check_same(bake_sample_bytes(path), bake_on(1));
+}
+
+TEST(bake_in_rounds_of_shards_needs_all_parts)
+{
+    struct bake_sample sample = bake_sample_default();
+    struct bake *bake = bake_sample_create(&sample, NULL);
+    const char *part = test_path("one-of-two");
+    bake_shard(0, 2, part);
+    CHECK(bake_merge(bake, part) &&
+          !bake_run(bake, &(struct bake_run_options){ .shard_count = 2 }));
+    CHECK(strstr(test_last_message(), "5 of 12 tasks are in none of the merged files; merge all"));
+    CHECK(sample.runs == 0);
+    bake_destroy(bake);
+}
+
 // The last wave has a twelfth of the cost.
 TEST(bake_in_rounds_of_shards_gives_the_same_bytes)
 {

@@ -14,7 +14,7 @@ struct render_input {
 uint8_t input_byte(struct render_input *in);
 int input_choice(struct render_input *in, int count); // 0…count − 1
 bool input_bool(struct render_input *in);
-// Of a table of ordinary and extreme values, or any four bytes: infinities and NaN, too.
+// A value of a table of ordinary and extreme ones, or any four bytes: infinities and NaN, too.
 float input_number(struct render_input *in);
 float input_size(struct render_input *in); // above 0 mostly
 void input_vector(struct render_input *in, float out[3]);

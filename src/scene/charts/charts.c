@@ -146,23 +146,38 @@ static bool are_least(const struct charts *charts)
     return true;
 }
 
-// Charts of one texel do not shrink with the density, nor do gutters. At a lower one more of them
-// may be joined: where none was, no density helps.
+// Charts of one texel do not shrink with the density, nor do gutters; but at a lower one more of
+// them may be joined. LOWEST_TRY: the density of the last try, where each is nine tenths of the one
+// before.
+static const double LOWEST_TRY = 0.28;
+
+static bool is_hopeless(const struct charts *charts, const struct surface *surface, double density,
+                        const struct charts_options *options, bool *hopeless)
+{
+    struct charts lowest = { .host = charts->host };
+    bool packed = false;
+    *hopeless = false;
+    if (!are_least(charts)) return true;
+    const bool ok = try_density(&lowest, surface, LOWEST_TRY * density, options, &packed);
+    *hopeless = ok && lowest.count == charts->count;
+    clear(&lowest);
+    return ok;
+}
+
 static bool find_density(struct charts *out, const struct scene_pose *pose,
                          const struct surface *surface, const struct charts_options *options)
 {
     double density = first_density(surface, options);
-    uint32_t before = 0;
     for (int i = 0; i < DENSITY_TRIES && density > 0.0; i++) {
-        bool packed;
+        bool packed, hopeless = false;
         clear(out);
         if (!try_density(out, surface, density, options, &packed)) return false;
         if (packed) return true;
-        if (out->count == before && are_least(out)) break;
+        if (i == 0 && !is_hopeless(out, surface, density, options, &hopeless)) return false;
+        if (hopeless) break;
         const double texels = (double)out->width * (double)out->height;
         const double ratio = sqrt((double)options->max_texels / fmax(texels, 1.0));
         density *= fmin(fmax(0.97 * ratio, 0.25), 0.9);
-        before = out->count;
     }
     return refuse(out, pose->scene->name, options);
 }

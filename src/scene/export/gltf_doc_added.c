@@ -1,4 +1,4 @@
-// What a scene has that its file has not: lights, instances, the sky. Lights of the file that the
+// Additions of a scene to its file: lights, instances, the sky. Lights of the file that the
 // scene has no more, or has switched off, stay as they are and are listed in doc->off_lights.
 #include "scene/export/gltf_scene.h"
 

@@ -5,9 +5,9 @@
 //     fail KIND WHY             KIND is format, unsupported, file or memory
 //     fail link PATH            a symbolic link leads out of the folder
 //
-// Before it any number of "note FEATURE", which is ignored, and of "log TEXT", a debug message. The
-// glTF is untrusted: it is read and checked like any other file. Images are named as in the
-// original file, or contained.
+// Before it any number of "note FEATURE", a feature that is not read, and of "log TEXT", a debug
+// message. The glTF is untrusted: it is read and checked like any other file. Images are named as
+// in the original file, or contained.
 #pragma once
 
 // Of the form, so that a program of another version is refused.

@@ -25,8 +25,8 @@ bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *ou
     return isfinite(out->cell_m) && out->cell_m > 0.0f;
 }
 
-// Of the largest coordinate: four steps of the rounding of positions. Numbers of cells below 2^22
-// are exact.
+// The smallest cell, as a share of the largest coordinate: four steps of the rounding of positions.
+// Numbers of cells below 2^22 are exact.
 static const float LEAST_CELL = 0x1p-22f;
 
 static float largest_coordinate(struct box3 bounds)
