@@ -46,7 +46,7 @@ struct bake {
     pthread_mutex_t memory; // of the host's allocator while tasks run
     double seconds;         // wall time of all runs; NaN: unknown
     double prepare_seconds; // of the newest run's job.prepare
-    // Of the merged partial files; zero: none.
+    // Content of the merged partial files; zero: none was merged.
     struct merged {
         bool some;
         int waves;                // complete ones

@@ -1,5 +1,5 @@
-// Which tasks a run with shards covers. Its shards split one wave between them; waves of little
-// work before it are run by each shard, whole.
+// Tasks that a run with shards covers. Shards split one wave between them: the first, or after a
+// merge of parts the next one of enough work. Waves before it run in each shard, whole.
 #include "bake/bake_state.h"
 
 // A wave is split from this share of the plan's cost on. Below it, a round of files costs more than

@@ -29,5 +29,5 @@ size_t damage_index(const struct damage_fixture *u, const char *tensor);
 // A copy of the tensor's data of exactly its size: the sanitizer sees reads beyond it.
 void *damage_own(struct damage_fixture *u, size_t tensor);
 void damage_restore(struct damage_fixture *u, size_t tensor);
-// Where the bake is accepted, a frame is rendered, too. Refused: by FAIL_FORMAT, with a message.
+// A bake that is accepted renders a frame, too. A refusal is FAIL_FORMAT with a message.
 bool damage_loads(struct damage_fixture *u);
