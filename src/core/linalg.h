@@ -9,6 +9,8 @@
 
 #include "core/host.h"
 
+#include <stdint.h>
+
 struct matrix_f32 {
     float *at; // rows × columns
     size_t rows, columns;
@@ -60,6 +62,18 @@ struct linalg_svd {
 bool linalg_svd(struct host *host, const char *what, const struct matrix_f64 *a,
                 struct linalg_svd *out);
 void linalg_svd_finish(struct host *host, struct linalg_svd *svd);
+
+// How many singular vectors are kept: those of the largest values until their squares sum to a
+// share of ‖a‖², at most `rank`.
+struct linalg_truncation {
+    double energy; // the share, 0…1
+    size_t rank;   // at least 1
+    uint64_t seed; // of the random range finder; the same seed gives the same bytes
+};
+// The left singular vectors of a that are kept: m×k, orthonormal columns; uᵀ a has the rest of the
+// truncated decomposition. `out` is made here, also of no columns where a is 0; free with _finish.
+bool linalg_truncated_left(struct host *host, const char *what, const struct matrix_f64 *a,
+                           const struct linalg_truncation *how, struct matrix_f64 *out);
 
 // a = vectors · diag(values) · vectorsᵀ of a symmetric n×n matrix, of which the lower triangle is
 // read. Values descend. Signs of the columns as in linalg_svd.

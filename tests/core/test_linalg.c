@@ -312,3 +312,83 @@ TEST(linalg_refuses_a_matrix_that_cannot_exist)
     CHECK(!matrix_f64_init(test_host(), &m, (size_t)1 << 40, 2) && m.at == NULL);
     CHECK_STRING(test_last_message(), "cannot make a matrix of 1099511627776 x 2: too large");
 }
+
+// ---- truncation
+
+// Of rank 5, with noise of 1e-6 beyond.
+static struct matrix_f64 nearly_of_rank_5(size_t rows, size_t columns)
+{
+    struct matrix_f64 a = random_matrix(rows, 5, 11), b = random_matrix(5, columns, 12);
+    struct matrix_f64 out = random_matrix(rows, columns, 13);
+    CHECK(
+        matrix_f64_multiply(test_host(), 1.0, &a, NOT_TRANSPOSED, &b, NOT_TRANSPOSED, 1e-6, &out));
+    matrix_f64_finish(test_host(), &a);
+    matrix_f64_finish(test_host(), &b);
+    return out;
+}
+
+// ‖a − u uᵀ a‖ / ‖a‖ of the vectors that are kept; count: how many.
+static double truncation_error(const struct matrix_f64 *a, double energy, size_t rank,
+                               size_t *count)
+{
+    struct matrix_f64 u, v, rest;
+    CHECK(linalg_truncated_left(test_host(), "a test", a,
+                                &(struct linalg_truncation){ energy, rank, 7 }, &u));
+    CHECK(u.rows == a->rows && u.columns <= rank);
+    CHECK(matrix_f64_orthonormality(test_host(), &u) < 1e-12);
+    *count = u.columns;
+    CHECK(matrix_f64_init(test_host(), &v, u.columns, a->columns));
+    rest = filled(a->rows, a->columns, a->at);
+    CHECK(
+        matrix_f64_multiply(test_host(), 1.0, &u, TRANSPOSED, a, NOT_TRANSPOSED, 0.0, &v) &&
+        matrix_f64_multiply(test_host(), -1.0, &u, NOT_TRANSPOSED, &v, NOT_TRANSPOSED, 1.0, &rest));
+    const double error = matrix_f64_norm(&rest) / matrix_f64_norm(a);
+    matrix_f64_finish(test_host(), &rest);
+    matrix_f64_finish(test_host(), &v);
+    matrix_f64_finish(test_host(), &u);
+    return error;
+}
+
+// The error of the best approximation of a rank: √Σ σ² of the rest.
+static double best_error(const struct matrix_f64 *a, size_t rank)
+{
+    struct linalg_svd svd;
+    double sum = 0.0;
+    CHECK(linalg_svd(test_host(), "a test", a, &svd));
+    for (size_t i = rank; i < svd.count; i++) sum += svd.sigma[i] * svd.sigma[i];
+    linalg_svd_finish(test_host(), &svd);
+    return sqrt(sum) / matrix_f64_norm(a);
+}
+
+TEST(linalg_truncated_vectors_have_the_error_of_the_best_approximation_of_their_rank)
+{
+    struct matrix_f64 a = nearly_of_rank_5(60, 40);
+    size_t count;
+    for (size_t rank = 1; rank <= 6; rank++) {
+        const double error = truncation_error(&a, 1.0, rank, &count), best = best_error(&a, rank);
+        print_message("rank %zu: error %.3g, best %.3g\n", rank, error, best);
+        CHECK(count == rank && error >= 0.999999 * best && error < 1.001 * best);
+    }
+    CHECK(truncation_error(&a, 1.0, 5, &count) < 1e-5);
+    matrix_f64_finish(test_host(), &a);
+}
+
+TEST(linalg_truncated_vectors_are_as_few_as_the_energy_needs)
+{
+    struct matrix_f64 a = nearly_of_rank_5(60, 40);
+    size_t all, few;
+    CHECK(truncation_error(&a, 1.0 - 1e-9, 16, &all) < 1e-4 && all == 5);
+    CHECK(truncation_error(&a, 0.5, 16, &few) < sqrt(0.5) && few >= 1 && few < all);
+    matrix_f64_finish(test_host(), &a);
+}
+
+TEST(linalg_truncated_vectors_of_zeros_are_none)
+{
+    struct matrix_f64 a = { 0 }, u;
+    CHECK(matrix_f64_init(test_host(), &a, 12, 9));
+    CHECK(linalg_truncated_left(test_host(), "zeros", &a, &(struct linalg_truncation){ 0.99, 4, 1 },
+                                &u));
+    CHECK(u.rows == 12 && u.columns == 0);
+    matrix_f64_finish(test_host(), &u);
+    matrix_f64_finish(test_host(), &a);
+}

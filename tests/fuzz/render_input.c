@@ -188,7 +188,6 @@ static const struct limit limits[] = {
     { "radiosity", "texels", "2048", 0, 0 },
     { "radiosity", "rays", "16", 0, 0 },
     { "radiosity", "sources", "8", 0, 0 },
-    { "radiosity", "modes", "8", 0, 0 },
     { "radiosity", "density", NULL, 4, 0 },
     { "radiosity", "probe_spacing", "0", 0, 0 },
     { "dnrt", "size", "16", 0, 0 },

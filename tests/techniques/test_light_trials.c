@@ -7,7 +7,6 @@
 
 // Small bakes; the default has four times the texels.
 #define RADIOSITY "radiosity:texels=16384"
-#define LOWRANK   RADIOSITY ",transfer=lowrank"
 // Both have one dictionary. FINE: a patch of 0.5 m is seen by texels of less than that.
 #define DICTIONARY(texels)                                                                         \
     ":texels=" #texels ",rays=256,prior_modes=16,modes=12,lightfield_positions=4,"                 \
@@ -44,7 +43,6 @@ TEST_GPU(a_closed_room_beside_a_sunlit_one_stays_dark)
                   { "vct:trace=rays", 0.01 },
                   { "vct:trace=rays,resolution=128", 0.005 },
                   { RADIOSITY, 0.005 },
-                  { LOWRANK, 0.005 },
                   { MRT, 1e-4 },
                   { DRT, 1e-4 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
@@ -155,8 +153,8 @@ TEST_GPU(light_crosses_an_empty_room)
 {
     static const struct share_case cases[] = { { "lpv", 0.8 },      { "holpv", 0.9 },
                                                { "vct", 0.85 },     { "vct:trace=rays", 0.9 },
-                                               { RADIOSITY, 0.93 }, { LOWRANK, 0.95 },
-                                               { MRT, 0.95 },       { DRT, 0.95 } };
+                                               { RADIOSITY, 0.93 }, { MRT, 0.95 },
+                                               { DRT, 0.95 } };
     check_shares(gpu, trial_empty_room, "across an empty room", 1, cases,
                  sizeof cases / sizeof cases[0], 1.3);
 }

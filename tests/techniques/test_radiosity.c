@@ -8,8 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SMALL   "radiosity:texels=2048,rays=100,sources=16"
-#define LOWRANK ",transfer=lowrank"
+#define SMALL "radiosity:texels=2048,rays=100,sources=16"
 
 static int emissive(struct frame_fixture *s, float albedo, float emission)
 {
@@ -65,68 +64,16 @@ TEST_GPU(rows_of_a_closed_room_sum_to_one)
     baked_fixture_close(&run, &s);
 }
 
-// Sums over the sources of a region: what its modes are in uniform light.
-static void sum_modes(const struct tensors *bake, size_t region, double *sum)
-{
-    const struct tensor *project = tensors_find(bake, "regions/project");
-    const struct tensor *scale = tensors_find(bake, "regions/scale");
-    const size_t sources = project->shape[1], modes = project->shape[2];
-    for (size_t m = 0; m < modes; m++) {
-        sum[m] = 0.0;
-        for (size_t i = 0; i < sources; i++)
-            sum[m] += ((const int16_t *)project->data)[(region * sources + i) * modes + m];
-        sum[m] *= (double)((const float *)scale->data)[region * modes + m];
-    }
-}
-
-// Rows of hidden texels and those after the last texel are 0.
-static size_t check_low_rank_rows(const struct tensors *bake, size_t region, double *worst)
-{
-    const struct tensor *expand = tensors_find(bake, "regions/expand");
-    const size_t rows = expand->shape[1], modes = expand->shape[2];
-    double sum[256];
-    size_t count = 0;
-    CHECK(modes <= 256);
-    sum_modes(bake, region, sum);
-    for (size_t row = 0; row < rows; row++) {
-        const uint16_t *at = (const uint16_t *)expand->data + (region * rows + row) * modes * 3;
-        double total = 0.0;
-        for (size_t m = 0; m < modes; m++) total += (double)float_from_half(at[3 * m]) * sum[m];
-        if (at[0] == 0) continue;
-        *worst = fmax(*worst, fabs(total - 1.0));
-        count++;
-    }
-    return count;
-}
-
-TEST_GPU(low_rank_rows_of_a_closed_room_sum_to_one)
-{
-    struct frame_fixture s;
-    struct baked_fixture run;
-    double worst = 0.0;
-    size_t rows = 0;
-    room(&s, gpu, 0.5f, 10);
-    add_block(&s, 0.4f);
-    baked_fixture_open(&run, &s, SMALL LOWRANK);
-    const struct tensors *bake = run.baked.bakes.of_term[0];
-    const size_t regions = tensors_find(bake, "regions/scale")->shape[0];
-    for (size_t r = 0; r < regions; r++) rows += check_low_rank_rows(bake, r, &worst);
-    print_message("%u rows of %u regions sum to 1 within %.2g\n", (unsigned)rows, (unsigned)regions,
-                  worst);
-    CHECK(rows > 1500 && worst < 1e-3);
-    baked_fixture_close(&run, &s);
-}
-
 // ---- light
 
-static void check_furnace(struct gpu *gpu, const char *text)
+TEST_GPU(furnace_has_the_emission_over_one_minus_the_albedo)
 {
     static const float ALBEDO[] = { 0.5f, 0.8f };
     for (int i = 0; i < 2; i++) {
         struct frame_fixture s;
         struct baked_fixture run;
         room(&s, gpu, ALBEDO[i], 10);
-        baked_fixture_open(&run, &s, text);
+        baked_fixture_open(&run, &s, "radiosity:texels=2048");
         fixture_render(&s);
         const double expected = GLM_PI * 10 / (1 - (double)ALBEDO[i]);
         float *e = fixture_read(&s, READ_IRRADIANCE);
@@ -143,16 +90,6 @@ static void check_furnace(struct gpu *gpu, const char *text)
     }
 }
 
-TEST_GPU(furnace_has_the_emission_over_one_minus_the_albedo)
-{
-    check_furnace(gpu, "radiosity:texels=2048");
-}
-
-TEST_GPU(furnace_of_low_rank_has_the_emission_over_one_minus_the_albedo)
-{
-    check_furnace(gpu, "radiosity:texels=2048" LOWRANK);
-}
-
 static double mean_irradiance(struct frame_fixture *s)
 {
     fixture_render(s);
@@ -164,13 +101,13 @@ static double mean_irradiance(struct frame_fixture *s)
     return sum;
 }
 
-static void check_switched_off(struct gpu *gpu, const char *text)
+TEST_GPU(a_light_that_is_switched_off_leaves_nothing_in_the_next_frame)
 {
     struct frame_fixture s;
     struct baked_fixture run;
     room(&s, gpu, 0.7f, 0);
     struct world_light *light = fixture_add_point(&s, vec3_of(0, 2, 0), vec3_of(100, 100, 100));
-    baked_fixture_open(&run, &s, text);
+    baked_fixture_open(&run, &s, SMALL);
     const double lit = mean_irradiance(&s), again = mean_irradiance(&s);
     CHECK(lit > 1.0 && lit == again);
     light->intensity = vec3_of(0, 0, 0);
@@ -178,12 +115,6 @@ static void check_switched_off(struct gpu *gpu, const char *text)
     light->intensity = vec3_of(100, 100, 100);
     CHECK(mean_irradiance(&s) == lit);
     baked_fixture_close(&run, &s);
-}
-
-TEST_GPU(a_light_that_is_switched_off_leaves_nothing_in_the_next_frame)
-{
-    check_switched_off(gpu, SMALL);
-    check_switched_off(gpu, SMALL LOWRANK);
 }
 
 // Passes that a frame records.

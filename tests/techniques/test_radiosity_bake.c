@@ -14,8 +14,7 @@
 
 #define SMALL "radiosity:texels=2048,rays=100,sources=16"
 // Takes a second or more.
-#define LONGER  "radiosity:texels=2048,rays=2000,sources=16"
-#define LOWRANK ",transfer=lowrank"
+#define LONGER "radiosity:texels=2048,rays=2000,sources=16"
 
 struct source {
     struct scene *scene;
@@ -73,27 +72,17 @@ static void check_same(struct file_bytes *a, struct file_bytes *b)
     file_bytes_finish(test_host(), b);
 }
 
-static void check_threads(const char *text)
+TEST(bake_has_the_same_bytes_on_1_2_and_4_threads)
 {
     struct source s;
     open_source(&s);
-    struct file_bytes one = baked_on(&s, text, 1);
+    struct file_bytes one = baked_on(&s, SMALL, 1);
     for (int threads = 2; threads <= 4; threads *= 2) {
-        struct file_bytes more = baked_on(&s, text, threads);
+        struct file_bytes more = baked_on(&s, SMALL, threads);
         check_same(&one, &more);
     }
     file_bytes_finish(test_host(), &one);
     close_source(&s);
-}
-
-TEST(bake_has_the_same_bytes_on_1_2_and_4_threads)
-{
-    check_threads(SMALL);
-}
-
-TEST(bake_of_low_rank_has_the_same_bytes_on_1_2_and_4_threads)
-{
-    check_threads(SMALL LOWRANK);
 }
 
 // Cancels where this share is done.
@@ -124,27 +113,17 @@ static struct file_bytes baked_with_interruptions(const struct source *s, const 
     return bytes_of(bake);
 }
 
-static void check_interruptions(const char *text)
+TEST(bake_has_the_same_bytes_after_interruptions)
 {
     struct source s;
     int interruptions = 0;
     open_source(&s);
-    struct file_bytes whole = baked_on(&s, text, 0);
-    struct file_bytes resumed = baked_with_interruptions(&s, text, &interruptions);
+    struct file_bytes whole = baked_on(&s, LONGER, 0);
+    struct file_bytes resumed = baked_with_interruptions(&s, LONGER, &interruptions);
     CHECK(interruptions >= 2);
     check_same(&whole, &resumed);
     file_bytes_finish(test_host(), &whole);
     close_source(&s);
-}
-
-TEST(bake_has_the_same_bytes_after_interruptions)
-{
-    check_interruptions(LONGER);
-}
-
-TEST(bake_of_low_rank_has_the_same_bytes_after_interruptions)
-{
-    check_interruptions(LONGER LOWRANK);
 }
 
 // ---- memory
@@ -156,11 +135,10 @@ static uint64_t memory_of(struct bake *bake)
     return estimate.peak_memory_bytes;
 }
 
-// transfer: an option more, or "".
-static struct bake *bake_at(const struct source *s, double density, const char *transfer)
+static struct bake *bake_at(const struct source *s, double density)
 {
     char text[128];
-    snprintf(text, sizeof text, "radiosity:density=%.9g,rays=16,sources=8%s", density, transfer);
+    snprintf(text, sizeof text, "radiosity:density=%.9g,rays=16,sources=8", density);
     return bake_of(s, text);
 }
 
@@ -181,52 +159,20 @@ static bool runs_within(struct bake *bake, uint64_t bytes)
     return ok;
 }
 
-static void check_limit(const char *transfer)
+TEST(density_beyond_the_memory_limit_is_refused_with_one_that_fits)
 {
     static const double DENSITY = 40.0;
     struct source s;
     open_source(&s);
-    struct bake *bake = bake_at(&s, DENSITY, transfer);
+    struct bake *bake = bake_at(&s, DENSITY);
     const uint64_t limit = memory_of(bake) / 3;
     CHECK(!runs_within(bake, limit));
     CHECK(strstr(test_last_message(), "more than the limit"));
     const double fits = advised();
     print_message("density %.3g needs three times the limit, %.3g fits\n", DENSITY, fits);
     CHECK(fits > 0.0 && fits < DENSITY);
-    CHECK(!runs_within(bake_at(&s, 1.25 * fits, transfer), limit));
-    CHECK(runs_within(bake_at(&s, fits, transfer), limit));
-    close_source(&s);
-}
-
-TEST(density_beyond_the_memory_limit_is_refused_with_one_that_fits)
-{
-    check_limit("");
-}
-
-TEST(density_of_low_rank_beyond_the_memory_limit_is_refused_with_one_that_fits)
-{
-    check_limit(LOWRANK);
-}
-
-// Tables of regions: all else is that of sparse transfer with as many sources.
-TEST(memory_of_a_bake_of_low_rank_has_the_tables_of_regions)
-{
-    struct source s;
-    open_source(&s);
-    struct bake *few = bake_of(&s, SMALL LOWRANK ",modes=8");
-    struct bake *many = bake_of(&s, SMALL LOWRANK ",modes=256");
-    struct bake_estimate estimate[2];
-    const struct bake_run_options how = { .threads = 2 };
-    CHECK(bake_estimate(few, &how, false, &estimate[0]));
-    CHECK(bake_estimate(many, &how, false, &estimate[1]));
-    CHECK(bake_run(few, &how) && bake_run(many, &how));
-    const uint64_t tables = bake_bytes(many) - bake_bytes(few);
-    print_message("248 modes more: %.1f MB of tables\n", (double)tables * 1e-6);
-    CHECK(tables > 248 * bake_tensors(few)->at[0].shape[0]);
-    CHECK(estimate[1].file_bytes - estimate[0].file_bytes == tables);
-    CHECK(estimate[1].peak_memory_bytes - estimate[0].peak_memory_bytes >= tables);
-    bake_destroy(few);
-    bake_destroy(many);
+    CHECK(!runs_within(bake_at(&s, 1.25 * fits), limit));
+    CHECK(runs_within(bake_at(&s, fits), limit));
     close_source(&s);
 }
 
@@ -236,11 +182,11 @@ TEST(density_of_more_texels_than_a_light_map_has_is_refused_with_one_that_fits)
     static const double DENSITY = 256.0;
     struct source s;
     open_source(&s);
-    struct bake *bake = bake_at(&s, DENSITY, "");
+    struct bake *bake = bake_at(&s, DENSITY);
     CHECK(!bake && test_host()->failure == FAIL_MEMORY);
     const double fits = advised();
     CHECK(fits > 0.5 * DENSITY && fits < DENSITY);
-    bake = bake_at(&s, fits, "");
+    bake = bake_at(&s, fits);
     CHECK(bake);
     bake_destroy(bake);
     close_source(&s);

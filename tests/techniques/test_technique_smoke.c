@@ -189,39 +189,6 @@ TEST_GPU(techniques_estimate_their_memory)
     fixture_finish(&s);
 }
 
-struct memory {
-    uint64_t estimate, taken;
-};
-
-static struct memory memory_at(struct frame_fixture *s, const char *text)
-{
-    struct gi_spec spec;
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    struct memory m = { .estimate = gi_memory_estimate(&spec, s->width, s->height) };
-    struct gi *gi = gi_fixture_create(s->gpu, &spec, &s->pose, s->width, s->height);
-    assert_non_null(gi);
-    m.taken = memory_of(s->gpu, &spec);
-    gi_spec_finish(&spec);
-    gi_destroy(gi);
-    return m;
-}
-
-// All else is the same.
-TEST_GPU(the_estimate_has_the_tables_of_low_rank)
-{
-#define FEW "radiosity:transfer=lowrank,texels=8192,rays=64,sources=16,energy=1,modes="
-    struct frame_fixture s;
-    room(&s, gpu);
-    const struct memory few = memory_at(&s, FEW "8"), many = memory_at(&s, FEW "64");
-#undef FEW
-    const double estimate = (double)(many.estimate - few.estimate);
-    const double taken = (double)(many.taken - few.taken);
-    print_message("56 modes more: %.2f MB estimated, %.2f MB allocated, of %.2f\n", estimate * 1e-6,
-                  taken * 1e-6, (double)many.taken * 1e-6);
-    CHECK(taken > 1e6 && estimate > 0.8 * taken && estimate < 1.25 * taken);
-    fixture_finish(&s);
-}
-
 TEST_GPU(gi_changes_live_options_in_place_and_refuses_others)
 {
     struct frame_fixture s;

@@ -136,12 +136,8 @@ static bool load(void *state, const struct tensors *bake)
 {
     struct radiosity *s = state;
     const struct radiosity_probes_create how = { s->host, s->gpu, &s->map, &s->options };
-    const struct radiosity_lowrank_create lowrank = { s->host, s->gpu, &s->map, &s->options };
-    if (!radiosity_upload(s, bake) || !make_tables(s)) return false;
-    if (s->options.transfer == RADIOSITY_LOWRANK &&
-        !radiosity_lowrank_init(&s->lowrank, &lowrank, bake))
-        return false;
-    return radiosity_probes_init(&s->probes, &how, bake) &&
+    return radiosity_upload(s, bake) && make_tables(s) &&
+           radiosity_probes_init(&s->probes, &how, bake) &&
            (s->map.texel_count == 0 || (make_light_maps(s) && make_pipelines(s)));
 }
 
@@ -270,7 +266,6 @@ static void destroy(void *state)
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(s->gpu, pipelines[i]);
     destroy_tables(s);
-    radiosity_lowrank_finish(&s->lowrank, s->gpu);
     radiosity_probes_finish(&s->probes, s->gpu);
     radiosity_followed_finish(&s->followed);
     radiosity_map_finish(&s->map);
@@ -305,9 +300,7 @@ static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t he
     (void)width;
     (void)height;
     const uint64_t of_texels =
-        table_bytes(RADIOSITY_TEXEL_PARTS * texels, 16) +
-        (o->transfer == RADIOSITY_LOWRANK ? radiosity_lowrank_memory(o, texels)
-                                          : rows_bytes(texels, 8 * sources)) +
+        table_bytes(RADIOSITY_TEXEL_PARTS * texels, 16) + rows_bytes(texels, 8 * sources) +
         table_bytes(RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR * texels, 16) + table_bytes(texels, 16) +
         2 * table_bytes(3 * texels, 8) + texels * sizeof(struct radiosity_gpu_label);
     const uint64_t of_clusters = rows_bytes(clusters, 8 * sources) + table_bytes(clusters, 16) +

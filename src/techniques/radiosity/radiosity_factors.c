@@ -209,7 +209,7 @@ bool radiosity_upload_factors(struct radiosity *s, const uint32_t *source, const
                                           .stride = 1,
                                           .rows = s->map.cluster_count,
                                           .pack = pack_cluster };
-    return (!source || upload_rows(s, &texels, &s->tables.factors)) &&
+    return upload_rows(s, &texels, &s->tables.factors) &&
            upload_rows(s, &clusters, &s->tables.cluster_factors);
 }
 

@@ -5,10 +5,9 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define RADIOSITY_TEXELS_BINDING 1
-#define RADIOSITY_LIGHT_BINDING  6
 #include "frame/frame.glsl"
-#include "techniques/radiosity/radiosity_receive.glsl"
 #include "techniques/radiosity/radiosity_row.glsl"
+#include "techniques/radiosity/radiosity_texels.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
 
@@ -21,8 +20,13 @@ layout(set = 0, binding = 3) uniform usampler2D radiosity_tiles; // first texel,
 // Pairs of source and form factor; components along the tangents (halves).
 layout(set = 0, binding = 4, rgba32ui) uniform readonly uimage2D radiosity_factors;
 layout(set = 0, binding = 5, rg32ui) uniform readonly uimage2D radiosity_sent;
+layout(set = 0, binding = 6, rg32ui) uniform writeonly uimage2D radiosity_light; // [colour][texel]
 
-radiosity_received sum = radiosity_received(vec3(0.0), vec3(0.0), vec3(0.0));
+// Of clusters: irradiance, and the vector irradiance along the tangents.
+struct received {
+    vec3 irradiance, by_u, by_v;
+};
+received sum = received(vec3(0.0), vec3(0.0), vec3(0.0));
 
 void add_entry(uvec2 word)
 {
@@ -32,6 +36,24 @@ void add_entry(uvec2 word)
     sum.irradiance += light;
     sum.by_u += along.x * light;
     sum.by_v += along.y * light;
+}
+
+// Of clusters, the sky and emissive surfaces.
+void store_light(uint texel, float emitters)
+{
+    // The tangents of basis_of (core/vec.h).
+    vec3 n = radiosity_texel_part(texel, push.texels, RADIOSITY_NORMAL).xyz;
+    float side = n.z < 0.0 || (n.z == 0.0 && floatBitsToUint(n.z) != 0u) ? -1.0 : 1.0;
+    float a = -1.0 / (side + n.z), b = n.x * n.y * a;
+    vec3 u = vec3(1.0 + side * n.x * n.x * a, side * b, -side * n.x);
+    vec3 v = vec3(b, side + n.y * n.y * a, -n.y);
+    for (int c = 0; c < 3; c++) {
+        vec4 light =
+            vec4(sum.irradiance[c], sum.irradiance[c] * n + sum.by_u[c] * u + sum.by_v[c] * v) +
+            radiosity_unbounced(texel, push.texels, c, frame.sky, emitters);
+        imageStore(radiosity_light, radiosity_at(c * push.texels + texel),
+                   uvec4(radiosity_pack_light(light), 0u, 0u));
+    }
 }
 
 void main()
@@ -46,5 +68,5 @@ void main()
         add_entry(pair.zw);
     }
     uint i = texelFetch(radiosity_order, radiosity_at(row), 0).x;
-    radiosity_store_light(i, push.texels, sum, push.emitters * frame.radiance_scale);
+    store_light(i, push.emitters * frame.radiance_scale);
 }

@@ -109,23 +109,10 @@ static void record_gather_of(struct radiosity *s, struct gpu_cmd *cmd,
                  &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
-static void record_expand(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view,
-                          struct span rows)
-{
-    radiosity_lowrank_expand(
-        &s->lowrank, cmd, view,
-        &(struct radiosity_lowrank_rows){ rows.first, rows.count, s->tables.texels, s->tables.light,
-                                          s->map.texel_count, s->options.emitters });
-}
-
 static void record_gather(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view,
                           struct span rows)
 {
     const struct radiosity_rows *all = &s->tables.factors;
-    if (s->lowrank.regions > 0) {
-        record_expand(s, cmd, view, rows);
-        return;
-    }
     for (uint32_t i = 0; i < all->count; i++) {
         const struct span part = rows_in(&all->blocks[i], rows);
         if (part.count > 0) record_gather_of(s, cmd, view, &all->blocks[i], part);
@@ -185,8 +172,6 @@ uint32_t radiosity_stage_rows(const struct radiosity *s, enum radiosity_stage st
         return s->map.texel_count;
     case RADIOSITY_BOUNCES:
         return s->map.cluster_count;
-    case RADIOSITY_PROJECT:
-        return s->lowrank.regions;
     case RADIOSITY_SMOOTH:
         return s->options.smooth ? s->map.texel_count : 0;
     case RADIOSITY_LIGHT_MAP:
@@ -200,7 +185,7 @@ uint32_t radiosity_stage_rows(const struct radiosity *s, enum radiosity_stage st
 
 const char *radiosity_stage_name(enum radiosity_stage stage)
 {
-    static const char *const names[] = { "direct", "bounces",   "project", "gather",
+    static const char *const names[] = { "direct", "bounces",   "gather",
                                          "smooth", "light_map", "seams" };
     return names[stage];
 }
@@ -215,9 +200,6 @@ static void record_rows(struct radiosity *s, struct gpu_cmd *cmd, const struct f
         break;
     case RADIOSITY_BOUNCES:
         record_step(s, cmd, part->step, rows);
-        break;
-    case RADIOSITY_PROJECT:
-        radiosity_lowrank_project(&s->lowrank, cmd, rows.first, rows.count, s->tables.solution);
         break;
     case RADIOSITY_GATHER:
         record_gather(s, cmd, view, rows);

@@ -1,7 +1,6 @@
 // The private state of radiosity.
 #pragma once
 
-#include "techniques/radiosity/lowrank/lowrank.h"
 #include "techniques/radiosity/probes/probes.h"
 #include "techniques/radiosity/radiosity_follow.h"
 #include "techniques/radiosity/radiosity_seams.h"
@@ -34,8 +33,8 @@ struct radiosity_tables {
     gpu_image sent, radiosity[2];               // [clusters and nodes] likewise
     gpu_image solution;                         // [clusters and nodes] of all bounces
     gpu_image light_maps[2];
-    gpu_buffer labels, owner_of_place;              // of texels, of places: for debug views
-    struct radiosity_rows factors, cluster_factors; // factors: of sparse transfer
+    gpu_buffer labels, owner_of_place; // of texels, of places: for debug views
+    struct radiosity_rows factors, cluster_factors;
 };
 
 struct radiosity_pipelines {
@@ -48,7 +47,6 @@ struct radiosity_pipelines {
 enum radiosity_stage {
     RADIOSITY_DIRECT, // until the radiosity of clusters before any bounce
     RADIOSITY_BOUNCES,
-    RADIOSITY_PROJECT, // modes of regions, with low-rank transfer
     RADIOSITY_GATHER,
     RADIOSITY_SMOOTH,
     RADIOSITY_LIGHT_MAP,
@@ -84,7 +82,6 @@ struct radiosity {
     gpu_sampler linear;
     int shown_map; // of the light maps
     struct radiosity_update update;
-    struct radiosity_lowrank lowrank;
     struct radiosity_probes probes;
     struct radiosity_followed followed;
     // What the light of the newest frame was computed from.
@@ -98,8 +95,7 @@ struct radiosity {
 
 // Tables of the light map and of a bake on the GPU.
 bool radiosity_upload(struct radiosity *state, const struct tensors *bake);
-// The form factors of texels and of clusters, block after block. Rows are those of a bake; source
-// NULL: transfer to texels is not sparse.
+// The form factors of texels and of clusters, block after block. Rows are those of a bake.
 bool radiosity_upload_factors(struct radiosity *state, const uint32_t *source,
                               const uint16_t *factor, const uint32_t *cluster_source,
                               const uint16_t *cluster_factor);

@@ -19,16 +19,12 @@
 #define RADIOSITY_SEAM_WEIGHT    "seams/weight"            // F32 [places][RADIOSITY_SEAM_ENTRIES]
 #define RADIOSITY_CLUSTER_SOURCE "clusters/source"         // U32 [clusters][2 · sources]
 #define RADIOSITY_CLUSTER_FACTOR "clusters/factor"         // F16 [clusters][2 · sources]
-#define RADIOSITY_REGION_SOURCE  "regions/source"          // U32 [regions][sources]: nodes
-#define RADIOSITY_REGION_PROJECT "regions/project"         // U16 [regions][sources][modes]: signed
-#define RADIOSITY_REGION_SCALE   "regions/scale"           // F32 [regions][modes]
-#define RADIOSITY_REGION_EXPAND  "regions/expand" // F16 [regions][RADIOSITY_REGION][modes][3]
-#define RADIOSITY_PROBE_SOURCE   "probes/source"  // U32 [probes][2 · sources]
-#define RADIOSITY_PROBE_FACTOR   "probes/factor"  // F16 [probes][2 · sources][4]
-#define RADIOSITY_PROBE_PLACE    "probes/place"   // F32 [probes][4]
-#define RADIOSITY_PROBE_SKY      "probes/sky"     // F32 [probes][9]
-#define RADIOSITY_PROBE_EMITTED  "probes/emitted" // F32 [probes][9][3]
-#define RADIOSITY_PROBE_DEPTH    "probes/depth"   // F16 [probes][8 · 8][2]
+#define RADIOSITY_PROBE_SOURCE   "probes/source"           // U32 [probes][2 · sources]
+#define RADIOSITY_PROBE_FACTOR   "probes/factor"           // F16 [probes][2 · sources][4]
+#define RADIOSITY_PROBE_PLACE    "probes/place"            // F32 [probes][4]
+#define RADIOSITY_PROBE_SKY      "probes/sky"              // F32 [probes][9]
+#define RADIOSITY_PROBE_EMITTED  "probes/emitted"          // F32 [probes][9][3]
+#define RADIOSITY_PROBE_DEPTH    "probes/depth"            // F16 [probes][8 · 8][2]
 
 // Rows of a tensor: an empty scene has one, of zeros.
 static inline uint64_t radiosity_rows(uint32_t count)

@@ -25,12 +25,8 @@ static float cost_of_row(const struct radiosity *s, enum radiosity_stage stage)
         [RADIOSITY_SMOOTH] = 10, [RADIOSITY_LIGHT_MAP] = 5, [RADIOSITY_SEAMS] = 32,
     };
     static const float CLUSTER_ENTRY = 0.35f; // half the words, no direction
-    static const float PROJECT_ENTRY = 0.3f, MODE = 0.75f;
     if (stage == RADIOSITY_BOUNCES)
         return COST[stage] + CLUSTER_ENTRY * s->tables.cluster_factors.mean_entries;
-    if (stage == RADIOSITY_PROJECT) return PROJECT_ENTRY * s->lowrank.mean_entries;
-    if (stage == RADIOSITY_GATHER && s->lowrank.regions > 0)
-        return COST[stage] + MODE * s->lowrank.mean_modes;
     if (stage == RADIOSITY_GATHER) return COST[stage] + s->tables.factors.mean_entries;
     return COST[stage];
 }

@@ -7,7 +7,7 @@
 #include <string.h>
 
 struct content {
-    const uint32_t *source, *cluster_source; // source, factor: of sparse transfer
+    const uint32_t *source, *cluster_source;
     const uint16_t *factor, *cluster_factor;
     const uint8_t *part;
     const float *reflectance, *sky, *emitted, *point, *inverse_distance;
@@ -30,9 +30,8 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
                    (int)(sizeof((const uint64_t[]){ __VA_ARGS__ }) / sizeof(uint64_t)),            \
                    (const uint64_t[]){ __VA_ARGS__ })
     *out = (struct content){ .sources = k, .cluster_sources = 2 * k };
-    const bool sparse = s->options.transfer == RADIOSITY_SPARSE;
-    return (!sparse || ((out->source = EXPECT(RADIOSITY_SOURCE, TENSOR_U32, n, k)) &&
-                        (out->factor = EXPECT(RADIOSITY_FACTOR, TENSOR_F16, n, k, 3)))) &&
+    return (out->source = EXPECT(RADIOSITY_SOURCE, TENSOR_U32, n, k)) &&
+           (out->factor = EXPECT(RADIOSITY_FACTOR, TENSOR_F16, n, k, 3)) &&
            (out->reflectance = EXPECT(RADIOSITY_ALBEDO, TENSOR_F32, n, 4)) &&
            (out->sky = EXPECT(RADIOSITY_SKY, TENSOR_F32, n, 4)) &&
            (out->emitted = EXPECT(RADIOSITY_EMITTED, TENSOR_F32, n, 3, 4)) &&
@@ -87,7 +86,7 @@ static bool are_below_2(const uint16_t *half, size_t count, size_t stride)
 
 static bool check_factors(struct radiosity *s, const struct content *c)
 {
-    if ((!c->factor || are_below_2(c->factor, s->map.texel_count * c->sources, 3)) &&
+    if (are_below_2(c->factor, s->map.texel_count * c->sources, 3) &&
         are_below_2(c->cluster_factor, s->map.cluster_count * c->cluster_sources, 1))
         return true;
     return host_fail(s->host, FAIL_FORMAT, "bake of radiosity: a form factor is not in 0…2");
@@ -96,7 +95,7 @@ static bool check_factors(struct radiosity *s, const struct content *c)
 static bool check_sources(struct radiosity *s, const struct content *c)
 {
     const uint32_t nodes = s->map.tree.count;
-    if ((!c->source || are_below(c->source, s->map.texel_count * c->sources, nodes)) &&
+    if (are_below(c->source, s->map.texel_count * c->sources, nodes) &&
         are_below(c->cluster_source, s->map.cluster_count * c->cluster_sources, nodes))
         return true;
     return host_fail(s->host, FAIL_FORMAT, "bake of radiosity: a source of light is beyond %u",

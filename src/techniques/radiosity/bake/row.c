@@ -71,9 +71,7 @@ static struct radiosity_entry entry_of(const struct radiosity_rows *rows, uint32
 {
     const struct radiosity_factor f = rows->sum[node];
     return (struct radiosity_entry){
-        node,
-        node,
-        { f.weight, { f.along[0] / f.weight, f.along[1] / f.weight, f.along[2] / f.weight } }
+        node, { f.weight, { f.along[0] / f.weight, f.along[1] / f.weight, f.along[2] / f.weight } }
     };
 }
 

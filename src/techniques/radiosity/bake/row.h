@@ -5,7 +5,6 @@
 
 struct radiosity_entry {
     uint32_t node;                  // of the tree
-    uint32_t stratum;               // the node that it stands for, or itself
     struct radiosity_factor factor; // `along` per weight
 };
 

@@ -6,7 +6,6 @@
 #include "core/half.h"
 #include "techniques/radiosity/bake/close.h"
 #include "techniques/radiosity/bake/row.h"
-#include "techniques/radiosity/lowrank/stage.h"
 #include "techniques/radiosity/probes/stage.h"
 
 #include <string.h>
@@ -16,7 +15,6 @@ enum { TEXELS_PER_TASK = 128, CLUSTERS_PER_TASK = 64 };
 struct job {
     struct radiosity_scene scene;
     struct radiosity_closing closing;
-    uint32_t *regions;        // of low-rank transfer
     struct radiosity_map map; // before the first run and between runs: without parts
     const struct scene_pose *pose;
     struct radiosity_options options;
@@ -25,20 +23,14 @@ struct job {
 static bool prepare(void *argument, struct host *host)
 {
     struct job *job = argument;
-    if (!radiosity_scene_init(&job->scene, host, job->pose, &job->options, &job->map) ||
-        !radiosity_closing_init(&job->closing, &job->scene))
-        return false;
-    if (job->options.transfer != RADIOSITY_LOWRANK) return true;
-    job->regions = radiosity_regions(&job->scene.map);
-    return job->regions;
+    return radiosity_scene_init(&job->scene, host, job->pose, &job->options, &job->map) &&
+           radiosity_closing_init(&job->closing, &job->scene);
 }
 
 static void finish(void *argument)
 {
     struct job *job = argument;
     radiosity_closing_finish(&job->closing);
-    if (job->scene.host) host_free(job->scene.host, job->regions);
-    job->regions = NULL;
     job->map = job->scene.map;
     job->scene.map = (struct radiosity_map){ 0 };
     radiosity_scene_finish(&job->scene);
@@ -61,9 +53,7 @@ struct room {
 static bool room_init(struct room *room, struct host *host, const struct job *job)
 {
     const struct radiosity_tree *tree = &job->scene.map.tree;
-    const size_t entries = job->options.transfer == RADIOSITY_LOWRANK
-                               ? radiosity_lowrank_sources(&job->options)
-                               : 2 * (size_t)job->options.sources;
+    const size_t entries = 2 * (size_t)job->options.sources;
     *room = (struct room){ .row = host_alloc(host, entries, sizeof *room->row) };
     room->gather.factor = host_alloc(host, tree->leaves, sizeof *room->gather.factor);
     room->gather.met = host_alloc(host, tree->leaves, sizeof *room->gather.met);
@@ -152,11 +142,9 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
                        uint64_t clusters)
 {
     const uint64_t sources = (uint64_t)job->options.sources;
-    // The rows of clusters are their means.
-    const int rows = job->options.transfer == RADIOSITY_LOWRANK ? 1 : BAKE_SAVED;
     const struct bake_output out[OUT_COUNT] = {
-        { RADIOSITY_SOURCE, TENSOR_U32, 2, { texels, sources }, BAKE_ROWS, rows },
-        { RADIOSITY_FACTOR, TENSOR_F16, 3, { texels, sources, 3 }, BAKE_ROWS, rows },
+        { RADIOSITY_SOURCE, TENSOR_U32, 2, { texels, sources }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_FACTOR, TENSOR_F16, 3, { texels, sources, 3 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_ALBEDO, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_SKY, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_EMITTED, TENSOR_F32, 3, { texels, 3, 4 }, BAKE_ROWS, BAKE_SAVED },
@@ -189,27 +177,6 @@ static bool run_probes(const struct bake_task *task)
                             &(struct radiosity_probe_room){ &room.gather, &room.rows, room.row });
     room_finish(&room, task->host);
     return ok;
-}
-
-// ---- regions
-
-static bool run_lowrank(const struct bake_task *task)
-{
-    const struct job *job = task->job;
-    struct room room;
-    const bool ok = room_init(&room, task->host, job) &&
-                    radiosity_lowrank_run(
-                        task, &job->scene, job->regions,
-                        &(struct radiosity_lowrank_room){ &room.gather, &room.rows, room.row });
-    room_finish(&room, task->host);
-    return ok;
-}
-
-static bool add_lowrank(struct bake_plan *plan, const struct job *job, uint64_t clusters)
-{
-    return job->options.transfer != RADIOSITY_LOWRANK ||
-           radiosity_lowrank_plan(plan, &job->options, job->map.texel_count, clusters, run_lowrank,
-                                  room_bytes(clusters));
 }
 
 // ---- clusters
@@ -375,7 +342,7 @@ static bool add_stages(struct bake_plan *plan, struct job *job, const struct sce
     radiosity_seams_finish(&seams);
     return ok && add_texels(plan, job, texels, clusters) &&
            radiosity_probe_plan(plan, grid, &job->options, run_probes, room_bytes(clusters)) &&
-           add_clusters(plan, job, texels, clusters) && add_lowrank(plan, job, clusters) &&
+           add_clusters(plan, job, texels, clusters) &&
            radiosity_add_seams(plan, &job->closing, places);
 }
 
