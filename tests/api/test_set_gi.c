@@ -38,8 +38,6 @@ static const struct {
     const char *technique, *option;
     double tolerance;
 } exceptions[] = {
-    // The remaining bounces of the light before: below 0.3 % (lighting.c).
-    { "vct", "keep_static", 3e-3 },
     // By definition: the irradiance of the last frame is the light of further bounces.
     { "mrt", "feedback", 3e-3 },
     { "drt", "feedback", 2e-3 },

@@ -125,9 +125,10 @@ TEST_GPU(octree_construction_is_deterministic)
     struct rng rng = rng_for(6, 0, 0);
     vct_fixture_init(&fixture, gpu);
     for (int k = 0; k < 12; k++) add_triangle(&fixture, &rng, 0.5f);
-    vct_fixture_open(&fixture, "storage=svo,resolution=48,keep_static=false");
+    vct_fixture_open(&fixture, "storage=svo,resolution=48");
     fixture_render(&fixture.frame_fixture);
     struct svo_tree first = svo_tree_of(&fixture);
+    vct_fixture_forget_voxels(&fixture);
     fixture_render(&fixture.frame_fixture);
     struct svo_tree second = svo_tree_of(&fixture);
     const uint32_t leaves = first.params.depths - 1;
@@ -150,9 +151,10 @@ TEST_GPU(nodes_beyond_the_capacity_are_dropped_and_counted)
     for (int i = 0; i < 5; i++) {
         struct vct_fixture fixture;
         svo_fixture_room(&fixture, gpu, true);
-        vct_fixture_open(&fixture, "storage=svo,resolution=48,keep_static=false");
+        vct_fixture_open(&fixture, "storage=svo,resolution=48");
         fixture.vct->svo.params.bricks = room[i];
         fixture_render(&fixture.frame_fixture);
+        vct_fixture_forget_voxels(&fixture);
         fixture_render(&fixture.frame_fixture);
         struct svo_tree tree = svo_tree_of(&fixture);
         uint32_t bricks = 0, overflow = 0;

@@ -268,7 +268,6 @@ TEST_GPU(each_storage_matches_ray_casting_and_is_static)
         { "resolution=48", 0.045 },
         { "resolution=48,storage=svo", 0.045 },
         { "resolution=48,voxels=raster", 0.045 },
-        { "resolution=48,keep_static=false", 0.045 },
         // Isotropic voxels occlude their own cones, except where points of the octree lie in the
         // surface.
         { "resolution=48,anisotropic=false", 0.2 },

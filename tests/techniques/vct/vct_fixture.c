@@ -50,6 +50,11 @@ void vct_fixture_finish(struct vct_fixture *fixture)
     fixture_finish(&fixture->frame_fixture);
 }
 
+void vct_fixture_forget_voxels(struct vct_fixture *fixture)
+{
+    fixture->technique->invalidate(fixture->vct, CHANGED_GEOMETRY);
+}
+
 void vct_fixture_hall(struct vct_fixture *fixture, struct gpu *gpu)
 {
     vct_fixture_init(fixture, gpu);

@@ -19,6 +19,8 @@ void vct_fixture_init(struct vct_fixture *fixture, struct gpu *gpu);
 int vct_fixture_add_triangle(struct vct_fixture *fixture, const vec3s corners[3], int material);
 void vct_fixture_open(struct vct_fixture *fixture, const char *options);
 void vct_fixture_finish(struct vct_fixture *fixture);
+// The next frame voxelizes all geometry, as after a change of it.
+void vct_fixture_forget_voxels(struct vct_fixture *fixture);
 // Instead of vct_fixture_init: a closed hall, 27 by 12 by 20 m, with pillars, a point light and a
 // camera.
 void vct_fixture_hall(struct vct_fixture *fixture, struct gpu *gpu);

@@ -171,10 +171,9 @@ static void voxelize_level(struct vct *vct, struct vct_clip *clip, struct gpu_cm
     const bool moved = view->geometry_moved || view->index != vct->voxelized_index + 1;
     const int moving = view->scene->dynamic_count;
     clip->new_statics = !clip->static_valid || view->scene->static_set != vct->static_set;
-    const bool statics = clip->new_statics || !vct->options.keep_static;
-    if (statics) voxelize(vct, clip, cmd, view, &clip->static_set, false);
+    if (clip->new_statics) voxelize(vct, clip, cmd, view, &clip->static_set, false);
     // A set whose last draw is gone is emptied once.
-    clip->revoxelized = statics || (moving > 0 && moved) || moving != vct->moving_draws;
+    clip->revoxelized = clip->new_statics || (moving > 0 && moved) || moving != vct->moving_draws;
     if (clip->revoxelized) voxelize(vct, clip, cmd, view, &clip->dynamic_set, true);
     clip->static_valid = true;
 }
