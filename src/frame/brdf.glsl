@@ -11,8 +11,7 @@
 #define AG_FRAME_BRDF_GLSL
 
 #include "core/ggx_albedo.glsl"
-
-const float BRDF_INV_PI = 0.31830988618;
+#include "core/math.glsl"
 
 // 0…1 each. The dielectric's reflectance at normal and at grazing incidence: 0.04 and 1 by default.
 struct brdf_material {
@@ -98,7 +97,7 @@ brdf_lobes brdf_lobes_at(brdf_material m, float n_v)
     vec3 metal = m.metallic * (1.0 + m.albedo * loss);
     brdf_lobes lobes;
     lobes.diffuse_share = (1.0 - m.metallic) * brdf_transmitted(brdf_dielectric_albedo(m, ab));
-    lobes.diffuse = m.albedo * (lobes.diffuse_share * BRDF_INV_PI);
+    lobes.diffuse = m.albedo * (lobes.diffuse_share * INV_PI);
     lobes.f0 = dielectric * m.dielectric_f0 + metal * m.albedo;
     lobes.f90 = dielectric * m.dielectric_f90 + metal;
     lobes.specular_albedo = lobes.f0 * ab.x + lobes.f90 * ab.y;
@@ -120,7 +119,7 @@ vec3 brdf_specular(brdf_lobes lobes, vec3 n, vec3 v, vec3 l)
     // sin² from the cross product: 1 − n_h² cancels within the narrow lobe of a smooth surface.
     vec3 n_x_h = cross(n, h);
     float d_base = dot(n_x_h, n_x_h) + n_h * n_h * a2;
-    float d = a2 * BRDF_INV_PI / (d_base * d_base);
+    float d = a2 * INV_PI / (d_base * d_base);
     float smith_v = n_l * sqrt(n_v * n_v * (1.0 - a2) + a2);
     float smith_l = n_v * sqrt(n_l * n_l * (1.0 - a2) + a2);
     float visibility = 0.5 / (smith_v + smith_l);

@@ -8,6 +8,7 @@
 #define AG_FRAME_GLSL
 
 #include "core/half.glsl"
+#include "core/math.glsl"
 
 #define frame_constants frame_constants_data
 #include "frame/frame_shared.h"

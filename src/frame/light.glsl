@@ -21,4 +21,18 @@ float light_window(frame_light light, float distance2_m2)
     return clamp(1.0 - ratio2 * ratio2, 0.0, 1.0);
 }
 
+// Factor on a light's intensity at a position, and the unit direction to the light. d² has
+// `added_m2` and is at least `least_m2`: near a light the size of the receiver counts.
+float light_attenuation(frame_light light, vec3 position, float added_m2, float least_m2,
+                        out vec3 to_light)
+{
+    to_light = -light.direction;
+    if (light.type == FRAME_LIGHT_SUN) return 1.0;
+    to_light = light.position - position;
+    float distance2 = dot(to_light, to_light);
+    to_light *= inversesqrt(max(distance2, 1e-12));
+    return light_cone(light, -to_light) * light_window(light, distance2) /
+           max(distance2 + added_m2, least_m2);
+}
+
 #endif

@@ -41,8 +41,6 @@ layout(push_constant, scalar) uniform push_block
     composite_push push;
 };
 
-const float INV_PI = 0.31830988618;
-
 // direct: of direct/direct.comp.
 vec3 indirect_light(ivec2 pixel, vec4 direct)
 {

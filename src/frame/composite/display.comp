@@ -24,8 +24,6 @@ layout(push_constant, scalar) uniform push_block
     display_push push;
 };
 
-const float INV_PI = 0.31830988618;
-
 vec3 motion_color(vec3 motion)
 {
     motion.xy *= vec2(frame.width, frame.height);

@@ -159,13 +159,9 @@ vec3 reflected_radiance(surface s, frame_light light)
 {
     vec3 to_light = -light.direction;
     float attenuation = 1.0;
-    if (HAS_LOCALS && light.type != FRAME_LIGHT_SUN) {
-        to_light = light.position - s.position;
-        float distance2 = dot(to_light, to_light);
-        to_light *= inversesqrt(max(distance2, 1e-12));
-        attenuation = light_cone(light, -to_light) * light_window(light, distance2) /
-                      max(distance2, LIGHT_MIN_DISTANCE_M * LIGHT_MIN_DISTANCE_M);
-    }
+    if (HAS_LOCALS)
+        attenuation = light_attenuation(light, s.position, 0.0,
+                                        LIGHT_MIN_DISTANCE_M * LIGHT_MIN_DISTANCE_M, to_light);
     float cosine = dot(s.normal, to_light);
     bool facing = cosine > 0.0 && attenuation > 0.0;
     if (light.shadow_first >= 0) attenuation *= visibility(s, light, to_light, facing);

@@ -4,6 +4,7 @@
 #ifndef AG_FRAME_SHADOW_GLSL
 #define AG_FRAME_SHADOW_GLSL
 
+#include "core/basis.glsl"
 #include "frame/shadow/shadow_shared.h"
 
 #ifndef SHADOW_FACES_BINDING
@@ -79,8 +80,7 @@ const float SHADOW_MIN_COSINE = 0.1;
 // Gradient of NDC depth over NDC x and y on the plane with this normal.
 vec2 shadow_slope(mat4 clip_from_world, vec3 ndc, vec3 normal)
 {
-    vec3 a = normalize(abs(normal.y) < 0.7 ? cross(normal, vec3(0, 1, 0))
-                                           : cross(normal, vec3(1, 0, 0)));
+    vec3 a = perpendicular_to(normal);
     vec4 ca = clip_from_world * vec4(a, 0.0), cb = clip_from_world * vec4(cross(normal, a), 0.0);
     // Tangents of the plane in NDC, up to a common factor.
     vec3 da = ca.xyz - ndc * ca.w, db = cb.xyz - ndc * cb.w;

@@ -22,7 +22,7 @@ layout(set = 0, binding = 3) uniform sampler2D albedo;
 layout(set = 0, binding = 4) uniform sampler3D probes;
 layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D target;
 
-const float PI = 3.14159265, RADIUS = 0.12, DIM = 0.3;
+const float RADIUS = 0.12, DIM = 0.3;
 
 // Intersection with the sphere of radius RADIUS around `center`; false: the ray misses it.
 bool intersect_sphere(vec3 from, vec3 direction, vec3 center, out float distance)

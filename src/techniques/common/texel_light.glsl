@@ -9,16 +9,8 @@
 vec3 texel_irradiance(vec3 position, vec3 normal, float area_m2, frame_light light,
                       int shadow_radius)
 {
-    const float TWO_PI = 6.28318531;
-    vec3 to_light = -light.direction;
-    float attenuation = 1.0;
-    if (light.type != FRAME_LIGHT_SUN) {
-        to_light = light.position - position;
-        float distance2 = dot(to_light, to_light);
-        to_light *= inversesqrt(max(distance2, 1e-12));
-        attenuation = light_cone(light, -to_light) * light_window(light, distance2) /
-                      (distance2 + area_m2 / TWO_PI);
-    }
+    vec3 to_light;
+    float attenuation = light_attenuation(light, position, area_m2 / (2.0 * PI), 0.0, to_light);
     float cosine = dot(normal, to_light);
     if (cosine <= 0.0 || attenuation <= 0.0) return vec3(0.0);
     if (light.shadow_first >= 0)

@@ -7,6 +7,8 @@
 // large the penumbra. Directions that end behind it before the occluders do not count: that part of
 // the disk is below the horizon.
 
+#include "core/basis.glsl"
+
 const int SEARCH_TAPS = 16, FILTER_TAPS = 16;
 const vec2 GOLDEN_TURN = vec2(-0.73736888, 0.67549029); // cosine and sine of π (3 − √5)
 // Height over the tangent plane below which texels are not in front of it, over their distance from
@@ -75,9 +77,7 @@ vec2 next_turn(vec2 turn)
 // R (1/z − 1/d), as a tangent at the centre.
 float intrusion_visibility(intrusion i)
 {
-    vec3 a = normalize(abs(i.towards.y) < 0.7 ? cross(i.towards, vec3(0, 1, 0))
-                                              : cross(i.towards, vec3(1, 0, 0)));
-    vec3 b = cross(i.towards, a);
+    vec3 a = perpendicular_to(i.towards), b = cross(i.towards, a);
     float texel = 2.0 / float(push.map_size), least = LEAST_TEXELS * texel;
     float far = 1.0 / i.distance;
     float widest = clamp(1.0 - i.radius * far, least, FARTHEST);

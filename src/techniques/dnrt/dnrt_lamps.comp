@@ -43,8 +43,6 @@ layout(set = 0, binding = 7, scalar) readonly buffer frame_lights
     frame_light frame_light_table[];
 };
 
-const float PI = 3.14159265;
-
 // Points of equal area on a disk, along a spiral of golden angles (Vogel 1979).
 const int POINTS = 64;
 
@@ -74,17 +72,12 @@ float lit_share(frame_light light, vec3 centre, vec3 to_light, float radius, flo
 vec3 irradiance_by(frame_light light, dnrt_gpu_object object, float radius, out vec3 to_light)
 {
     const float MARGIN = 1.25; // radii: farther than a texel of the shadow map before the sphere
-    to_light = -light.direction;
-    float attenuation = 1.0, before = MARGIN * radius;
-    if (light.type != FRAME_LIGHT_SUN) {
-        to_light = light.position - object.centre;
-        float distance2 = dot(to_light, to_light);
-        to_light *= inversesqrt(max(distance2, 1e-12));
-        attenuation = light_cone(light, -to_light) * light_window(light, distance2) /
-                      max(distance2, max(radius * radius, 1e-12));
-        before = min(before, 0.5 * (radius + sqrt(distance2)));
-    }
+    float attenuation =
+        light_attenuation(light, object.centre, 0.0, max(radius * radius, 1e-12), to_light);
     if (attenuation <= 0.0) return vec3(0.0);
+    float before = MARGIN * radius;
+    if (light.type != FRAME_LIGHT_SUN)
+        before = min(before, 0.5 * (radius + distance(light.position, object.centre)));
     return light.intensity *
            (attenuation * lit_share(light, object.centre, to_light, radius, before));
 }

@@ -5,6 +5,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#include "core/math.glsl"
 #include "core/sh.glsl"
 #include "frame/frame_shared.h"
 #include "frame/probes.glsl"
@@ -40,8 +41,6 @@ layout(set = 0, binding = 3, scalar) buffer dnrt_changed
 #ifdef DNRT_SEEN
 layout(set = 0, binding = 4) uniform sampler2D probe_depths; // no light passes through walls
 #endif
-
-const float PI = 3.14159265;
 
 // A quadratic form n·Q n without trace has the five coefficients of band 2.
 mat3 form_of(float xy, float yz, float zz, float xz, float xx_yy)

@@ -90,8 +90,7 @@ vec3 change_at(dnrt_gpu_patch patch_, vec2 at, vec3 n, uint light, uint lamps)
             sum += weights[k] * change.rgb * light_table[light + j];
             if (PLANES == 4u) sum += weights[k] * (change.rgb + change.a) * light_table[lamps + j];
         }
-    const float INV_PI = 0.318309886; // dnrt_light has π c_j
-    return INV_PI * sum;
+    return INV_PI * sum; // dnrt_light has π c_j
 }
 
 vec3 change_of(ivec2 pixel, uvec2 ids, float z)

@@ -78,7 +78,7 @@ vec3 reflected(ivec2 pixel, vec3 position, vec3 n, light_at_pixel light)
         brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
     vec3 to_viewer = unit(frame.camera_position - position);
     vec3 along = (dot(to_viewer, n) * n - to_viewer) * lean_of(brdf_alpha(m.roughness));
-    vec3 radiance = BRDF_INV_PI * (light.irradiance + 1.5 * (along * light.vector));
+    vec3 radiance = INV_PI * (light.irradiance + 1.5 * (along * light.vector));
     return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
            clamp(radiance, vec3(0.0), vec3(HALF_MAX));
 }

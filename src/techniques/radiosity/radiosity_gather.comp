@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define RADIOSITY_TEXELS_BINDING 1
+#include "core/basis.glsl"
 #include "frame/frame.glsl"
 #include "techniques/radiosity/radiosity_row.glsl"
 #include "techniques/radiosity/radiosity_texels.glsl"
@@ -41,16 +42,11 @@ void add_entry(uvec2 word)
 // Of clusters, the sky and emissive surfaces.
 void store_light(uint texel, float emitters)
 {
-    // The tangents of basis_of (core/vec.h).
-    vec3 n = radiosity_texel_part(texel, push.texels, RADIOSITY_NORMAL).xyz;
-    float side = n.z < 0.0 || (n.z == 0.0 && floatBitsToUint(n.z) != 0u) ? -1.0 : 1.0;
-    float a = -1.0 / (side + n.z), b = n.x * n.y * a;
-    vec3 u = vec3(1.0 + side * n.x * n.x * a, side * b, -side * n.x);
-    vec3 v = vec3(b, side + n.y * n.y * a, -n.y);
+    mat3 basis = basis_of(radiosity_texel_part(texel, push.texels, RADIOSITY_NORMAL).xyz);
     for (int c = 0; c < 3; c++) {
-        vec4 light =
-            vec4(sum.irradiance[c], sum.irradiance[c] * n + sum.by_u[c] * u + sum.by_v[c] * v) +
-            radiosity_unbounced(texel, push.texels, c, frame.sky, emitters);
+        vec4 light = vec4(sum.irradiance[c], sum.irradiance[c] * basis[2] + sum.by_u[c] * basis[0] +
+                                                 sum.by_v[c] * basis[1]) +
+                     radiosity_unbounced(texel, push.texels, c, frame.sky, emitters);
         imageStore(radiosity_light, radiosity_at(c * push.texels + texel),
                    uvec4(radiosity_pack_light(light), 0u, 0u));
     }

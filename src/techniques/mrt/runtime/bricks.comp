@@ -51,7 +51,7 @@ void main()
     for (int k = 0; k < 9; k++) {
         vec3 unbounced =
             unbounced_table[probe].emitted[k] * (frame.radiance_scale * level.emitters) +
-            3.14159265 * unbounced_table[probe].sky[k] * frame.sky;
+            PI * unbounced_table[probe].sky[k] * frame.sky;
         coefficients[k] = clamp(turned(probe, source, k) + unbounced, -HALF_MAX, HALF_MAX);
     }
     ivec3 at = ivec3(block % level.brick_columns, block / level.brick_columns, 0) * int(edge) +

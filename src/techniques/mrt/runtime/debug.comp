@@ -36,7 +36,7 @@ const float EDGE = 0.01; // width of lines, edges of the cell
 vec3 colour_of(int block)
 {
     vec3 phase = fract(float(block) * 0.61803399 + vec3(0.0, 1.0 / 3.0, 2.0 / 3.0));
-    return 0.5 + 0.5 * cos(6.2831853 * phase);
+    return 0.5 + 0.5 * cos(2.0 * PI * phase);
 }
 
 // The wall that faces the surface's way most; −1: all of those are openings.
@@ -57,7 +57,7 @@ int facing_wall(mrt_place place, vec3 n)
 float brightness(ivec2 pixel)
 {
     vec3 light =
-        texelFetch(scene, pixel, 0).rgb + texelFetch(irradiance, pixel, 0).rgb * (0.5 / 3.14159265);
+        texelFetch(scene, pixel, 0).rgb + texelFetch(irradiance, pixel, 0).rgb * (0.5 / PI);
     return dot(light, vec3(0.2126, 0.7152, 0.0722));
 }
 
@@ -85,7 +85,7 @@ vec3 shade(ivec2 pixel, float z)
     if (push.view == MRT_VIEW_DIRECT)
         return direct_table[tile_table[block_table[place.block].tile[face]].first_texel +
                             uint(texel.y) * level.resolution + uint(texel.x)] /
-               3.14159265;
+               PI;
     vec2 to_edge = min(st, 1.0 - st);
     float bright = min(to_edge.x, to_edge.y) < EDGE ? 2.0
                    : ((texel.x ^ texel.y) & 1) != 0 ? 0.8

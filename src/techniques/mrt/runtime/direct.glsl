@@ -17,7 +17,6 @@ layout(set = 0, binding = 5, scalar) readonly buffer frame_lights
 {
     frame_light frame_light_table[];
 };
-const float PI = 3.14159265;
 
 // Light of emissive surfaces and the sky.
 vec3 unbounced_of(vec3 emitted, vec3 sky)

@@ -27,7 +27,7 @@ void main()
     vec3 coefficients[9];
     for (int k = 0; k < 9; k++) {
         vec3 light = probe_table[i].light.emitted[k] * (frame.radiance_scale * level.emitters) +
-                     3.14159265 * probe_table[i].light.sky[k] * frame.sky;
+                     PI * probe_table[i].light.sky[k] * frame.sky;
         coefficients[k] = clamp(light, -HALF_MAX, HALF_MAX);
     }
     for (int s = 0; s < FRAME_PROBE_SLABS; s++) {

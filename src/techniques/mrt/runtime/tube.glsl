@@ -2,12 +2,12 @@
 #ifndef AG_MRT_TUBE_GLSL
 #define AG_MRT_TUBE_GLSL
 
+#include "core/math.glsl"
 #include "techniques/mrt/runtime/level.glsl"
 
 layout(constant_id = MRT_CONSTANT_TUBES) const bool TUBES = false;
 
 const float MRT_TUBE_RADIUS = 0.375;
-const float MRT_PI = 3.14159265;
 
 struct mrt_tube_place {
     vec2 off;     // from the axis: to the left and up
@@ -33,13 +33,13 @@ mrt_tube_place tube_place(int block, vec3 cell)
         vec2 arm = vec2(0.5 - side * cell.x, cell.z + 0.5);
         float angle = angle_of(arm.y, arm.x);
         place.off.x = side * (0.5 - length(arm));
-        place.along = angle / (0.5 * MRT_PI);
+        place.along = angle / (0.5 * PI);
         left = vec3(cos(angle), 0.0, -side * sin(angle));
         forward = vec3(side * sin(angle), 0.0, cos(angle));
     }
     float angle = angle_of(place.off.y, place.off.x);
     vec3 inward = -cos(angle) * left - vec3(0.0, sin(angle), 0.0);
-    place.around = fract(angle / (2.0 * MRT_PI));
+    place.around = fract(angle / (2.0 * PI));
     place.frame = mat3(forward, cross(inward, forward), inward);
     return place;
 }
@@ -51,7 +51,7 @@ vec2 square_of_disk(vec2 disk)
     float radius = length(disk);
     bool wide = abs(disk.x) > abs(disk.y);
     vec2 major = wide ? disk : disk.yx;
-    float ratio = major.x == 0.0 ? 0.0 : atan(major.y, abs(major.x)) / (0.25 * MRT_PI);
+    float ratio = major.x == 0.0 ? 0.0 : atan(major.y, abs(major.x)) / (0.25 * PI);
     float first = major.x < 0.0 ? -radius : radius;
     vec2 square = vec2(first, ratio * radius);
     return 0.5 + 0.5 * (wide ? square : square.yx);

@@ -71,7 +71,7 @@ vec3 reflected(ivec2 pixel, vec3 position, vec3 n)
     vec3 to_viewer = normalize(frame.camera_position - position);
     vec3 upwards = dot(to_viewer, n) * n;
     vec3 mean = upwards + (upwards - to_viewer) * lean_of(brdf_alpha(m.roughness));
-    vec3 radiance = BRDF_INV_PI * light_at(position, n, normalize(mean + 1e-4 * n));
+    vec3 radiance = INV_PI * light_at(position, n, normalize(mean + 1e-4 * n));
     return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
            clamp(radiance, vec3(0.0), vec3(HALF_MAX));
 }

@@ -3,9 +3,8 @@
 #ifndef AG_VCT_CONE_SUMS_GLSL
 #define AG_VCT_CONE_SUMS_GLSL
 
+#include "core/math.glsl"
 #include "techniques/vct/volume/directions.glsl"
-
-const float VCT_PI = 3.14159265;
 
 struct vct_cone_sums {
     mat3 light;     // columns: Σ L d of red, green and blue
@@ -39,7 +38,7 @@ vec3 vct_irradiance(vct_cone_sums v, vec3 n, float gain)
     n = vct_clamp_normal(v, n);
     float projected = dot(n, v.direction);
     float no_sample = VCT_OCCLUSION ? 1.0 : 0.0; // no cone or no surface
-    return projected > 0.0 ? clamp(n * v.light * (VCT_PI * gain / projected), 0.0, HALF_MAX)
+    return projected > 0.0 ? clamp(n * v.light * (PI * gain / projected), 0.0, HALF_MAX)
                            : vec3(no_sample);
 }
 

@@ -51,7 +51,7 @@ void add_small_emitters(inout vct_cone_sums sum, uint part, uint parts, vec3 at,
     float projected = set.cone_count == 1u ? 1.0 : 0.5;
     for (uint i = part * 7u % parts; i < VCT_EMITTER_POINTS; i += parts) {
         vec3 to, arriving = vct_small_emitter_light(light, i, at, up, first, to);
-        sum.light += outerProduct(to, arriving * (projected / VCT_PI));
+        sum.light += outerProduct(to, arriving * (projected / PI));
     }
 }
 

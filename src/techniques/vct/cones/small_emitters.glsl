@@ -76,7 +76,7 @@ vec3 vct_emitter_point_irradiance(uint emitter, uint point, vec3 position, out v
     bool both_sides = (small_emitters[emitter].both_sides >> point & 1u) != 0u;
     cosine = both_sides ? abs(cosine) : max(cosine, 0.0);
     return small_emitters[emitter].intensities[point] *
-           (cosine / max(d2 + small_emitters[emitter].area_m2 / 3.14159265, 1e-12));
+           (cosine / max(d2 + small_emitters[emitter].area_m2 / PI, 1e-12));
 }
 
 struct vct_emitter_sample {

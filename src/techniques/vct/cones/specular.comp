@@ -44,7 +44,6 @@ layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D specular;
 const float WIDEST = 1.0;
 
 const float ROUGH_FROM = 0.6, ROUGH = 0.8; // roughness
-const float PI = 3.14159265;
 
 float tan_half_angle(float alpha)
 {

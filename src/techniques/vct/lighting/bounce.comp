@@ -7,6 +7,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define FRAME_CONSTANTS_BINDING 1
+#include "core/basis.glsl"
 #include "frame/frame.glsl"
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_constants.h"
@@ -29,7 +30,6 @@ layout(set = 0, binding = 5, scalar) readonly buffer vct_part_counts
 };
 layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D vct_bounced;
 
-#include "techniques/vct/lighting/basis.glsl"
 #include "techniques/vct/cones/trace.glsl"
 #if !VCT_SVO
 #include "techniques/vct/rays/jitter.glsl"
@@ -39,8 +39,6 @@ layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D vct_bounced;
 
 #define VCT_SMALL_EMITTERS_BINDING 10
 #include "techniques/vct/cones/small_emitters.glsl"
-
-const float VCT_PI = 3.14159265;
 
 const uint EMITTER_SAMPLES = 4u; // of the points on a small emitter
 
@@ -71,7 +69,7 @@ vec3 sum_of_rays(vec3 at, mat3 world_from_local, uint part_number)
                              vct_in_stratum(i, set.columns, set.cone_count / set.columns, jitter));
         sum += arriving(vct_trace_ray(2.0 * at + VCT_RAY_LIFT * normal, normal, direction, 0.0));
     }
-    return sum * (VCT_PI / float(set.cone_count));
+    return sum * (PI / float(set.cone_count));
 }
 #endif
 
@@ -89,7 +87,7 @@ vec3 sum_of_cones(vec3 at, mat3 world_from_local)
 
 vec3 irradiance(vct_part_record part)
 {
-    mat3 world_from_local = vct_axes_about(part.normal);
+    mat3 world_from_local = basis_of(part.normal);
     vec3 position = vct_world_from_voxels(part.position);
     // With one grid both origins are equal, and the subtraction is exact.
     vec3 at = (position - (VCT_CLIPS > 1 ? clips.origin_m : vct.origin_m)) / set.texel_m;

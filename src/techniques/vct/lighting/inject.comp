@@ -38,7 +38,6 @@ layout(set = 0, binding = 10) uniform usampler2D vct_part_of_face;
 
 layout(constant_id = VCT_CONSTANT_HAS_LIGHTS) const bool HAS_LIGHTS = true;
 
-const float PI = 3.14159265;
 const float SHADOW_LIFT = 0.25; // voxels: offset of curved surfaces from the mean of their voxel
 
 // A small value that loops or branches depend on. Mesa 22.3's lavapipe recompiles a shader for each
@@ -52,17 +51,10 @@ uint no_recompile(uint number)
 // Irradiance from one light, scaled lux.
 vec3 irradiance(frame_light light, vec3 position, vec3 normal)
 {
-    vec3 to_light = -light.direction;
-    float attenuation = 1.0;
-    if (light.type != FRAME_LIGHT_SUN) {
-        to_light = light.position - position;
-        float distance2 = dot(to_light, to_light);
-        to_light *= inversesqrt(max(distance2, 1e-12));
-        // Limits the distance to a light inside of the voxel.
-        float nearest = max(LIGHT_MIN_DISTANCE_M, 0.5 * vct.cell_m);
-        attenuation = light_cone(light, -to_light) * light_window(light, distance2) /
-                      max(distance2, nearest * nearest);
-    }
+    // Limits the distance to a light inside of the voxel.
+    float nearest = max(LIGHT_MIN_DISTANCE_M, 0.5 * vct.cell_m);
+    vec3 to_light;
+    float attenuation = light_attenuation(light, position, 0.0, nearest * nearest, to_light);
     float cosine = dot(normal, to_light);
     if (attenuation == 0.0 || cosine <= 0.0) return vec3(0.0);
     if (light.shadow_first >= 0)
