@@ -105,28 +105,6 @@ struct mrt_gpu_clutter_sample {
     float share; // of the face; 0: none
 };
 
-// A triangle of clutter in the atlas of its light map: (u, v) = axis · position + offset, clamped.
-struct mrt_gpu_clutter_triangle {
-    vec3s u_axis, v_axis; // texels per metre
-    vec2s offset, low, high;
-    vec3s normal; // world, unit, of the front
-};
-
-// Triangles of an instance of the scene.
-struct mrt_gpu_clutter_instance {
-    uint32_t first, triangles;
-};
-
-// From where an instance is to where it was when the light map was made: p.x x + p.y y + p.z z +
-// by. 0: it was not there.
-struct mrt_gpu_clutter_move {
-    vec3s x, y, z, by;
-};
-
-struct mrt_clutter_apply_push {
-    uint32_t instances, moved; // moved: instances with a row in mrt_clutter_moves, all or none
-};
-
 // A texel of the light map of clutter, and whose light it has.
 struct mrt_gpu_clutter_place {
     uint32_t x, y;
@@ -191,10 +169,6 @@ _Static_assert(sizeof(struct mrt_gpu_clutter_face) == 40, "layout is shared with
 _Static_assert(sizeof(struct mrt_gpu_clutter_group) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_place) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_sample) == 8, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_gpu_clutter_triangle) == 60, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_gpu_clutter_instance) == 8, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_gpu_clutter_move) == 48, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_clutter_apply_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_apply_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_clutter_fill_push) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");

@@ -81,10 +81,10 @@ static bool note_places(struct mrt_update *u, struct mrt_places *out)
     return true;
 }
 
-static struct mrt_gpu_clutter_move move_of(mat4s m)
+static struct light_map_move move_of(mat4s m)
 {
-    return (struct mrt_gpu_clutter_move){ vec3_xyz(m.col[0]), vec3_xyz(m.col[1]),
-                                          vec3_xyz(m.col[2]), vec3_xyz(m.col[3]) };
+    return (struct light_map_move){ vec3_xyz(m.col[0]), vec3_xyz(m.col[1]), vec3_xyz(m.col[2]),
+                                    vec3_xyz(m.col[3]) };
 }
 
 // Whether an instance is elsewhere in the frame.
@@ -92,8 +92,8 @@ static bool find_move(const struct mrt_update *u, int i)
 {
     const struct mrt_place *was = &u->places.at[i];
     const struct scene *scene = u->pose->scene;
-    struct mrt_gpu_clutter_move *move = &u->places.moves[i];
-    *move = (struct mrt_gpu_clutter_move){ 0 };
+    struct light_map_move *move = &u->places.moves[i];
+    *move = (struct light_map_move){ 0 };
     if (i >= scene->instance_count || scene->instances[i].mesh != was->mesh || was->mesh < 0)
         return was->mesh >= 0;
     *move = move_of(glms_mat4_identity());
@@ -110,7 +110,7 @@ static void find_moves(struct mrt *mrt)
     struct mrt_update *u = &mrt->update;
     bool moved = false;
     for (int i = 0; i < u->places.count; i++) moved |= find_move(u, i);
-    mrt->runtime.clutter.map.moves = moved ? u->places.moves : NULL;
+    mrt->runtime.clutter.map.surfaces.moves = moved ? u->places.moves : NULL;
 }
 
 // ---- what it made

@@ -21,7 +21,7 @@ enum mrt_update_state { MRT_IDLE, MRT_RUNNING, MRT_COPYING };
 // Where instances were when operators were made, and the way back from where they are.
 struct mrt_places {
     struct mrt_place *at;
-    struct mrt_gpu_clutter_move *moves;
+    struct light_map_move *moves;
     int count;
 };
 

@@ -98,7 +98,7 @@ static bool make_lookups(struct radiosity *s)
         const struct gpu_constant constants[] = { { RADIOSITY_APPLY_WIDTH, p->apply_width },
                                                   { RADIOSITY_APPLY_HEIGHT, p->apply_height },
                                                   { RADIOSITY_APPLY_DIELECTRIC, dielectric },
-                                                  { RADIOSITY_HAS_BACKS, s->sides == 2 } };
+                                                  { LIGHT_MAP_HAS_BACKS, s->sides == 2 } };
         if (!gpu_compute_pipeline_create(s->gpu, "apply",
                                          s->options.specular ? &shader_radiosity_apply_specular_comp
                                                              : &shader_radiosity_apply_diffuse_comp,
@@ -242,13 +242,14 @@ static void destroy_tables(struct radiosity *s)
     struct radiosity_tables *t = &s->tables;
     gpu_image *const images[] = { &t->texels,   &t->neighbours,    &t->clusters,
                                   &t->spans,    &t->members,       &t->groups,
-                                  &t->owners,   &t->instances,     &t->triangles,
-                                  &t->fronts,   &t->places,        &t->seams,
+                                  &t->owners,   &t->places,        &t->seams,
                                   &t->flux,     &t->light,         &t->smoothed,
                                   &t->sent,     &t->radiosity[0],  &t->radiosity[1],
                                   &t->solution, &t->light_maps[0], &t->light_maps[1] };
     for (size_t i = 0; i < sizeof images / sizeof *images; i++)
         gpu_image_destroy(s->gpu, images[i]);
+    gpu_buffer_destroy(s->gpu, &t->surfaces.first);
+    gpu_buffer_destroy(s->gpu, &t->surfaces.triangles);
     gpu_buffer_destroy(s->gpu, &t->labels);
     gpu_buffer_destroy(s->gpu, &t->owner_of_place);
     radiosity_destroy_rows(s, &t->factors);
@@ -306,9 +307,8 @@ static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t he
     const uint64_t of_clusters = rows_bytes(clusters, 8 * sources) + table_bytes(clusters, 16) +
                                  table_bytes(clusters, 8) + table_bytes(texels, 4) +
                                  5 * table_bytes(nodes, 8);
-    const uint64_t of_scene = table_bytes(RADIOSITY_TRIANGLE_PARTS * texels, 16) +
-                              table_bytes(texels, 4) + table_bytes(1, 8) + table_bytes(1, 16) +
-                              table_bytes(1, 4);
+    const uint64_t of_scene =
+        texels * sizeof(struct light_map_triangle) + table_bytes(1, 16) + table_bytes(1, 4);
     const uint64_t of_map = table_bytes(places, 8) + 2 * 8 * RADIOSITY_LAYERS * places;
     return of_texels + of_clusters + of_scene + of_map + radiosity_probes_memory(o);
 }

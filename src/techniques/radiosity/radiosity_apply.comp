@@ -17,10 +17,12 @@
 #include "frame/brdf.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/radiosity/radiosity_lobe.glsl"
-#define RADIOSITY_INSTANCES_BINDING 4
-#define RADIOSITY_TRIANGLES_BINDING 5
-#define RADIOSITY_FRONTS_BINDING    13
-#include "techniques/radiosity/radiosity_place.glsl"
+#define LIGHT_MAP_INSTANCES_BINDING 4
+#define LIGHT_MAP_TRIANGLES_BINDING 5
+#define LIGHT_MAP_MOVES_BINDING     13
+#include "core/half.glsl"
+#include "techniques/common/light_map/surface.glsl"
+#include "techniques/radiosity/radiosity_shared.h"
 
 // A processor's caches fetch the next lines of memory ahead: there, a workgroup is a row of pixels.
 layout(local_size_x_id = RADIOSITY_APPLY_WIDTH, local_size_y_id = RADIOSITY_APPLY_HEIGHT) in;
@@ -70,13 +72,13 @@ light_at_pixel light_at(vec3 place, vec3 n)
 }
 
 #if SPECULAR
-vec3 reflected(ivec2 pixel, vec3 position, vec3 n, light_at_pixel light)
+vec3 reflected(ivec2 pixel, light_map_surface s, light_at_pixel light)
 {
     vec4 lobe = BRDF_DEFAULT_DIELECTRIC;
     if (HAS_DIELECTRIC) lobe = texelFetch(dielectric, pixel, 0);
     brdf_material m =
         brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
-    vec3 to_viewer = unit(frame.camera_position - position);
+    vec3 n = s.normal, to_viewer = unit(s.camera - s.position);
     vec3 along = (dot(to_viewer, n) * n - to_viewer) * lean_of(brdf_alpha(m.roughness));
     vec3 radiance = INV_PI * (light.irradiance + 1.5 * (along * light.vector));
     return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
@@ -97,10 +99,11 @@ void main()
         vec2 uv = (vec2(pixel) + 0.5) * vec2(push.per_view_width, push.per_view_height);
         vec3 position = frame.camera_position + frame_view_distance(z) * frame_view_ray(uv);
         vec3 n = unit(octahedral_direction(texelFetch(normal, pixel, 0).rg));
-        vec3 place = radiosity_place_of(texelFetch(id, pixel, 0).rg, push.instances, position);
-        if (place.z >= 0.0) light = light_at(place, n);
+        light_map_surface s = light_map_surface(position, n, frame.camera_position);
+        vec3 place = light_map_place_of(texelFetch(id, pixel, 0).rg, push.instances, s);
+        if (place.z >= 0.0) light = light_at(place, s.normal);
 #if SPECULAR
-        radiance = reflected(pixel, position, n, light);
+        radiance = reflected(pixel, s, light);
 #endif
     }
     imageStore(irradiance, pixel, vec4(light.irradiance, 1.0));

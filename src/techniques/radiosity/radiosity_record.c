@@ -246,7 +246,8 @@ void radiosity_record_apply(struct radiosity *s, struct gpu_cmd *cmd, const stru
     const struct radiosity_apply_push push = { 1.0f / (float)s->map.charts.width,
                                                1.0f / (float)s->map.charts.height,
                                                1.0f / (float)view->width,
-                                               1.0f / (float)view->height, s->instances };
+                                               1.0f / (float)view->height,
+                                               light_map_instances(&s->tables.surfaces) };
     gpu_scope_begin(cmd, "apply");
     gpu_dispatch(cmd, p->apply[dielectric.id != 0],
                  GPU_BIND(view->constants_binding, view->ggx_albedo_binding,
@@ -257,9 +258,7 @@ void radiosity_record_apply(struct radiosity *s, struct gpu_cmd *cmd, const stru
                           { .name = "dielectric",
                             .image = dielectric.id ? dielectric : layers[FRAME_MATERIAL] },
                           { .name = "id", .image = layers[FRAME_ID] },
-                          { .name = "radiosity_instances", .image = s->tables.instances },
-                          { .name = "radiosity_triangles", .image = s->tables.triangles },
-                          { .name = "radiosity_fronts", .image = s->tables.fronts },
+                          LIGHT_MAP_SURFACE_BINDINGS(&s->tables.surfaces, cmd),
                           { .name = "light_map",
                             .image = s->tables.light_maps[s->shown_map],
                             .sampler = s->linear },

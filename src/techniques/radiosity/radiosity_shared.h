@@ -4,6 +4,8 @@
 
 #include "core/shared.h"
 
+#include "techniques/common/light_map/surface_shared.h"
+
 #define RADIOSITY_LOCAL    64 // workgroup size over texels and clusters
 #define RADIOSITY_LOCAL_2D 8  // over pixels and texels of the map, in x and y
 
@@ -25,17 +27,6 @@
 #define RADIOSITY_SKY_LIGHT   3 // irradiance along the normal, vector irradiance: radiance 1
 #define RADIOSITY_EMITTED_0   4 // the same by colour, lux
 #define RADIOSITY_TEXEL_PARTS 7
-
-// Of a triangle of the scene: entry RADIOSITY_TRIANGLE_PARTS · triangle + part.
-// In the light map it is at x = u · (position, 1), y = v · (position, 1), in texels.
-#define RADIOSITY_TRIANGLE_PARTS 2 // u; v: (0, 0, 0, −1) for triangles that are not in the map
-
-// Normal of the front of a triangle that has two sides in the map, as octahedral_pack (frame/
-// octahedral.h), which does not give this word: that of triangles with one.
-#define RADIOSITY_ONE_SIDED 0x8000u
-
-// Of a place of the light map: y above x, above both the side.
-#define RADIOSITY_PLACE_BITS 15
 
 // Clusters of a group: their number is above the first one.
 #define RADIOSITY_GROUP_SHIFT RADIOSITY_NODE_BITS
@@ -105,25 +96,23 @@ struct radiosity_seams_push {
 struct radiosity_apply_push {
     float per_width, per_height;           // 1 / size of the light map
     float per_view_width, per_view_height; // 1 / size of the view
-    uint32_t instances;                    // later ones are not in the map
+    AG_STRUCT(light_map_instances) instances;
 };
 
 // Specialization constants: the size of a workgroup in pixels; whether there is FRAME_DIELECTRIC.
 #define RADIOSITY_APPLY_WIDTH      0
 #define RADIOSITY_APPLY_HEIGHT     1
 #define RADIOSITY_APPLY_DIELECTRIC 2
-// Of all that find places: whether some triangles have two sides in the map.
-#define RADIOSITY_HAS_BACKS 3
 
 struct radiosity_view_push {
+    AG_STRUCT(light_map_instances) instances;
     uint32_t width, height; // of the light map
-    uint32_t instances;     // later ones are not in the map
     uint32_t view;          // RADIOSITY_VIEW_…
 };
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct radiosity_gpu_label) == 16, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_view_push) == 16, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_view_push) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_direct_push) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_clusters_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_solve_push) == 12, "layout is shared with GLSL");
@@ -132,7 +121,7 @@ _Static_assert(sizeof(struct radiosity_gather_push) == 16, "layout is shared wit
 _Static_assert(sizeof(struct radiosity_smooth_push) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_map_push) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_seams_push) == 20, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_apply_push) == 20, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_apply_push) == 24, "layout is shared with GLSL");
 #endif
 
 #endif

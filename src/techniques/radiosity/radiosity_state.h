@@ -2,6 +2,7 @@
 #pragma once
 
 #include "techniques/radiosity/probes/probes.h"
+#include "techniques/common/light_map/surface.h"
 #include "techniques/radiosity/radiosity_follow.h"
 #include "techniques/radiosity/radiosity_seams.h"
 #include "techniques/radiosity/radiosity_shared.h"
@@ -26,8 +27,8 @@ struct radiosity_rows {
 struct radiosity_tables {
     gpu_image texels, neighbours;               // of texels
     gpu_image clusters, spans, members, groups; // of clusters
-    gpu_image owners, instances;                // of the light map
-    gpu_image triangles, fronts;                // of the scene
+    gpu_image owners;                           // of the light map
+    struct light_map_surfaces surfaces;         // of the scene
     gpu_image places, seams;                    // beside seams
     gpu_image flux, light, smoothed;            // [texels] of the newest light
     gpu_image sent, radiosity[2];               // [clusters and nodes] likewise
@@ -101,6 +102,9 @@ bool radiosity_upload_factors(struct radiosity *state, const uint32_t *source,
                               const uint16_t *cluster_factor);
 void radiosity_destroy_rows(struct radiosity *state, struct radiosity_rows *rows);
 
+// A storage buffer of these items, which are freed with host_free in any case. NULL: false.
+bool radiosity_buffer_upload(struct radiosity *state, const char *name, void *items, size_t bytes,
+                             gpu_buffer *out);
 // Where light is shown. shown: [texels] whose light each one shows.
 bool radiosity_upload_owners(struct radiosity *state, const uint32_t *shown);
 bool radiosity_upload_triangles(struct radiosity *state);

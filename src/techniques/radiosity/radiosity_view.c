@@ -23,8 +23,8 @@ static uint32_t state_of(const struct chart_texel *texel, const float point[4])
                : RADIOSITY_SAMPLED_BESIDE;
 }
 
-static bool upload(struct radiosity *s, const char *name, void *items, size_t bytes,
-                   gpu_buffer *out)
+bool radiosity_buffer_upload(struct radiosity *s, const char *name, void *items, size_t bytes,
+                             gpu_buffer *out)
 {
     const struct gpu_buffer_desc desc = { name, bytes, GPU_BUFFER_STORAGE };
     const bool ok = items && gpu_buffer_create(s->gpu, &desc, out) &&
@@ -46,7 +46,8 @@ static bool upload_labels(struct radiosity *s, const float *points)
                                                   .cluster = texel->cluster,
                                                   .state = state_of(t, points + 4 * (size_t)i) };
     }
-    return upload(s, "labels", labels, s->map.texel_count * sizeof *labels, &s->tables.labels);
+    return radiosity_buffer_upload(s, "labels", labels, s->map.texel_count * sizeof *labels,
+                                   &s->tables.labels);
 }
 
 static bool upload_owners(struct radiosity *s, const uint32_t *shown)
@@ -57,7 +58,8 @@ static bool upload_owners(struct radiosity *s, const uint32_t *shown)
         const uint32_t texel = radiosity_texel_of_place(&s->map, i);
         owners[i] = texel == CHART_NONE ? CHART_NONE : shown[texel];
     }
-    return upload(s, "owner_of_place", owners, places * sizeof *owners, &s->tables.owner_of_place);
+    return radiosity_buffer_upload(s, "owner_of_place", owners, places * sizeof *owners,
+                                   &s->tables.owner_of_place);
 }
 
 bool radiosity_view_init(struct radiosity *s, const float *points, const uint32_t *shown)
@@ -78,17 +80,16 @@ void radiosity_view_record(struct radiosity *s, struct gpu_cmd *cmd, const struc
                            const char *name, gpu_image out)
 {
     const gpu_image *layers = view->layers;
-    const struct radiosity_view_push push = { s->map.charts.width, s->map.charts.height,
-                                              s->instances, number_of(name) };
+    const struct radiosity_view_push push = { light_map_instances(&s->tables.surfaces),
+                                              s->map.charts.width, s->map.charts.height,
+                                              number_of(name) };
     gpu_scope_begin(cmd, "view");
     gpu_dispatch(cmd, s->pipelines.view,
                  GPU_BIND(view->constants_binding,
                           { .name = "depth", .image = layers[FRAME_DEPTH] },
                           { .name = "normal", .image = layers[FRAME_NORMAL] },
                           { .name = "id", .image = layers[FRAME_ID] },
-                          { .name = "radiosity_instances", .image = s->tables.instances },
-                          { .name = "radiosity_triangles", .image = s->tables.triangles },
-                          { .name = "radiosity_fronts", .image = s->tables.fronts },
+                          LIGHT_MAP_SURFACE_BINDINGS(&s->tables.surfaces, cmd),
                           { .name = "radiosity_owners", .buffer = s->tables.owner_of_place },
                           { .name = "radiosity_labels", .buffer = s->tables.labels },
                           { .name = "target", .image = out }),

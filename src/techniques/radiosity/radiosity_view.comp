@@ -5,10 +5,11 @@
 
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
-#define RADIOSITY_INSTANCES_BINDING 4
-#define RADIOSITY_TRIANGLES_BINDING 5
-#define RADIOSITY_FRONTS_BINDING    9
-#include "techniques/radiosity/radiosity_place.glsl"
+#define LIGHT_MAP_INSTANCES_BINDING 4
+#define LIGHT_MAP_TRIANGLES_BINDING 5
+#define LIGHT_MAP_MOVES_BINDING     9
+#include "techniques/common/light_map/surface.glsl"
+#include "techniques/radiosity/radiosity_shared.h"
 
 layout(local_size_x = RADIOSITY_LOCAL_2D, local_size_y = RADIOSITY_LOCAL_2D) in;
 
@@ -72,8 +73,9 @@ void main()
     vec3 colour = vec3(0.0);
     if (z > 0.0) {
         vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
-        vec3 at = radiosity_place_of(texelFetch(id, pixel, 0).rg, push.instances, position);
         vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
+        light_map_surface s = light_map_surface(position, n, frame.camera_position);
+        vec3 at = light_map_place_of(texelFetch(id, pixel, 0).rg, push.instances, s);
         float facing = abs(dot(n, normalize(frame.camera_position - position)));
         colour = (at.z < 0.0 ? NONE : colour_at(at)) * (0.5 + 0.5 * facing);
     }

@@ -46,11 +46,11 @@ static bool split(struct mrt_clutter *out, const struct scene_pose *pose, const 
     out->indices = host_alloc(out->host, all, 6 * sizeof *out->indices);
     out->first_triangle =
         host_alloc(out->host, (size_t)pose->scene->instance_count, sizeof *out->first_triangle);
-    out->number = host_alloc(out->host, all, sizeof *out->number);
-    out->triangles_of_instance = host_alloc(out->host, (size_t)pose->scene->instance_count,
-                                            sizeof *out->triangles_of_instance);
-    out->scene_triangles = all;
-    if (!out->indices || !out->first_triangle || !out->number || !out->triangles_of_instance)
+    out->scene_chart_triangle = host_alloc(out->host, all, sizeof *out->scene_chart_triangle);
+    out->scene_triangle_0 = host_alloc(out->host, (size_t)pose->scene->instance_count + 1,
+                                       sizeof *out->scene_triangle_0);
+    if (!out->indices || !out->first_triangle || !out->scene_chart_triangle ||
+        !out->scene_triangle_0)
         return false;
     if (!start_part(out->host, &out->walls, pose) || !start_part(out->host, &out->objects, pose))
         return false;
@@ -59,7 +59,7 @@ static bool split(struct mrt_clutter *out, const struct scene_pose *pose, const 
         const struct mesh *mesh = scene_mesh_of(pose->scene, i);
         const uint32_t count = mesh->index_count / 3;
         out->first_triangle[i] = objects;
-        out->triangles_of_instance[i] = pose->scene->instances[i].mesh < 0 ? 0 : count;
+        out->scene_triangle_0[i + 1] = (uint32_t)first;
         if (pose->scene->instances[i].mesh < 0) continue;
         out->walls.scene.meshes[i].indices = out->indices + 3 * first;
         out->objects.scene.meshes[i].indices = out->indices + 3 * (all + first);
@@ -67,10 +67,11 @@ static bool split(struct mrt_clutter *out, const struct scene_pose *pose, const 
             const bool object = is_clutter[first + t];
             append(&(object ? &out->objects : &out->walls)->scene.meshes[i],
                    mesh->indices + 3 * (size_t)t);
-            out->number[first + t] = object ? (uint32_t)objects : CHART_NONE;
+            out->scene_chart_triangle[first + t] = object ? (uint32_t)objects : CHART_NONE;
             objects += object;
         }
         first += count;
+        out->scene_triangle_0[i + 1] = (uint32_t)first;
     }
     close_part(&out->walls);
     close_part(&out->objects);
@@ -126,8 +127,9 @@ void mrt_clutter_finish(struct mrt_clutter *clutter)
     charts_finish(&clutter->charts);
     host_free(host, clutter->indices);
     host_free(host, clutter->first_triangle);
-    host_free(host, clutter->number);
-    host_free(host, clutter->triangles_of_instance);
+    host_free(host, clutter->scene_chart_triangle);
+    host_free(host, clutter->scene_triangle_0);
+    host_free(host, clutter->back_of);
     host_free(host, clutter->faces);
     host_free(host, clutter->texels);
     host_free(host, clutter->face_of_texel);

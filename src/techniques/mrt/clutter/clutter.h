@@ -42,13 +42,13 @@ struct mrt_clutter {
     struct mrt_chart_face *chart_faces; // chart after chart
     int *face_of_texel;                 // [charts.texel_count]
     uint32_t *first_chart_face;         // [charts.count + 1]
-    size_t scene_triangles;
-    uint32_t *triangles_of_instance; // [instances] of the scene
-    uint32_t *number; // [triangles of the scene, instance after instance] of those of `objects`;
-                      // CHART_NONE: of a wall
-    size_t *first_triangle;   // [instances], of chart_triangle
-    uint32_t *chart_triangle; // [triangles of `objects`, instance after instance], of
-                              // charts.triangles; CHART_NONE: without area
+    uint32_t *scene_triangle_0;         // [instances + 1] of the scene, in scene_chart_triangle
+    uint32_t *scene_chart_triangle; // [triangles of the scene] in charts.triangles; CHART_NONE: of
+                                    // a wall, or without area
+    uint32_t *back_of;              // [charts.count] CHART_NONE: of a material with one side
+    size_t *first_triangle;         // [instances], of chart_triangle
+    uint32_t *chart_triangle;       // [triangles of `objects`, instance after instance], of
+                                    // charts.triangles; CHART_NONE: without area
 };
 
 struct mrt_clutter_options {

@@ -188,11 +188,28 @@ static bool fill_chart_faces(const struct builder *s)
 
 static void index_triangles(struct mrt_clutter *clutter)
 {
+    const size_t scene_triangles = clutter->scene_triangle_0[clutter->objects.scene.instance_count];
+    uint32_t *of_scene = clutter->scene_chart_triangle; // until now in chart_triangle
     memset(clutter->chart_triangle, 0xff, clutter->triangles * sizeof *clutter->chart_triangle);
     for (uint32_t t = 0; t < clutter->charts.triangle_count; t++) {
         const struct chart_triangle *triangle = &clutter->charts.triangles[t];
         clutter->chart_triangle[clutter->first_triangle[triangle->instance] + triangle->triangle] =
             t;
+    }
+    for (size_t i = 0; i < scene_triangles; i++)
+        if (of_scene[i] != CHART_NONE) of_scene[i] = clutter->chart_triangle[of_scene[i]];
+}
+
+// As of texels of fronts, then of backs.
+static void number_backs(struct mrt_clutter *clutter)
+{
+    const struct scene *scene = &clutter->objects.scene;
+    uint32_t count = clutter->charts.texel_count;
+    for (uint32_t c = 0; c < clutter->charts.count; c++) {
+        const struct chart *chart = &clutter->charts.charts[c];
+        const int material = scene_mesh_of(scene, chart->instance)->material;
+        clutter->back_of[c] = scene->materials[material].double_sided ? count : CHART_NONE;
+        if (clutter->back_of[c] != CHART_NONE) count += chart->texel_count;
     }
 }
 
@@ -207,6 +224,7 @@ static bool make_faces(struct builder *s, int max_faces)
     if (!clutter->faces) return false;
     fill_faces(s);
     index_triangles(clutter);
+    number_backs(clutter);
     return fill_chart_faces(s);
 }
 
@@ -221,8 +239,9 @@ bool mrt_make_clutter_faces(struct mrt_clutter *clutter, const struct mrt_block_
     clutter->texels = host_alloc(host, texels, sizeof *clutter->texels);
     clutter->face_of_texel = host_alloc(host, texels, sizeof *clutter->face_of_texel);
     clutter->chart_triangle = host_alloc(host, clutter->triangles, sizeof *clutter->chart_triangle);
+    clutter->back_of = host_alloc(host, clutter->charts.count, sizeof *clutter->back_of);
     const bool ok = s.places && s.pieces && clutter->texels && clutter->face_of_texel &&
-                    clutter->chart_triangle && make_faces(&s, max_faces);
+                    clutter->chart_triangle && clutter->back_of && make_faces(&s, max_faces);
     host_free(host, s.places);
     host_free(host, s.pieces);
     return ok;

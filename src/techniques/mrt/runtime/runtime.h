@@ -4,6 +4,7 @@
 
 #include "frame/frame.h"
 
+#include "techniques/common/light_map/surface.h"
 #include "techniques/mrt/mrt_shared.h"
 
 #include "techniques/mrt/runtime/input.h"
@@ -58,17 +59,15 @@ struct mrt_runtime_outdoors {
 
 // The light map of clutter; without one tile_count is 0 and the others are empty.
 struct mrt_runtime_clutter_map {
-    gpu_buffer tiles, openings, u_b, u_r;     // as those of texels
-    gpu_buffer light;                         // vec3 per texel and value
-    gpu_buffer places;                        // texels of the atlas that have light
-    gpu_buffer instances, numbers, triangles; // of the scene, of its triangles, of clutter
+    gpu_buffer tiles, openings, u_b, u_r; // as those of texels
+    gpu_buffer light;                     // vec3 per texel and value
+    gpu_buffer places;                    // texels of the atlas that have light
+    struct light_map_surfaces surfaces;
     gpu_image image;
     gpu_pipeline fill, apply;
-    uint32_t tile_count, width, height, instance_count;
+    uint32_t tile_count, width, height;
     bool is_clear;                          // the others, of the image
     struct mrt_clutter_fill_push fill_push; // of the newest direct light
-    // [instance_count] of the frame, NULL: no instance has moved since. Of the caller.
-    const struct mrt_gpu_clutter_move *moves;
 };
 
 // Without clutter all counts are 0 and the others are empty.

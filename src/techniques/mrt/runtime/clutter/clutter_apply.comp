@@ -7,71 +7,44 @@
 #include "core/sh.glsl"
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
+#define LIGHT_MAP_INSTANCES_BINDING 2
+#define LIGHT_MAP_TRIANGLES_BINDING 3
+#define LIGHT_MAP_MOVES_BINDING     4
+#include "techniques/common/light_map/surface.glsl"
 #include "techniques/mrt/runtime/level.glsl"
 
 layout(local_size_x = MRT_LOCAL_2D, local_size_y = MRT_LOCAL_2D) in;
 
-layout(set = 0, binding = 2, scalar) readonly buffer mrt_clutter_instances
-{
-    mrt_gpu_clutter_instance instance_table[]; // in number_table
-};
-layout(set = 0, binding = 3, scalar) readonly buffer mrt_clutter_numbers
-{
-    uint number_table[]; // of each triangle of the scene; ~0: not clutter
-};
-layout(set = 0, binding = 4, scalar) readonly buffer mrt_clutter_triangles
-{
-    mrt_gpu_clutter_triangle triangle_table[];
-};
 layout(set = 0, binding = 5) uniform sampler2DArray clutter_map;
 layout(set = 0, binding = 6) uniform usampler2D id;
 layout(set = 0, binding = 7) uniform sampler2D depth;
 layout(set = 0, binding = 8) uniform sampler2D normal;
-layout(set = 0, binding = 10, scalar) readonly buffer mrt_clutter_moves
-{
-    mrt_gpu_clutter_move move_table[];
-};
 layout(push_constant, scalar) uniform push_block
 {
-    mrt_clutter_apply_push push;
+    light_map_instances push;
 };
 layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D irradiance;
 
-vec3 map_irradiance(mrt_gpu_clutter_triangle triangle, vec3 position, vec3 n)
+vec3 map_irradiance(vec2 at, vec3 n)
 {
-    vec2 at =
-        vec2(dot(triangle.u_axis, position), dot(triangle.v_axis, position)) + triangle.offset;
-    vec2 uv = clamp(at, triangle.low, triangle.high) / vec2(textureSize(clutter_map, 0).xy);
+    vec2 uv = at / vec2(textureSize(clutter_map, 0).xy);
     vec3 sum;
     for (int c = 0; c < 3; c++)
         sum[c] = sh4_dot(textureLod(clutter_map, vec3(uv, float(c)), 0.0), n);
     return max(sum, vec3(0.0));
 }
 
-// Whether the map lights the pixel.
+// Whether the map lights the pixel. One that was added since the map was made has the light of
+// probes.
 bool find_light(ivec2 pixel, out vec3 light)
 {
-    uvec2 shown = texelFetch(id, pixel, 0).rg;
-    if (shown.x == 0u) return false;
-    uint instance = shown.x - 1u, of_instance = shown.y - 1u;
-    // One that was added since the map was made has the light of probes.
-    if (instance >= push.instances || of_instance >= instance_table[instance].triangles)
-        return false;
-    uint number = number_table[instance_table[instance].first + of_instance];
-    if (number == ~0u) return false;
-    mrt_gpu_clutter_triangle triangle = triangle_table[number];
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
     float z = texelFetch(depth, pixel, 0).r;
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
-    if (instance < push.moved) {
-        mrt_gpu_clutter_move move = move_table[instance];
-        position = mat3(move.x, move.y, move.z) * position + move.by;
-        n = mat3(move.x, move.y, move.z) * n;
-        n /= max(length(n), 1e-20);
-    }
-    // The map has the light of the front.
-    if (dot(n, triangle.normal) <= 0.0) return false;
-    light = level.gain * map_irradiance(triangle, position, n);
+    light_map_surface s = light_map_surface(position, n, frame.camera_position);
+    vec3 place = light_map_place_of(texelFetch(id, pixel, 0).rg, push, s);
+    if (place.z != 0.0) return false; // the map has the light of the front
+    light = level.gain * map_irradiance(place.xy, s.normal);
     return true;
 }
 

@@ -114,54 +114,24 @@ static void fill_places(const struct mrt_runtime_input *input, void *items)
     list_places(&input->clutter->map, items);
 }
 
-// Triangles of the scene, instance after instance.
-static void fill_instances(const struct mrt_runtime_input *input, void *items)
-{
-    const struct scene *scene = &input->clutter->map.clutter->walls.scene;
-    const struct mrt_clutter *clutter = input->clutter->map.clutter;
-    struct mrt_gpu_clutter_instance *instances = items;
-    uint32_t next = 0;
-    for (int i = 0; i < scene->instance_count; i++) {
-        const uint32_t count = clutter->triangles_of_instance[i];
-        instances[i] = (struct mrt_gpu_clutter_instance){ next, count };
-        next += count;
-    }
-}
-
-static void fill_numbers(const struct mrt_runtime_input *input, void *items)
+// First triangles of the scene's instances, and the end.
+static void fill_first(const struct mrt_runtime_input *input, void *items)
 {
     const struct mrt_clutter *clutter = input->clutter->map.clutter;
-    uint32_t *numbers = items;
-    for (size_t i = 0; i < clutter->scene_triangles; i++)
-        numbers[i] = clutter->number[i] == CHART_NONE ? CHART_NONE
-                                                      : clutter->chart_triangle[clutter->number[i]];
+    memcpy(items, clutter->scene_triangle_0,
+           ((size_t)clutter->walls.scene.instance_count + 1) * sizeof(uint32_t));
 }
 
-static struct mrt_gpu_clutter_triangle triangle_of(const struct chart_triangle *from)
+static size_t triangles_of(const struct mrt_clutter *clutter)
 {
-    const vec3s e = glms_vec3_sub(from->corner[1], from->corner[0]);
-    const vec3s f = glms_vec3_sub(from->corner[2], from->corner[0]), n = glms_vec3_cross(e, f);
-    const float n2 = glms_vec3_norm2(n);
-    const vec3s by_e = glms_vec3_divs(glms_vec3_cross(f, n), n2);
-    const vec3s by_f = glms_vec3_divs(glms_vec3_cross(n, e), n2);
-    const vec2s u = glms_vec2_sub(from->place[1], from->place[0]);
-    const vec2s v = glms_vec2_sub(from->place[2], from->place[0]);
-    struct mrt_gpu_clutter_triangle to = { .normal = from->normal };
-    to.u_axis = glms_vec3_add(glms_vec3_scale(by_e, u.x), glms_vec3_scale(by_f, v.x));
-    to.v_axis = glms_vec3_add(glms_vec3_scale(by_e, u.y), glms_vec3_scale(by_f, v.y));
-    to.offset.x = from->place[0].x - glms_vec3_dot(to.u_axis, from->corner[0]);
-    to.offset.y = from->place[0].y - glms_vec3_dot(to.v_axis, from->corner[0]);
-    to.low = glms_vec2_minv(from->place[0], glms_vec2_minv(from->place[1], from->place[2]));
-    to.high = glms_vec2_maxv(from->place[0], glms_vec2_maxv(from->place[1], from->place[2]));
-    return to;
+    return clutter->scene_triangle_0[clutter->walls.scene.instance_count];
 }
 
 static void fill_triangles(const struct mrt_runtime_input *input, void *items)
 {
-    const struct charts *charts = &input->clutter->map.clutter->charts;
-    struct mrt_gpu_clutter_triangle *to = items;
-    for (uint32_t i = 0; i < charts->triangle_count; i++)
-        to[i] = triangle_of(&charts->triangles[i]);
+    const struct mrt_clutter *clutter = input->clutter->map.clutter;
+    light_map_fill_triangles(&clutter->charts, clutter->back_of, clutter->scene_chart_triangle,
+                             triangles_of(clutter), items);
 }
 
 static bool make_image(struct mrt_runtime *runtime)
@@ -187,7 +157,7 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
     map->tile_count = (uint32_t)tiles;
     map->width = from->width;
     map->height = from->height;
-    map->instance_count = (uint32_t)instances;
+    map->surfaces.count = (uint32_t)instances;
     map->fill_push.places = list_places(from, NULL);
     return mrt_table_upload(runtime, input, "clutter_tiles", tiles, sizeof(struct mrt_gpu_tile),
                             fill_tiles, &map->tiles) &&
@@ -195,14 +165,11 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
                             sizeof(struct mrt_gpu_opening), fill_openings, &map->openings) &&
            mrt_table_upload(runtime, input, "clutter_places", map->fill_push.places,
                             sizeof(struct mrt_gpu_clutter_place), fill_places, &map->places) &&
-           mrt_table_upload(runtime, input, "clutter_instances", instances,
-                            sizeof(struct mrt_gpu_clutter_instance), fill_instances,
-                            &map->instances) &&
-           mrt_table_upload(runtime, input, "clutter_numbers", from->clutter->scene_triangles,
-                            sizeof(uint32_t), fill_numbers, &map->numbers) &&
-           mrt_table_upload(
-               runtime, input, "clutter_triangles", from->clutter->charts.triangle_count,
-               sizeof(struct mrt_gpu_clutter_triangle), fill_triangles, &map->triangles) &&
+           mrt_table_upload(runtime, input, "clutter_first_triangles", instances + 1,
+                            sizeof(uint32_t), fill_first, &map->surfaces.first) &&
+           mrt_table_upload(runtime, input, "clutter_triangles", triangles_of(from->clutter),
+                            sizeof(struct light_map_triangle), fill_triangles,
+                            &map->surfaces.triangles) &&
            mrt_buffer_of(runtime, "clutter_light", NULL, tiles * MRT_LOCAL * VALUES * VEC3_BYTES,
                          &map->light) &&
            make_image(runtime) &&
@@ -215,8 +182,10 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
 void mrt_clutter_map_end(struct mrt_runtime *runtime)
 {
     struct mrt_runtime_clutter_map *m = &runtime->clutter.map;
-    gpu_buffer *const buffers[] = { &m->tiles,  &m->openings,  &m->u_b,     &m->u_r,      &m->light,
-                                    &m->places, &m->instances, &m->numbers, &m->triangles };
+    gpu_buffer *const buffers[] = {
+        &m->tiles,          &m->openings,          &m->u_b, &m->u_r, &m->light, &m->places,
+        &m->surfaces.first, &m->surfaces.triangles
+    };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(runtime->gpu, buffers[i]);
     gpu_image_destroy(runtime->gpu, &m->image);
@@ -261,17 +230,11 @@ bool mrt_record_clutter_pixels(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                                const struct frame_view *view)
 {
     const struct mrt_runtime_clutter_map *m = &runtime->clutter.map;
-    const struct mrt_clutter_apply_push push = { m->instance_count,
-                                                 m->moves ? m->instance_count : 0 };
+    const struct light_map_instances push = light_map_instances(&m->surfaces);
     if (m->tile_count == 0 || !view->layers[FRAME_ID].id) return false;
     gpu_dispatch(cmd, m->apply,
                  GPU_BIND(gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level),
-                          view->constants_binding,
-                          { .name = "mrt_clutter_instances", .buffer = m->instances },
-                          gpu_transient(cmd, "mrt_clutter_moves", m->moves,
-                                        m->moves ? m->instance_count * sizeof *m->moves : 0),
-                          { .name = "mrt_clutter_numbers", .buffer = m->numbers },
-                          { .name = "mrt_clutter_triangles", .buffer = m->triangles },
+                          view->constants_binding, LIGHT_MAP_SURFACE_BINDINGS(&m->surfaces, cmd),
                           { .name = "clutter_map", .image = m->image, .sampler = runtime->linear },
                           { .name = "id", .image = view->layers[FRAME_ID] },
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },

@@ -1,0 +1,55 @@
+// Where the surface of a pixel is in a light map, by the triangle that FRAME_ID names. Include
+// frame/frame.glsl and frame/octahedral.glsl first.
+#ifndef AG_LIGHT_MAP_SURFACE_GLSL
+#define AG_LIGHT_MAP_SURFACE_GLSL
+
+#include "techniques/common/light_map/surface_shared.h"
+
+layout(constant_id = LIGHT_MAP_HAS_BACKS) const bool HAS_BACKS = true; // some triangles: two sides
+layout(set = 0, binding = LIGHT_MAP_INSTANCES_BINDING, scalar) readonly buffer light_map_first
+{
+    uint first_triangle_table[]; // of each instance, and the end
+};
+layout(set = 0, binding = LIGHT_MAP_TRIANGLES_BINDING, scalar) readonly buffer light_map_triangles
+{
+    light_map_triangle triangle_table[];
+};
+layout(set = 0, binding = LIGHT_MAP_MOVES_BINDING, scalar) readonly buffer light_map_moves
+{
+    light_map_move move_table[];
+};
+
+// A point of a surface when the map was made.
+struct light_map_surface {
+    vec3 position, normal, camera;
+};
+
+light_map_surface light_map_surface_moved(light_map_surface s, light_map_move move)
+{
+    mat3 turn = mat3(move.x, move.y, move.z);
+    s.normal = turn * s.normal;
+    s.normal /= max(length(s.normal), 1e-20);
+    return light_map_surface(turn * s.position + move.by, s.normal, turn * s.camera + move.by);
+}
+
+// In texels; z: the side, 0 or 1, negative where there is none. ids: of FRAME_ID. Moves the
+// surface of an instance that has moved since.
+vec3 light_map_place_of(uvec2 ids, light_map_instances instances, inout light_map_surface s)
+{
+    if (ids.x == 0u || ids.x > instances.count) return vec3(-1.0);
+    uint first = first_triangle_table[ids.x - 1u];
+    if (ids.y - 1u >= first_triangle_table[ids.x] - first) return vec3(-1.0);
+    light_map_triangle t = triangle_table[first + ids.y - 1u];
+    vec4 u = vec4(t.u_axis, t.offset.x), v = vec4(t.v_axis, t.offset.y);
+    if (u == vec4(0.0, 0.0, 0.0, -1.0)) return vec3(-1.0);
+    if (ids.x <= instances.moved) {
+        if (move_table[ids.x - 1u].x == vec3(0.0)) return vec3(-1.0);
+        s = light_map_surface_moved(s, move_table[ids.x - 1u]);
+    }
+    bool back = false;
+    if (HAS_BACKS && t.front != LIGHT_MAP_ONE_SIDED)
+        back = dot(octahedral_direction(unpackSnorm2x16(t.front)), s.camera - s.position) < 0.0;
+    return vec3(dot(u, vec4(s.position, 1.0)), dot(v, vec4(s.position, 1.0)), back ? 1.0 : 0.0);
+}
+
+#endif

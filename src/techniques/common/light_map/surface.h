@@ -1,0 +1,30 @@
+// Triangles of a scene in the atlas of a light map, as shaders find them (surface.glsl).
+#pragma once
+
+#include "gpu/gpu.h"
+#include "scene/charts/charts.h"
+
+#include "techniques/common/light_map/surface_shared.h"
+
+struct light_map_surfaces {
+    gpu_buffer first, triangles;        // [count + 1] first triangle of an instance; triangles
+    uint32_t count;                     // instances of the scene in the map
+    const struct light_map_move *moves; // [count] of the frame; NULL: none has moved since
+};
+
+// Of the shaders that include surface.glsl: in GPU_BIND, and in their push constants.
+#define LIGHT_MAP_SURFACE_BINDINGS(surfaces, cmd)                                                  \
+    { .name = "light_map_first", .buffer = (surfaces)->first },                                    \
+        { .name = "light_map_triangles", .buffer = (surfaces)->triangles },                        \
+        gpu_transient(cmd, "light_map_moves", (surfaces)->moves,                                   \
+                      (surfaces)->moves ? (surfaces)->count * sizeof *(surfaces)->moves : 0)
+static inline struct light_map_instances light_map_instances(const struct light_map_surfaces *s)
+{
+    return (struct light_map_instances){ s->count, s->moves ? s->count : 0 };
+}
+
+// Writes `count` triangles of the scene. chart_triangle: [count] in charts->triangles, CHART_NONE:
+// not in the map. back_of: [charts->count] CHART_NONE where a chart has one side.
+void light_map_fill_triangles(const struct charts *charts, const uint32_t *back_of,
+                              const uint32_t *chart_triangle, size_t count,
+                              struct light_map_triangle *out);
