@@ -29,34 +29,14 @@ struct attaching {
     struct gltf_doc *doc;
     const struct charts *charts;
     const struct scene *scene;
-    size_t *triangle_0; // [instances + 1] first triangle of an instance, in chart_triangle
-    uint32_t *chart_triangle;
 };
 
 // ---- triangles
 
-static bool index_triangles(struct attaching *a)
-{
-    const int instances = a->scene->instance_count;
-    const size_t count = scene_triangle_count(a->scene);
-    struct host *host = a->charts->host;
-    a->triangle_0 = host_alloc(host, (size_t)instances + 1, sizeof *a->triangle_0);
-    a->chart_triangle = host_alloc(host, count, sizeof *a->chart_triangle);
-    if (!a->triangle_0 || !a->chart_triangle) return false;
-    for (int i = 0; i < instances; i++)
-        a->triangle_0[i + 1] = a->triangle_0[i] + scene_mesh_of(a->scene, i)->index_count / 3;
-    memset(a->chart_triangle, 0xff, count * sizeof *a->chart_triangle);
-    for (uint32_t t = 0; t < a->charts->triangle_count; t++) {
-        const struct chart_triangle *of = &a->charts->triangles[t];
-        a->chart_triangle[a->triangle_0[of->instance] + of->triangle] = t;
-    }
-    return true;
-}
-
 static bool has_charts(const struct attaching *a, int instance)
 {
-    for (size_t t = a->triangle_0[instance]; t < a->triangle_0[instance + 1]; t++)
-        if (a->chart_triangle[t] != CHART_NONE) return true;
+    for (size_t t = a->charts->triangle_0[instance]; t < a->charts->triangle_0[instance + 1]; t++)
+        if (a->charts->chart_triangle[t] != CHART_NONE) return true;
     return false;
 }
 
@@ -167,11 +147,12 @@ static void unwrap_degenerate(const struct attaching *a, struct unwrapped *u, ui
 
 static void unwrap_degenerates(const struct attaching *a, struct unwrapped *u, int instance)
 {
-    const size_t first = a->triangle_0[instance], end = a->triangle_0[instance + 1];
+    const size_t first = a->charts->triangle_0[instance], end = a->charts->triangle_0[instance + 1];
     uint32_t fallback = CHART_NONE;
-    for (size_t t = first; t < end && fallback == CHART_NONE; t++) fallback = a->chart_triangle[t];
+    for (size_t t = first; t < end && fallback == CHART_NONE; t++)
+        fallback = a->charts->chart_triangle[t];
     for (size_t t = first; t < end; t++)
-        if (a->chart_triangle[t] == CHART_NONE)
+        if (a->charts->chart_triangle[t] == CHART_NONE)
             unwrap_degenerate(a, u, 3 * (uint32_t)(t - first), fallback);
 }
 
@@ -214,7 +195,8 @@ static bool unwrap(const struct attaching *a, int instance, struct unwrapped *u)
     for (uint32_t v = 0; v < u->total; v++) u->variants[v].vertex = v;
     u->count = u->total;
     for (uint32_t i = 0; i < mesh->index_count; i++)
-        unwrap_corner(a, u, mesh, a->chart_triangle[a->triangle_0[instance] + i / 3], i);
+        unwrap_corner(a, u, mesh,
+                      a->charts->chart_triangle[a->charts->triangle_0[instance] + i / 3], i);
     unwrap_degenerates(a, u, instance);
     u->changed = u->count > u->total;
     return drop_unused(u, mesh->index_count);
@@ -400,10 +382,8 @@ static bool separate_meshes(struct gltf_doc *doc)
 bool lightmap_attach(struct gltf_doc *doc, const struct charts *charts, const struct scene *scene)
 {
     struct attaching a = { .doc = doc, .charts = charts, .scene = scene };
-    bool ok = index_triangles(&a) && separate_meshes(doc);
+    bool ok = separate_meshes(doc);
     for (int i = 0; ok && i < doc->place_count && i < scene->instance_count; i++)
         if (doc->places[i].node != SIZE_MAX && has_charts(&a, i)) ok = attach_instance(&a, i);
-    host_free(charts->host, a.triangle_0);
-    host_free(charts->host, a.chart_triangle);
     return ok;
 }

@@ -62,7 +62,7 @@ static float *light_of(const struct baked *b, const struct radiosity_seams *seam
     float *map = host_alloc(test_host(), all, sizeof *map);
     float *light = host_alloc(test_host(), seams->count, sizeof *light);
     for (uint32_t i = 0; i < seams->count; i++)
-        map[seams->places[i]] = sky[4 * radiosity_texel_of_place(&b->map, seams->places[i])];
+        map[seams->places[i]] = sky[4 * chart_texel_of_place(&b->map.charts, seams->places[i])];
     for (uint32_t i = 0; closed && i < closed->count; i++) {
         float sum = 0.0f;
         for (size_t k = 0; k < ENTRIES; k++)
@@ -83,7 +83,7 @@ static double mean_irradiance(const struct baked *b)
     const float *sky = data_of(b, RADIOSITY_SKY);
     double sum = 0.0, area = 0.0;
     for (uint32_t i = 0; i < b->map.texel_count; i++) {
-        const double a = (double)radiosity_chart_texel(&b->map, i)->area_m2;
+        const double a = (double)chart_texel_of(&b->map.charts, i)->area_m2;
         sum += a * (double)sky[4 * (size_t)i];
         area += a;
     }

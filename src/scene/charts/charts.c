@@ -3,6 +3,7 @@
 #include "scene/charts/grow.h"
 #include "scene/charts/join.h"
 #include "scene/charts/pack.h"
+#include "scene/charts/sides.h"
 #include "scene/charts/texels.h"
 
 #include <math.h>
@@ -110,6 +111,9 @@ static void clear(struct charts *charts)
     host_free(charts->host, charts->triangles);
     host_free(charts->host, charts->texels);
     host_free(charts->host, charts->owner);
+    host_free(charts->host, charts->front_of);
+    host_free(charts->host, charts->triangle_0);
+    host_free(charts->host, charts->chart_triangle);
     *charts = (struct charts){ .host = charts->host, .without_area = charts->without_area };
 }
 
@@ -190,6 +194,7 @@ bool charts_init(struct charts *out, struct host *host, const struct scene_pose 
     bool ok = surface_init(&surface, host, pose, options->chosen);
     out->without_area = surface.without_area;
     if (ok && surface.count > 0) ok = find_density(out, pose, &surface, options);
+    ok = ok && make_chart_sides(out, pose->scene);
     surface_finish(&surface);
     if (!ok) charts_finish(out);
     return ok;

@@ -46,6 +46,7 @@ struct chart {
     bool spot;
     uint32_t first_triangle, triangle_count;
     uint32_t first_texel, texel_count;
+    uint32_t first_back;          // of the texels of both sides; CHART_NONE: it has no back
     uint32_t x, y, width, height; // gutters included
     float area_m2;
     vec3s normal; // unit; the plane's for clusters, the mean for islands
@@ -81,10 +82,16 @@ struct charts {
     uint32_t triangle_count;
     struct chart_texel *texels; // chart after chart, row by row
     uint32_t texel_count;
+    // Texels of both sides: those of all fronts, in the order of `texels`, then the backs of charts
+    // with a double-sided material.
+    uint32_t side_texel_count;
+    uint32_t *front_of; // [side_texel_count − texel_count] the front of a back, in `texels`
     // [width × height] the texel whose value an atlas texel has: its own, in gutters the nearest of
     // the same chart, CHART_NONE elsewhere.
     uint32_t *owner;
-    uint32_t without_area; // chosen triangles that are in no chart
+    size_t *triangle_0;       // [instances + 1] first triangle of an instance, in chart_triangle
+    uint32_t *chart_triangle; // [triangles of the scene] in `triangles`; CHART_NONE: in no chart
+    uint32_t without_area;    // chosen triangles that are in no chart
 };
 
 // Deterministic. A warning, one for a scene, names the meshes whose TEXCOORD_1 cannot be used.
@@ -93,8 +100,42 @@ bool charts_init(struct charts *out, struct host *host, const struct scene_pose 
                  const struct charts_options *options);
 void charts_finish(struct charts *charts);
 
-// The normal of a texel's triangle.
+// ---- sides.c: texels of both sides
+
+static inline bool chart_is_back(const struct charts *charts, uint32_t texel)
+{
+    return texel >= charts->texel_count;
+}
+
+// In `texels`.
+static inline uint32_t chart_front(const struct charts *charts, uint32_t texel)
+{
+    return chart_is_back(charts, texel) ? charts->front_of[texel - charts->texel_count] : texel;
+}
+
+static inline const struct chart_texel *chart_texel_of(const struct charts *charts, uint32_t texel)
+{
+    return &charts->texels[chart_front(charts, texel)];
+}
+
+static inline const struct chart_triangle *chart_triangle_of(const struct charts *charts,
+                                                             uint32_t texel)
+{
+    return &charts->triangles[chart_texel_of(charts, texel)->triangle];
+}
+
+// The normal of a texel's triangle, of the texel's side.
 static inline vec3s chart_texel_normal(const struct charts *charts, uint32_t texel)
 {
-    return charts->triangles[charts->texels[texel].triangle].normal;
+    const vec3s normal = chart_triangle_of(charts, texel)->normal;
+    return chart_is_back(charts, texel) ? glms_vec3_negate(normal) : normal;
 }
+
+// The texel at a point of a triangle of the scene; CHART_NONE: it is in no chart, or has no back.
+uint32_t chart_texel_at(const struct charts *charts, int instance, uint32_t triangle, float u,
+                        float v, bool back);
+// The texel of a place of the light map, (side · height + y) · width + x; CHART_NONE: none.
+uint32_t chart_texel_of_place(const struct charts *charts, size_t place);
+// [side_texel_count] the texel whose light each one shows: itself, or where `hidden` the nearest of
+// the same side of its chart that is not; itself where all are. Owned by the caller.
+uint32_t *charts_fill(const struct charts *charts, const bool *hidden);

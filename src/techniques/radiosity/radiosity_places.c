@@ -1,7 +1,6 @@
 // Where light is shown: places of the light map and of triangles in it.
 #include "techniques/radiosity/radiosity_state.h"
 
-#include "frame/octahedral.h"
 
 uint32_t radiosity_place_word(const struct radiosity *s, size_t place)
 {
@@ -20,7 +19,7 @@ bool radiosity_upload_owners(struct radiosity *s, const uint32_t *shown)
     const size_t places = (size_t)s->sides * s->map.charts.width * s->map.charts.height;
     struct pair *owners = host_alloc(s->host, radiosity_table_room(places), sizeof *owners);
     for (size_t i = 0; owners && i < places; i++) {
-        const uint32_t texel = radiosity_texel_of_place(&s->map, i);
+        const uint32_t texel = chart_texel_of_place(&s->map.charts, i);
         if (texel == CHART_NONE) continue;
         owners[s->owner_places++] = (struct pair){ radiosity_place_word(s, i), shown[texel] };
     }
@@ -31,12 +30,13 @@ bool radiosity_upload_owners(struct radiosity *s, const uint32_t *shown)
 bool radiosity_upload_triangles(struct radiosity *s)
 {
     const struct radiosity_map *map = &s->map;
-    const size_t count = map->triangle_0[s->instances];
+    const size_t count = map->charts.triangle_0[s->instances];
     struct light_map_triangle *triangles = host_alloc(s->host, count, sizeof *triangles);
     uint32_t *first = host_alloc(s->host, (size_t)s->instances + 1, sizeof *first);
     if (triangles)
-        light_map_fill_triangles(&map->charts, map->back_of, map->chart_triangle, count, triangles);
-    for (uint32_t i = 0; first && i <= s->instances; i++) first[i] = (uint32_t)map->triangle_0[i];
+        light_map_fill_triangles(&map->charts, map->charts.chart_triangle, count, triangles);
+    for (uint32_t i = 0; first && i <= s->instances; i++)
+        first[i] = (uint32_t)map->charts.triangle_0[i];
     s->tables.surfaces.count = s->instances;
     const bool ok = radiosity_buffer_upload(s, "triangles", triangles, count * sizeof *triangles,
                                             &s->tables.surfaces.triangles);

@@ -157,7 +157,8 @@ static void add_seam(const struct making *m, const struct seam *seam)
     for (int c = 0; c < 2; c++) {
         const struct end *end = seam->end[c];
         length = fmaxf(length, glms_vec2_distance(end[0].place, end[1].place));
-        back &= map->back_of[map->charts.triangles[seam->triangle[c]].chart] != CHART_NONE;
+        back &= map->charts.charts[map->charts.triangles[seam->triangle[c]].chart].first_back !=
+                CHART_NONE;
     }
     const uint32_t count = (uint32_t)fmaxf(ceilf(m->per_texel * length), 1.0f);
     const float part = length / (float)count;

@@ -106,7 +106,7 @@ static bool check_sources(struct radiosity *s, const struct content *c)
 
 static float area_of(const struct radiosity *s, const struct content *c, uint32_t texel)
 {
-    return c->point[4 * (size_t)texel + 3] * radiosity_chart_texel(&s->map, texel)->area_m2;
+    return c->point[4 * (size_t)texel + 3] * chart_texel_of(&s->map.charts, texel)->area_m2;
 }
 
 static void fill_texel(const struct radiosity *s, const struct content *c, uint32_t i, vec4s *parts)
@@ -115,7 +115,7 @@ static void fill_texel(const struct radiosity *s, const struct content *c, uint3
     const float *point = c->point + 4 * (size_t)i, *reflectance = c->reflectance + 4 * (size_t)i;
     parts[RADIOSITY_POSITION * count + i] =
         vec4_of(vec3_of(point[0], point[1], point[2]), area_of(s, c, i));
-    parts[RADIOSITY_NORMAL * count + i] = vec4_of(s->map.texels[i].normal, 0.0f);
+    parts[RADIOSITY_NORMAL * count + i] = vec4_of(chart_texel_normal(&s->map.charts, i), 0.0f);
     parts[RADIOSITY_REFLECTANCE * count + i] =
         vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), reflectance[3]);
     memcpy(&parts[RADIOSITY_SKY_LIGHT * count + i], c->sky + 4 * (size_t)i, sizeof *parts);
@@ -159,15 +159,16 @@ static float weight_of(const struct content *c, uint32_t a, uint32_t b)
 static void fill_neighbours(const struct radiosity *s, const struct content *c, uint32_t i,
                             struct share *table)
 {
-    const struct chart_texel *t = radiosity_chart_texel(&s->map, i);
-    const uint32_t width = s->map.charts.width, height = s->map.charts.height;
-    const uint32_t top = s->map.texels[i].back ? height : 0;
+    const struct charts *charts = &s->map.charts;
+    const struct chart_texel *t = chart_texel_of(charts, i);
+    const uint32_t width = charts->width, height = charts->height;
+    const uint32_t top = chart_is_back(charts, i) ? height : 0;
     size_t count = 0;
     for (uint32_t k = 0; k < 9; k++) {
         if (k == 4) continue;                                      // itself
         const uint32_t x = t->x + k % 3 - 1, y = t->y + k / 3 - 1; // below 0: beyond the size
         if (x >= width || y >= height) continue;
-        const uint32_t texel = radiosity_texel_of_place(&s->map, (size_t)(top + y) * width + x);
+        const uint32_t texel = chart_texel_of_place(charts, (size_t)(top + y) * width + x);
         if (texel == CHART_NONE || c->shown[texel] == i) continue;
         const struct share share = { c->shown[texel], weight_of(c, i, c->shown[texel]) };
         if (share.weight > 0.0f) *share_at(table, s->map.texel_count, i, count++) = share;
@@ -362,7 +363,7 @@ bool radiosity_upload(struct radiosity *s, const struct tensors *bake)
     c.hidden = host_alloc(s->host, s->map.texel_count, sizeof *c.hidden);
     for (uint32_t i = 0; c.hidden && i < s->map.texel_count; i++)
         c.hidden[i] = !(c.point[4 * (size_t)i + 3] > 0.0f);
-    if (c.hidden) c.shown = radiosity_fill(&s->map, c.hidden);
+    if (c.hidden) c.shown = charts_fill(&s->map.charts, c.hidden);
     const bool ok = c.shown && upload_all(s, &c);
     host_free(s->host, c.hidden);
     host_free(s->host, c.shown);

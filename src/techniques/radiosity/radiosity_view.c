@@ -38,12 +38,11 @@ static bool upload_labels(struct radiosity *s, const float *points)
     const struct charts *charts = &s->map.charts;
     struct radiosity_gpu_label *labels = host_alloc(s->host, s->map.texel_count, sizeof *labels);
     for (uint32_t i = 0; labels && i < s->map.texel_count; i++) {
-        const struct radiosity_texel *texel = &s->map.texels[i];
-        const struct chart_texel *t = &charts->texels[texel->chart_texel];
-        const uint32_t row = (texel->back ? charts->height : 0) + t->y;
+        const struct chart_texel *t = chart_texel_of(charts, i);
+        const uint32_t row = (chart_is_back(charts, i) ? charts->height : 0) + t->y;
         labels[i] = (struct radiosity_gpu_label){ .place = row * charts->width + t->x,
                                                   .chart = charts->triangles[t->triangle].chart,
-                                                  .cluster = texel->cluster,
+                                                  .cluster = s->map.cluster_of[i],
                                                   .state = state_of(t, points + 4 * (size_t)i) };
     }
     return radiosity_buffer_upload(s, "labels", labels, s->map.texel_count * sizeof *labels,
@@ -55,7 +54,7 @@ static bool upload_owners(struct radiosity *s, const uint32_t *shown)
     const size_t places = (size_t)s->sides * s->map.charts.width * s->map.charts.height;
     uint32_t *owners = host_alloc(s->host, places, sizeof *owners);
     for (size_t i = 0; owners && i < places; i++) {
-        const uint32_t texel = radiosity_texel_of_place(&s->map, i);
+        const uint32_t texel = chart_texel_of_place(&s->map.charts, i);
         owners[i] = texel == CHART_NONE ? CHART_NONE : shown[texel];
     }
     return radiosity_buffer_upload(s, "owner_of_place", owners, places * sizeof *owners,

@@ -18,9 +18,8 @@ static vec3s axis_of(const struct chart_triangle *t, int axis, float *offset)
     return gradient;
 }
 
-void light_map_fill_triangles(const struct charts *charts, const uint32_t *back_of,
-                              const uint32_t *chart_triangle, size_t count,
-                              struct light_map_triangle *out)
+void light_map_fill_triangles(const struct charts *charts, const uint32_t *chart_triangle,
+                              size_t count, struct light_map_triangle *out)
 {
     for (size_t i = 0; i < count; i++) {
         struct light_map_triangle *to = &out[i];
@@ -30,6 +29,7 @@ void light_map_fill_triangles(const struct charts *charts, const uint32_t *back_
         const struct chart_triangle *t = &charts->triangles[chart_triangle[i]];
         to->u_axis = axis_of(t, 0, &to->offset.x);
         to->v_axis = axis_of(t, 1, &to->offset.y);
-        if (back_of[t->chart] != CHART_NONE) to->front = octahedral_pack(t->normal);
+        if (charts->charts[t->chart].first_back != CHART_NONE)
+            to->front = octahedral_pack(t->normal);
     }
 }

@@ -24,7 +24,6 @@ static inline struct light_map_instances light_map_instances(const struct light_
 }
 
 // Writes `count` triangles of the scene. chart_triangle: [count] in charts->triangles, CHART_NONE:
-// not in the map. back_of: [charts->count] CHART_NONE where a chart has one side.
-void light_map_fill_triangles(const struct charts *charts, const uint32_t *back_of,
-                              const uint32_t *chart_triangle, size_t count,
-                              struct light_map_triangle *out);
+// not in the map.
+void light_map_fill_triangles(const struct charts *charts, const uint32_t *chart_triangle,
+                              size_t count, struct light_map_triangle *out);

@@ -44,21 +44,16 @@ static bool split(struct mrt_clutter *out, const struct scene_pose *pose, const 
 {
     const size_t all = scene_triangle_count(pose->scene);
     out->indices = host_alloc(out->host, all, 6 * sizeof *out->indices);
-    out->first_triangle =
-        host_alloc(out->host, (size_t)pose->scene->instance_count, sizeof *out->first_triangle);
     out->scene_chart_triangle = host_alloc(out->host, all, sizeof *out->scene_chart_triangle);
     out->scene_triangle_0 = host_alloc(out->host, (size_t)pose->scene->instance_count + 1,
                                        sizeof *out->scene_triangle_0);
-    if (!out->indices || !out->first_triangle || !out->scene_chart_triangle ||
-        !out->scene_triangle_0)
-        return false;
+    if (!out->indices || !out->scene_chart_triangle || !out->scene_triangle_0) return false;
     if (!start_part(out->host, &out->walls, pose) || !start_part(out->host, &out->objects, pose))
         return false;
     size_t first = 0, objects = 0;
     for (int i = 0; i < pose->scene->instance_count; i++) {
         const struct mesh *mesh = scene_mesh_of(pose->scene, i);
         const uint32_t count = mesh->index_count / 3;
-        out->first_triangle[i] = objects;
         out->scene_triangle_0[i + 1] = (uint32_t)first;
         if (pose->scene->instances[i].mesh < 0) continue;
         out->walls.scene.meshes[i].indices = out->indices + 3 * first;
@@ -126,15 +121,12 @@ void mrt_clutter_finish(struct mrt_clutter *clutter)
     }
     charts_finish(&clutter->charts);
     host_free(host, clutter->indices);
-    host_free(host, clutter->first_triangle);
     host_free(host, clutter->scene_chart_triangle);
     host_free(host, clutter->scene_triangle_0);
-    host_free(host, clutter->back_of);
     host_free(host, clutter->faces);
     host_free(host, clutter->texels);
     host_free(host, clutter->face_of_texel);
     host_free(host, clutter->chart_faces);
     host_free(host, clutter->first_chart_face);
-    host_free(host, clutter->chart_triangle);
     *clutter = (struct mrt_clutter){ 0 };
 }

@@ -45,10 +45,6 @@ struct mrt_clutter {
     uint32_t *scene_triangle_0;         // [instances + 1] of the scene, in scene_chart_triangle
     uint32_t *scene_chart_triangle; // [triangles of the scene] in charts.triangles; CHART_NONE: of
                                     // a wall, or without area
-    uint32_t *back_of;              // [charts.count] CHART_NONE: of a material with one side
-    size_t *first_triangle;         // [instances], of chart_triangle
-    uint32_t *chart_triangle;       // [triangles of `objects`, instance after instance], of
-                                    // charts.triangles; CHART_NONE: without area
 };
 
 struct mrt_clutter_options {

@@ -186,31 +186,13 @@ static bool fill_chart_faces(const struct builder *s)
     return true;
 }
 
+// scene_chart_triangle numbers the objects' triangles until now.
 static void index_triangles(struct mrt_clutter *clutter)
 {
-    const size_t scene_triangles = clutter->scene_triangle_0[clutter->objects.scene.instance_count];
-    uint32_t *of_scene = clutter->scene_chart_triangle; // until now in chart_triangle
-    memset(clutter->chart_triangle, 0xff, clutter->triangles * sizeof *clutter->chart_triangle);
-    for (uint32_t t = 0; t < clutter->charts.triangle_count; t++) {
-        const struct chart_triangle *triangle = &clutter->charts.triangles[t];
-        clutter->chart_triangle[clutter->first_triangle[triangle->instance] + triangle->triangle] =
-            t;
-    }
-    for (size_t i = 0; i < scene_triangles; i++)
-        if (of_scene[i] != CHART_NONE) of_scene[i] = clutter->chart_triangle[of_scene[i]];
-}
-
-// As of texels of fronts, then of backs.
-static void number_backs(struct mrt_clutter *clutter)
-{
-    const struct scene *scene = &clutter->objects.scene;
-    uint32_t count = clutter->charts.texel_count;
-    for (uint32_t c = 0; c < clutter->charts.count; c++) {
-        const struct chart *chart = &clutter->charts.charts[c];
-        const int material = scene_mesh_of(scene, chart->instance)->material;
-        clutter->back_of[c] = scene->materials[material].double_sided ? count : CHART_NONE;
-        if (clutter->back_of[c] != CHART_NONE) count += chart->texel_count;
-    }
+    const size_t count = clutter->scene_triangle_0[clutter->objects.scene.instance_count];
+    uint32_t *of_scene = clutter->scene_chart_triangle;
+    for (size_t i = 0; i < count; i++)
+        if (of_scene[i] != CHART_NONE) of_scene[i] = clutter->charts.chart_triangle[of_scene[i]];
 }
 
 static bool make_faces(struct builder *s, int max_faces)
@@ -224,7 +206,6 @@ static bool make_faces(struct builder *s, int max_faces)
     if (!clutter->faces) return false;
     fill_faces(s);
     index_triangles(clutter);
-    number_backs(clutter);
     return fill_chart_faces(s);
 }
 
@@ -238,10 +219,8 @@ bool mrt_make_clutter_faces(struct mrt_clutter *clutter, const struct mrt_block_
     s.pieces = host_alloc(host, texels, sizeof *s.pieces);
     clutter->texels = host_alloc(host, texels, sizeof *clutter->texels);
     clutter->face_of_texel = host_alloc(host, texels, sizeof *clutter->face_of_texel);
-    clutter->chart_triangle = host_alloc(host, clutter->triangles, sizeof *clutter->chart_triangle);
-    clutter->back_of = host_alloc(host, clutter->charts.count, sizeof *clutter->back_of);
     const bool ok = s.places && s.pieces && clutter->texels && clutter->face_of_texel &&
-                    clutter->chart_triangle && clutter->back_of && make_faces(&s, max_faces);
+                    make_faces(&s, max_faces);
     host_free(host, s.places);
     host_free(host, s.pieces);
     return ok;
@@ -257,23 +236,16 @@ int mrt_face_of_chart(const struct mrt_clutter *clutter, int block, uint32_t cha
 
 int mrt_face_of_hit(const struct mrt_clutter *clutter, int block, const struct trace_hit *hit)
 {
+    const struct charts *charts = &clutter->charts;
     const uint32_t index =
-        clutter->chart_triangle[clutter->first_triangle[hit->instance] + hit->triangle];
-    return index == CHART_NONE
-               ? -1
-               : mrt_face_of_chart(clutter, block, clutter->charts.triangles[index].chart);
+        charts->chart_triangle[charts->triangle_0[hit->instance] + hit->triangle];
+    return index == CHART_NONE ? -1
+                               : mrt_face_of_chart(clutter, block, charts->triangles[index].chart);
 }
 
 int mrt_face_at(const struct mrt_clutter *clutter, const struct trace_hit *hit)
 {
-    const struct charts *charts = &clutter->charts;
-    const uint32_t index =
-        clutter->chart_triangle[clutter->first_triangle[hit->instance] + hit->triangle];
-    if (index == CHART_NONE) return -1;
-    const vec2s *place = charts->triangles[index].place;
-    vec2s at = glms_vec2_scale(place[0], 1.0f - hit->u - hit->v);
-    at = glms_vec2_muladds(place[1], hit->u, at);
-    at = glms_vec2_muladds(place[2], hit->v, at);
-    const uint32_t owner = charts->owner[(size_t)at.y * charts->width + (size_t)at.x];
-    return owner == CHART_NONE ? -1 : clutter->face_of_texel[owner];
+    const uint32_t texel =
+        chart_texel_at(&clutter->charts, hit->instance, hit->triangle, hit->u, hit->v, false);
+    return texel == CHART_NONE ? -1 : clutter->face_of_texel[texel];
 }

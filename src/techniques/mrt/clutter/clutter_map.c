@@ -102,8 +102,8 @@ static void follow(struct texel_job *t, int r)
         add_wall(t, weight, &wall);
 }
 
-static uint32_t chart_texel_of(const struct mrt_clutter_map_input *input,
-                               const struct mrt_clutter_map *map, size_t i)
+static uint32_t own_texel(const struct mrt_clutter_map_input *input,
+                          const struct mrt_clutter_map *map, size_t i)
 {
     return input->clutter->texels[map->first_texel + i];
 }
@@ -112,7 +112,7 @@ static void trace_texel(void *user, size_t i)
 {
     const struct job *job = user;
     const struct charts *charts = &job->input->clutter->charts;
-    const uint32_t texel = chart_texel_of(job->input, job->out, i);
+    const uint32_t texel = own_texel(job->input, job->out, i);
     if (mrt_is_stopped(job->input->stop)) return;
     const vec3s normal = chart_texel_normal(charts, texel);
     const vec3s position = charts->texels[texel].position;
@@ -224,7 +224,7 @@ static void respond(void *user, size_t i)
 {
     const struct response_job *job = user;
     const struct charts *charts = &job->input->clutter->charts;
-    const uint32_t texel = chart_texel_of(job->input, job->map, i);
+    const uint32_t texel = own_texel(job->input, job->map, i);
     const mat3s frame = mrt_frame_of_normal(chart_texel_normal(charts, texel));
     const mat3s local_from_cell = glms_mat3_mul(glms_mat3_transpose(frame), job->world_from_cell);
     int index[CORNERS];

@@ -230,7 +230,7 @@ static uint32_t merge(const struct near *n, struct radiosity_closing_entry *row)
     uint32_t count = 0, merged = 0;
     for (uint32_t i = 0; i < n->places; i++) {
         const uint32_t place = c->seams.places[n->room->place[i]];
-        const uint32_t texel = radiosity_texel_of_place(c->map, place);
+        const uint32_t texel = chart_texel_of_place(&c->map->charts, place);
         if (texel != CHART_NONE)
             row[count++] = (struct radiosity_closing_entry){ texel, (float)n->room->x[i] };
     }

@@ -14,8 +14,9 @@ struct spot {
 
 static struct spot spot_of(const struct radiosity_scene *scene, uint32_t texel)
 {
-    return (struct spot){ radiosity_chart_texel(&scene->map, texel)->position,
-                          scene->map.texels[texel].normal };
+    const struct charts *charts = &scene->map.charts;
+    return (struct spot){ chart_texel_of(charts, texel)->position,
+                          chart_texel_normal(charts, texel) };
 }
 
 static bool see_each_other(const struct radiosity_scene *scene, struct spot a, struct spot b)
@@ -32,7 +33,7 @@ static uint32_t first_open(const struct radiosity_scene *scene, uint32_t cluster
     const struct radiosity_map *map = &scene->map;
     for (uint32_t m = map->first[cluster]; m < map->first[cluster + 1]; m++) {
         const uint32_t texel = map->members[m];
-        if (!radiosity_is_inside(scene, texel, radiosity_chart_texel(map, texel)->position))
+        if (!radiosity_is_inside(scene, texel, chart_texel_of(&map->charts, texel)->position))
             return texel;
     }
     return map->members[map->first[cluster]];

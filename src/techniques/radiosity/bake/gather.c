@@ -51,8 +51,7 @@ struct receiver {
 static const struct trace_mesh *mesh_of(const struct radiosity_scene *scene, uint32_t texel,
                                         const struct chart_triangle **triangle)
 {
-    const struct chart_texel *t = radiosity_chart_texel(&scene->map, texel);
-    *triangle = &scene->map.charts.triangles[t->triangle];
+    *triangle = chart_triangle_of(&scene->map.charts, texel);
     return &scene->trace->meshes[scene->mesh_of[(*triangle)->instance]];
 }
 
@@ -61,7 +60,7 @@ static struct receiver receiver_of(const struct radiosity_scene *scene, uint32_t
 {
     const struct chart_triangle *triangle;
     const struct trace_mesh *mesh = mesh_of(scene, texel, &triangle);
-    struct receiver r = { .normal = scene->map.texels[texel].normal,
+    struct receiver r = { .normal = chart_texel_normal(&scene->map.charts, texel),
                           .rays = (float)scene->options.rays,
                           .seed = (uint32_t)rng_mix(seed ^ (uint64_t)texel << 32) | 1u };
     if (scene->trace->lights.has_emitters)
@@ -146,8 +145,8 @@ struct radiosity_seen radiosity_seen_at(const struct radiosity_scene *scene, con
                                      fabsf(along));
     }
     const uint32_t texel =
-        radiosity_texel_at(&scene->map, mesh->instance, hit->triangle, hit->u, hit->v, back);
-    if (texel != CHART_NONE) seen.cluster = scene->map.texels[texel].cluster;
+        chart_texel_at(&scene->map.charts, mesh->instance, hit->triangle, hit->u, hit->v, back);
+    if (texel != CHART_NONE) seen.cluster = scene->map.cluster_of[texel];
     return seen;
 }
 

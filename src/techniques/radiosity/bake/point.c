@@ -18,10 +18,9 @@ struct probe {
 
 static struct probe probe_at(const struct radiosity_scene *scene, uint32_t texel, vec3s at)
 {
-    const struct chart_texel *t = radiosity_chart_texel(&scene->map, texel);
-    const struct chart_triangle *of = &scene->map.charts.triangles[t->triangle];
+    const struct chart_triangle *of = chart_triangle_of(&scene->map.charts, texel);
     const struct trace_mesh *mesh = &scene->trace->meshes[scene->mesh_of[of->instance]];
-    struct probe p = { .scene = scene, .normal = scene->map.texels[texel].normal };
+    struct probe p = { .scene = scene, .normal = chart_texel_normal(&scene->map.charts, texel) };
     p.from = glms_vec3_muladds(p.normal, mesh->facets[of->triangle].reach, at);
     basis_of(p.normal, &p.u, &p.v);
     return p;
@@ -261,7 +260,7 @@ static float try_edges(struct search *s, const struct chart_texel *t, int most)
 // crossings than the open.
 struct radiosity_point radiosity_find_point(const struct radiosity_scene *scene, uint32_t texel)
 {
-    const struct chart_texel *t = radiosity_chart_texel(&scene->map, texel);
+    const struct chart_texel *t = chart_texel_of(&scene->map.charts, texel);
     struct search s = { .scene = scene,
                         .triangle = &scene->map.charts.triangles[t->triangle],
                         .texel = texel };

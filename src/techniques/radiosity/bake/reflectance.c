@@ -51,10 +51,10 @@ static vec4s reflectance_of_spot(const struct radiosity_scene *scene, const stru
 
 vec4s radiosity_reflectance(const struct radiosity_scene *scene, uint32_t texel)
 {
-    const struct chart_texel *t = radiosity_chart_texel(&scene->map, texel);
+    const struct chart_texel *t = chart_texel_of(&scene->map.charts, texel);
     const struct chart_triangle *of = &scene->map.charts.triangles[t->triangle];
     const struct chart *chart = &scene->map.charts.charts[of->chart];
-    const vec3s normal = scene->map.texels[texel].normal;
+    const vec3s normal = chart_texel_normal(&scene->map.charts, texel);
     const struct trace_mesh *mesh = &scene->trace->meshes[scene->mesh_of[of->instance]];
     const int across = mesh->material->mapped || mesh->mesh->colors ? POINTS_ACROSS : 1;
     vec4s sum = glms_vec4_zero();

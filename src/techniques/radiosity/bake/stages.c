@@ -192,13 +192,13 @@ struct clusters {
 
 static float area_of(const struct clusters *of, uint32_t texel)
 {
-    return of->points[texel].share * radiosity_chart_texel(of->map, texel)->area_m2;
+    return of->points[texel].share * chart_texel_of(&of->map->charts, texel)->area_m2;
 }
 
 static void find_areas(const struct clusters *of)
 {
     for (uint32_t i = 0; i < of->map->texel_count; i++)
-        of->area[of->map->texels[i].cluster] += area_of(of, i);
+        of->area[of->map->cluster_of[i]] += area_of(of, i);
 }
 
 // A node's weight is that of its clusters by area, as its radiosity is their mean.
@@ -308,7 +308,7 @@ static size_t prepared_bytes(const struct radiosity_map *map)
     const size_t atlas = (size_t)charts->width * charts->height;
     return charts->triangle_count * (sizeof *charts->triangles + TRACE_TRIANGLE) +
            atlas * sizeof *charts->owner + charts->texel_count * sizeof *charts->texels +
-           map->texel_count * (sizeof *map->texels + sizeof(uint32_t)) +
+           map->texel_count * 2 * sizeof(uint32_t) +
            2 * (size_t)map->cluster_count * (2 * sizeof *map->tree.nodes + sizeof(uint32_t));
 }
 

@@ -130,8 +130,8 @@ static size_t triangles_of(const struct mrt_clutter *clutter)
 static void fill_triangles(const struct mrt_runtime_input *input, void *items)
 {
     const struct mrt_clutter *clutter = input->clutter->map.clutter;
-    light_map_fill_triangles(&clutter->charts, clutter->back_of, clutter->scene_chart_triangle,
-                             triangles_of(clutter), items);
+    light_map_fill_triangles(&clutter->charts, clutter->scene_chart_triangle, triangles_of(clutter),
+                             items);
 }
 
 static bool make_image(struct mrt_runtime *runtime)

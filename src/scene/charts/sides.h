@@ -1,0 +1,7 @@
+// Backs of packed charts, and the charts' triangles by those of the scene.
+#pragma once
+
+#include "scene/charts/charts.h"
+
+// Of charts whose texels are made.
+bool make_chart_sides(struct charts *charts, const struct scene *scene);
