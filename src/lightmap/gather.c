@@ -37,13 +37,13 @@ static struct path_start start_at(const struct gather_scene *s, const struct gat
 }
 
 // The reflected radiance of a white surface is E/π.
-vec3s gather_punctual(const struct gather_scene *s, const struct gather_points *points, bool back)
+vec3s gather_punctual(const struct gather_scene *s, const struct gather_points *points)
 {
     vec3s sum = vec3_of(0, 0, 0);
     uint64_t rays = 0;
     if (points->count == 0 || s->trace->lights.punctual_count == 0) return sum;
     for (int k = 0; k < points->count; k++) {
-        const struct path_start start = start_at(s, &points->at[k], back);
+        const struct path_start start = start_at(s, &points->at[k], points->back);
         sum = glms_vec3_add(sum,
                             next_event_all_punctual(s->trace, &start.surface, &start.bsdf, &rays));
     }
@@ -60,26 +60,26 @@ static void add_batch(const struct path_settings *settings, struct path_sample *
             sum[c] += (double)samples[i].light.irradiance_emitters_sky.raw[c];
 }
 
-vec3s gather_paths(const struct gather_scene *s, const struct gather_points *points,
-                   struct gather_texel texel, int samples, uint64_t seed)
+vec3s gather_paths(const struct gather_scene *s, const struct gather_points *points, int samples,
+                   uint64_t seed)
 {
     const struct path_settings settings = {
         .scene = s->trace,
         .bounces = -1,
         .direct = true,
         .indirect = true,
-        .seed = (uint32_t)(rng_mix(seed + texel.back) >> 32),
+        .seed = (uint32_t)(rng_mix(seed + points->back) >> 32),
     };
     struct path_start starts[GATHER_POINTS];
     struct path_sample batch[PATH_BATCH];
     double sum[3] = { 0.0, 0.0, 0.0 };
     if (points->count == 0 || samples < 1) return vec3_of(0, 0, 0);
-    for (int k = 0; k < points->count; k++) starts[k] = start_at(s, &points->at[k], texel.back);
+    for (int k = 0; k < points->count; k++) starts[k] = start_at(s, &points->at[k], points->back);
     for (int done = 0; done < samples;) {
         int count = 0;
         for (; count < PATH_BATCH && done < samples; count++, done++)
             batch[count] = (struct path_sample){ .start = &starts[done % points->count],
-                                                 .pixel = texel.texel,
+                                                 .pixel = points->pixel,
                                                  .sample = (uint32_t)done };
         add_batch(&settings, batch, count, sum);
     }

@@ -18,12 +18,6 @@ bool gather_scene_init(struct gather_scene *scene, struct host *host, const stru
                        const struct charts *charts);
 void gather_scene_finish(struct gather_scene *scene);
 
-// One side of a texel: charts of double-sided materials have two.
-struct gather_texel {
-    uint32_t texel; // in charts->texels
-    bool back;
-};
-
 enum { GATHER_POINTS = 16 };
 struct gather_point {
     uint32_t triangle; // in charts->triangles
@@ -32,12 +26,15 @@ struct gather_point {
 struct gather_points {
     struct gather_point at[GATHER_POINTS]; // in random order
     int count;                             // 0: all are inside of something
+    uint32_t pixel;                        // of random numbers: the front in charts->texels
+    bool back;
 };
 
 // ---- points.c
 
 bool gather_list_triangles(struct gather_scene *scene);
-void gather_find_points(const struct gather_scene *scene, struct gather_texel texel,
+// texel: of both sides of the charts.
+void gather_find_points(const struct gather_scene *scene, uint32_t texel,
                         struct gather_points *out);
 // The trace scene's surface at a point: white, diffuse, without normal map.
 struct surface gather_surface(const struct gather_scene *scene, const struct gather_point *point,
@@ -46,8 +43,7 @@ struct surface gather_surface(const struct gather_scene *scene, const struct gat
 // ---- gather.c. Lux, along the interpolated vertex normal.
 
 // Of punctual lights: the mean over the points.
-vec3s gather_punctual(const struct gather_scene *scene, const struct gather_points *points,
-                      bool back);
+vec3s gather_punctual(const struct gather_scene *scene, const struct gather_points *points);
 // Of emissive surfaces, the sky and all bounces: the mean of `samples` paths.
 vec3s gather_paths(const struct gather_scene *scene, const struct gather_points *points,
-                   struct gather_texel texel, int samples, uint64_t seed);
+                   int samples, uint64_t seed);

@@ -7,11 +7,6 @@
 #include "image/image.h"
 #include "scene/charts/charts.h"
 
-// Charts of double-sided materials have a back, whose texels follow those of all fronts.
-bool lightmap_has_back(const struct scene *scene, const struct chart *chart);
-// Texels of the fronts, and as many again where some chart has a back.
-uint64_t lightmap_rows(const struct charts *charts, const struct scene *scene);
-
 // ---- stages.c: light by the path tracer
 
 #define LIGHTMAP_PUNCTUAL "texels/punctual" // F32 [texels of both sides][3], lux
@@ -27,7 +22,7 @@ struct lightmap_bake {
 };
 // In the identity of the bake.
 #define LIGHTMAP_NAME "lightmap"
-enum { LIGHTMAP_VERSION = 1 };
+enum { LIGHTMAP_VERSION = 2 };
 bool lightmap_add_stages(struct bake_plan *plan, const struct lightmap_bake *how);
 
 // ---- lightmap.c

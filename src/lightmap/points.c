@@ -164,10 +164,10 @@ static bool is_inside(const struct gather_scene *s, const struct gather_point *p
     return 2 * behind > PROBES;
 }
 
-static void add_point(const struct gather_scene *s, const struct gather_point *point, bool back,
+static void add_point(const struct gather_scene *s, const struct gather_point *point,
                       struct gather_points *out)
 {
-    if (!is_inside(s, point, back)) out->at[out->count++] = *point;
+    if (!is_inside(s, point, out->back)) out->at[out->count++] = *point;
 }
 
 // The triangle at a share of the chart's area.
@@ -182,37 +182,38 @@ static uint32_t triangle_at(const struct charts *charts, const struct chart *cha
 
 // All corners of a spot are at one place: its points are spread over its surface.
 static void find_spot_points(const struct gather_scene *s, const struct chart *chart,
-                             struct gather_texel texel, struct gather_points *out)
+                             struct gather_points *out)
 {
     for (uint32_t k = 0; k < GATHER_POINTS; k++) {
-        const vec2s at = sample_triangle(sobol_2d(k, pcg_hash(texel.texel) | 1u));
+        const vec2s at = sample_triangle(sobol_2d(k, pcg_hash(out->pixel) | 1u));
         const float share = ((float)k + 0.5f) / GATHER_POINTS;
         add_point(s, &(struct gather_point){ triangle_at(s->charts, chart, share), at.x, at.y },
-                  texel.back, out);
+                  out);
     }
 }
 
-void gather_find_points(const struct gather_scene *s, struct gather_texel texel,
-                        struct gather_points *out)
+void gather_find_points(const struct gather_scene *s, uint32_t texel, struct gather_points *out)
 {
-    const struct chart_texel *t = &s->charts->texels[texel.texel];
+    const struct chart_texel *t = chart_texel_of(s->charts, texel);
     const struct chart *chart = &s->charts->charts[s->charts->triangles[t->triangle].chart];
     bool covered = false;
     out->count = 0;
+    out->pixel = chart_front(s->charts, texel);
+    out->back = chart_is_back(s->charts, texel);
     if (chart->spot) {
-        find_spot_points(s, chart, texel, out);
+        find_spot_points(s, chart, out);
         return;
     }
     for (uint32_t k = 0; k < GATHER_POINTS; k++) {
         struct gather_point point;
         // The first 16 points of the sequence are one in each square of a 4 × 4 grid.
-        const vec2s at = sobol_2d(k, pcg_hash(texel.texel) | 1u);
-        if (!find_triangle(s, texel.texel, (double)t->x + (double)at.x, (double)t->y + (double)at.y,
+        const vec2s at = sobol_2d(k, pcg_hash(out->pixel) | 1u);
+        if (!find_triangle(s, out->pixel, (double)t->x + (double)at.x, (double)t->y + (double)at.y,
                            &point))
             continue;
         covered = true;
-        add_point(s, &point, texel.back, out);
+        add_point(s, &point, out);
     }
     if (!covered) // a sliver
-        add_point(s, &(struct gather_point){ t->triangle, t->u, t->v }, texel.back, out);
+        add_point(s, &(struct gather_point){ t->triangle, t->u, t->v }, out);
 }

@@ -31,21 +31,14 @@ static void finish(void *argument)
     scene_statics_finish(&job->statics);
 }
 
-static bool has_side(const struct job *job, struct gather_texel at)
-{
-    const struct charts *charts = &job->charts;
-    const uint32_t chart = charts->triangles[charts->texels[at.texel].triangle].chart;
-    return !at.back || lightmap_has_back(job->how.pose->scene, &charts->charts[chart]);
-}
-
-static void gather(const struct bake_task *task, struct gather_texel at, uint64_t row)
+static void gather(const struct bake_task *task, uint32_t texel, uint64_t row)
 {
     const struct job *job = task->job;
     struct gather_points points;
-    gather_find_points(&job->scene, at, &points);
+    gather_find_points(&job->scene, texel, &points);
     if (points.count == 0) return;
-    const vec3s punctual = gather_punctual(&job->scene, &points, at.back);
-    const vec3s rest = gather_paths(&job->scene, &points, at, job->how.samples, task->bake_seed);
+    const vec3s punctual = gather_punctual(&job->scene, &points);
+    const vec3s rest = gather_paths(&job->scene, &points, job->how.samples, task->bake_seed);
     float *out = (float *)task->out[1] + 4 * row;
     memcpy((float *)task->out[0] + 3 * row, punctual.raw, sizeof punctual.raw);
     memcpy(out, rest.raw, sizeof rest.raw);
@@ -55,15 +48,12 @@ static void gather(const struct bake_task *task, struct gather_texel at, uint64_
 static bool run(const struct bake_task *task)
 {
     const struct job *job = task->job;
-    const uint32_t texels = job->charts.texel_count;
     uint64_t count, first = bake_task_rows(task, 0, &count);
     const unsigned before = embree_flush_denormals();
     bool ok = true;
-    const uint64_t rows = lightmap_rows(&job->charts, job->how.pose->scene);
-    for (uint64_t i = 0; ok && i < count && first + i < rows; i++) {
-        const struct gather_texel at = { (uint32_t)((first + i) % texels), first + i >= texels };
+    for (uint64_t i = 0; ok && i < count && first + i < job->charts.side_texel_count; i++) {
         ok = !bake_task_cancelled(task);
-        if (ok && has_side(job, at)) gather(task, at, i);
+        if (ok) gather(task, (uint32_t)(first + i), i);
     }
     embree_restore_denormals(before);
     return ok;
@@ -115,7 +105,7 @@ static bool count_texels(struct host *host, const struct lightmap_bake *how,
 {
     struct charts charts;
     if (!how->charts(statics, how->options, host, &charts)) return false;
-    *rows = lightmap_rows(&charts, statics->scene);
+    *rows = charts.side_texel_count;
     charts_finish(&charts);
     return true;
 }

@@ -182,10 +182,11 @@ static void close_files(struct files *f)
 static bool traced_at(const struct gather_scene *scene, uint32_t triangle, vec2s uv, uint32_t seed,
                       vec3s *out)
 {
-    struct gather_points points = { .at = { { triangle, uv.x, uv.y } }, .count = 1 };
-    const struct gather_texel texel = { seed, false };
-    *out = glms_vec3_add(gather_punctual(scene, &points, false),
-                         gather_paths(scene, &points, texel, 4 * SAMPLES, 7));
+    const struct gather_points points = { .at = { { triangle, uv.x, uv.y } },
+                                          .count = 1,
+                                          .pixel = seed };
+    *out = glms_vec3_add(gather_punctual(scene, &points),
+                         gather_paths(scene, &points, 4 * SAMPLES, 7));
     return luminance(*out) > 0.0f;
 }
 
