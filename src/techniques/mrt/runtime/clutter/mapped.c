@@ -1,6 +1,5 @@
 #include "techniques/mrt/runtime/clutter/mapped.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 bool mrt_mapped_init(struct mrt_mapped *out, struct host *host, int blocks)
@@ -68,70 +67,42 @@ bool mrt_mapped_add(struct mrt_mapped *out, const struct mrt_turned *turned,
 
 // ---- the atlas
 
-struct placer {
-    const struct charts *charts;
-    const uint32_t *chart_of; // of each texel of the charts
-    const uint32_t *place_of; // in mrt_clutter.texels
-    const bool *inside;       // by place
-};
-
-static bool is_valid(const struct placer *s, uint32_t texel, uint32_t chart)
+// source: [places] in mrt_clutter.texels, of the texels that hidden ones show.
+static bool fill_sources(struct mrt_mapped *out, const struct mrt_clutter *clutter, bool *hidden,
+                         uint32_t *place_of)
 {
-    return texel != CHART_NONE && s->chart_of[texel] == chart && !s->inside[s->place_of[texel]];
-}
-
-// The nearest valid texel of its chart, on squares around it; itself where there is none.
-static uint32_t nearest_valid(const struct placer *s, uint32_t texel)
-{
-    const uint32_t of = s->chart_of[texel];
-    const struct chart *chart = &s->charts->charts[of];
-    const int x = (int)s->charts->texels[texel].x, y = (int)s->charts->texels[texel].y;
-    const int left = (int)chart->x, bottom = (int)chart->y;
-    const int right = left + (int)chart->width, top = bottom + (int)chart->height;
-    const int most = (int)(chart->width > chart->height ? chart->width : chart->height);
-    for (int away = 1; away < most; away++)
-        for (int j = y - away; j <= y + away; j++) {
-            const int step = abs(j - y) == away ? 1 : 2 * away;
-            for (int i = x - away; i <= x + away && j >= bottom && j < top; i += step) {
-                if (i < left || i >= right) continue;
-                const uint32_t owner = s->charts->owner[(size_t)j * s->charts->width + (size_t)i];
-                if (is_valid(s, owner, of)) return owner;
-            }
-        }
-    return texel;
-}
-
-static void place(const struct placer *s, struct mrt_mapped *out)
-{
-    const struct charts *charts = s->charts;
-    for (size_t i = 0; i < (size_t)charts->width * charts->height; i++) {
-        uint32_t texel = charts->owner[i];
-        if (texel != CHART_NONE && s->inside[s->place_of[texel]]) texel = nearest_valid(s, texel);
-        out->source[i] = texel == CHART_NONE ? CHART_NONE : s->place_of[texel];
+    const struct charts *charts = &clutter->charts;
+    for (uint32_t i = 0; i < charts->texel_count; i++) {
+        place_of[clutter->texels[i]] = i;
+        hidden[clutter->texels[i]] = out->inside[i];
     }
+    uint32_t *shown = charts_fill(charts, hidden);
+    for (size_t i = 0; shown && i < (size_t)charts->width * charts->height; i++) {
+        const uint32_t texel = charts->owner[i];
+        out->source[i] = texel == CHART_NONE ? CHART_NONE : place_of[shown[texel]];
+    }
+    const bool ok = shown;
+    host_free(charts->host, shown);
+    return ok;
 }
 
 bool mrt_mapped_place(struct mrt_mapped *out, const struct mrt_clutter *clutter)
 {
     const struct charts *charts = &clutter->charts;
     struct host *host = out->host;
-    uint32_t *chart_of = host_alloc(host, charts->texel_count, sizeof *chart_of);
+    bool *hidden = host_alloc(host, charts->side_texel_count, sizeof *hidden);
     uint32_t *place_of = host_alloc(host, charts->texel_count, sizeof *place_of);
     out->source = host_alloc(host, (size_t)charts->width * charts->height, sizeof *out->source);
-    const bool ok =
-        chart_of && place_of && out->source && (out->inside || charts->texel_count == 0);
+    const bool ok = hidden && place_of && out->source &&
+                    (out->inside || charts->texel_count == 0) &&
+                    fill_sources(out, clutter, hidden, place_of);
     if (ok) {
-        for (uint32_t c = 0; c < charts->count; c++)
-            for (uint32_t i = 0; i < charts->charts[c].texel_count; i++)
-                chart_of[charts->charts[c].first_texel + i] = c;
-        for (uint32_t i = 0; i < charts->texel_count; i++) place_of[clutter->texels[i]] = i;
-        place(&(struct placer){ charts, chart_of, place_of, out->inside }, out);
         out->input.source = out->source;
         out->input.width = charts->width;
         out->input.height = charts->height;
         out->input.clutter = clutter;
     }
-    host_free(host, chart_of);
+    host_free(host, hidden);
     host_free(host, place_of);
     return ok;
 }
