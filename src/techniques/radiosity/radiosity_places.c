@@ -1,7 +1,6 @@
 // Where light is shown: places of the light map and of triangles in it.
 #include "techniques/radiosity/radiosity_state.h"
 
-
 uint32_t radiosity_place_word(const struct radiosity *s, size_t place)
 {
     const size_t width = s->map.charts.width, line = place / width;
