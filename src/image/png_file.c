@@ -4,15 +4,13 @@
 #include "image/png_file.h"
 
 #include "core/file.h"
-
-#include <png.h>
+#include "image/png_decode.h"
+#include "image/png_limits.h"
 
 #include <math.h>
 #include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { PNG_CHUNK_BYTES_MAX = 64 << 20, PNG_CHUNKS_MAX = 1000 }; // limits of ancillary chunks
 
 struct png_job {
     struct host *host;
@@ -136,12 +134,7 @@ static bool job_read(struct png_job *job)
                                         on_malloc, on_free);
     if (!job_started(job)) return false;
     png_set_read_fn(job->png, job, on_read);
-    png_set_user_limits(job->png, IMAGE_MAX_SIZE, IMAGE_MAX_SIZE);
-    png_set_chunk_malloc_max(job->png, PNG_CHUNK_BYTES_MAX);
-    png_set_chunk_cache_max(job->png, PNG_CHUNKS_MAX);
-    // Of the ancillary chunks tRNS alone is read: texts and profiles take memory, and time to
-    // unpack.
-    png_set_keep_unknown_chunks(job->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
+    png_limit(job->png, IMAGE_MAX_SIZE);
     png_read_info(job->png, job->info);
     request_rgb(job->png, job->info);
     if (!job_allocate_rows(job, png_get_rowbytes(job->png, job->info),
@@ -176,24 +169,12 @@ static bool job_decode(const struct png_job *job, struct image *out)
     return true;
 }
 
-// A signature and the chunk IHDR, which is the first (PNG specification, section 5.6). libpng takes
-// others before it.
-static bool is_png(const struct file_bytes *bytes)
-{
-    enum { TYPE_AT = 12, TYPE_END = 16 };
-    return bytes->size >= TYPE_END && png_sig_cmp(bytes->data, 0, 8) == 0 &&
-           memcmp(bytes->data + TYPE_AT, "IHDR", TYPE_END - TYPE_AT) == 0;
-}
-
-// IHDR begins with width and height.
 bool png_read_size(struct host *host, const char *path, int *width, int *height)
 {
-    enum { WIDTH_AT = 16, HEIGHT_AT = 20, END = 24 };
     struct file_bytes bytes;
+    uint32_t w = 0, h = 0;
     if (!file_read(host, path, 0, &bytes)) return false;
-    const bool whole = is_png(&bytes) && bytes.size >= END;
-    const uint32_t w = whole ? png_get_uint_32(bytes.data + WIDTH_AT) : 0;
-    const uint32_t h = whole ? png_get_uint_32(bytes.data + HEIGHT_AT) : 0;
+    const bool whole = png_find_size(bytes.data, bytes.size, &w, &h);
     file_bytes_finish(host, &bytes);
     if (w < 1 || h < 1 || w > IMAGE_MAX_SIZE || h > IMAGE_MAX_SIZE)
         return host_fail(host, FAIL_FORMAT,
@@ -210,7 +191,8 @@ bool png_read(struct host *host, const char *path, struct image *out)
     *out = (struct image){ 0 };
     struct png_job job = { .host = host, .kind = FAIL_FORMAT };
     if (!file_read(host, path, 0, &job.bytes)) return false;
-    if (!is_png(&job.bytes)) {
+    uint32_t width, height;
+    if (!png_find_size(job.bytes.data, job.bytes.size, &width, &height)) {
         host_fail(host, FAIL_FORMAT, "cannot read %s: not a PNG file", path);
         goto fail;
     }

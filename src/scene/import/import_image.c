@@ -17,14 +17,15 @@ struct job {
     uint8_t *rgba;
     bool has_alpha;
     const char *problem; // NULL: decoded
+    char why[DECODE_WHY_SIZE];
 };
 
 static void decode(void *user, size_t i)
 {
     struct job *job = (struct job *)user + i;
     if (job->problem || job->same_as >= 0) return;
-    job->problem =
-        image_decode(job->source->data, job->source->size, job->width, job->height, job->rgba);
+    job->problem = image_decode(job->source->data, job->source->size, job->width, job->height,
+                                job->rgba, job->why);
     size_t pixels = (size_t)job->width * (size_t)job->height;
     for (size_t p = 0; p < pixels && !job->has_alpha; p++)
         job->has_alpha = job->rgba[4 * p + 3] < 255;
@@ -39,7 +40,7 @@ static const char *find_size(struct job *job)
         return "neither JPEG nor PNG";
     }
     if (kind == IMAGE_UNKNOWN && !source->is_tga) return "neither JPEG, PNG, BMP nor TGA";
-    return image_decode_size(source->data, source->size, &job->width, &job->height);
+    return image_decode_size(source->data, source->size, &job->width, &job->height, job->why);
 }
 
 static int by_bytes(const void *a, const void *b)
