@@ -3,7 +3,7 @@
 
 #include "techniques/gi.h"
 
-#include "techniques/common/probe_view.h"
+#include "techniques/common/probes/view.h"
 
 // A further view of the frame.
 struct gi_view {

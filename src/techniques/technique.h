@@ -48,7 +48,7 @@ struct technique_preset {
 struct probe_volume {
     gpu_image image; // RGBA16F
     struct frame_probes grid;
-    // Not empty: what probes see, RG16F, and the image has the slab that common/probe_lookup.glsl
+    // Not empty: what probes see, RG16F, and the image has the slab that common/probes/lookup.glsl
     // needs, by which no light passes through walls.
     gpu_image depth;
 };

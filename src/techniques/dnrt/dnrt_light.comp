@@ -11,7 +11,7 @@
 #include "frame/probes.glsl"
 #ifdef DNRT_SEEN
 #include "frame/octahedral.glsl"
-#include "techniques/common/probe_lookup.glsl"
+#include "techniques/common/probes/lookup.glsl"
 #endif
 // A struct and a block cannot share a name.
 #define dnrt_changed dnrt_changed_data

@@ -12,7 +12,7 @@
 #include "frame/brdf.glsl"
 #include "frame/octahedral.glsl"
 #include "frame/probes.glsl"
-#include "techniques/common/probe_lookup.glsl"
+#include "techniques/common/probes/lookup.glsl"
 #include "techniques/radiosity/radiosity_lobe.glsl"
 #include "techniques/radiosity/radiosity_shared.h"
 #include "techniques/radiosity/probes/probes_shared.h"

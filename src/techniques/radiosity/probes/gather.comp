@@ -1,4 +1,4 @@
-// The probe volume (frame/probes.glsl and common/probe_lookup.glsl): irradiance from the clusters,
+// The probe volume (frame/probes.glsl and common/probes/lookup.glsl): irradiance from the clusters,
 // the sky and emissive surfaces, bands 0 to 2. Cells without a probe outside of geometry show the
 // light of another one.
 //

@@ -1,7 +1,7 @@
 // From the tensors of a bake, which are untrusted, to tables and images.
 #include "techniques/radiosity/probes/probes.h"
 
-#include "techniques/common/probe_lookup_shared.h"
+#include "techniques/common/probes/depth_shared.h"
 #include "techniques/radiosity/probes/probes_shared.h"
 #include "techniques/radiosity/radiosity_shared.h"
 #include "techniques/radiosity/radiosity_tensors.h"

@@ -8,7 +8,7 @@
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "frame/probes.glsl"
-#include "techniques/common/probe_view_shared.h"
+#include "techniques/common/probes/view_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -1,6 +1,6 @@
-// Push constants of probe_view.comp. Scalar layout.
-#ifndef AG_PROBE_VIEW_SHARED_H
-#define AG_PROBE_VIEW_SHARED_H
+// Push constants of view.comp. Scalar layout.
+#ifndef AG_PROBES_VIEW_SHARED_H
+#define AG_PROBES_VIEW_SHARED_H
 
 #include "core/shared.h"
 

@@ -1,6 +1,6 @@
-// Layout of the distances that probes see: common/probe_lookup.glsl.
-#ifndef AG_PROBE_LOOKUP_SHARED_H
-#define AG_PROBE_LOOKUP_SHARED_H
+// Layout of the distances that probes see: common/probes/lookup.glsl.
+#ifndef AG_PROBES_DEPTH_SHARED_H
+#define AG_PROBES_DEPTH_SHARED_H
 
 #define PROBE_DEPTH_SIDE 8
 #define PROBE_DEPTH_TILE (PROBE_DEPTH_SIDE + 2)

@@ -1,7 +1,7 @@
 // Host code of the debug view of probes.
-#include "techniques/common/probe_view.h"
+#include "techniques/common/probes/view.h"
 
-#include "techniques/common/probe_view_shared.h"
+#include "techniques/common/probes/view_shared.h"
 
 #include "technique_shaders.h"
 
@@ -15,7 +15,7 @@ bool probe_view_create(struct probe_view *view, struct gpu *gpu)
                                              .wrap_v = GPU_CLAMP,
                                              .wrap_w = GPU_CLAMP };
     return gpu_sampler_get(gpu, &linear, &view->linear) &&
-           gpu_compute_pipeline_create(gpu, "probe_view", &shader_common_probe_view_comp, NULL, 0,
+           gpu_compute_pipeline_create(gpu, "probe_view", &shader_common_probes_view_comp, NULL, 0,
                                        &view->pipeline);
 }
 

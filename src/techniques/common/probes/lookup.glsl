@@ -13,10 +13,10 @@
 // probe, mean and standard deviation of the nearness, in 1/spacing: an octahedral map
 // (frame/octahedral.glsl) of PROBE_DEPTH_SIDE² texels with a border of one. Include after
 // core/sh.glsl, frame/frame_shared.h, frame/octahedral.glsl and frame/probes.glsl.
-#ifndef AG_TECHNIQUES_PROBE_LOOKUP_GLSL
-#define AG_TECHNIQUES_PROBE_LOOKUP_GLSL
+#ifndef AG_PROBES_LOOKUP_GLSL
+#define AG_PROBES_LOOKUP_GLSL
 
-#include "techniques/common/probe_lookup_shared.h"
+#include "techniques/common/probes/depth_shared.h"
 
 const float PROBE_BIAS = 0.05;   // spacings along the normal, against the variance of planes
 const float PROBE_UNSEEN = 1e-5; // weight of probes behind walls, where all are
