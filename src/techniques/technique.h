@@ -8,6 +8,7 @@
 #include "frame/frame.h"
 #include "gpu/gpu.h"
 #include "scene/pose.h"
+#include "techniques/common/probes/volume.h"
 
 enum technique_role { ROLE_SOURCE, ROLE_DELTA, ROLE_VISIBILITY };
 
@@ -43,15 +44,6 @@ struct technique_preset {
 // gi.c draws the view of this name from the technique's probes; debug_view is not called.
 #define PROBES_VIEW      "probes"
 #define PROBES_VIEW_HELP "white spheres at the probes and surfaces lit by them; needs probes=true"
-
-// Irradiance at the points of a grid, in the format of frame/probes.glsl. Each update fills it.
-struct probe_volume {
-    gpu_image image; // RGBA16F
-    struct frame_probes grid;
-    // Not empty: what probes see, RG16F, and the image has the slab that common/probes/lookup.glsl
-    // needs, by which no light passes through walls.
-    gpu_image depth;
-};
 
 struct charts; // scene/charts/charts.h
 

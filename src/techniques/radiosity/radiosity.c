@@ -223,7 +223,7 @@ static bool probes(void *state, struct probe_volume *out)
 {
     const struct radiosity *s = state;
     if (!s->options.probes) return false;
-    *out = (struct probe_volume){ s->probes.volume, s->probes.grid, s->probes.depth };
+    *out = s->probes.volume;
     return true;
 }
 

@@ -2,7 +2,7 @@
 // and how far it sees.
 #pragma once
 
-#include "techniques/common/probes/depth_shared.h"
+#include "techniques/common/probes/rays.h"
 #include "techniques/radiosity/bake/row.h"
 #include "techniques/radiosity/probes/grid.h"
 
@@ -13,8 +13,7 @@ struct radiosity_probe {
     float valid;                    // 1; 0: all of the cell is inside of something
     float sky[RADIOSITY_SH];        // irradiance of a sky of radiance 1, Σ c_i Y_i
     float emitted[RADIOSITY_SH][3]; // of emissive surfaces, lux
-    // See common/probes/lookup.glsl.
-    float depth[PROBE_DEPTH_SIDE * PROBE_DEPTH_SIDE][2];
+    uint16_t depth[PROBE_DEPTHS][2];
 };
 
 // Rays are in equal squares of the octahedral map, each with its solid angle: `gather` has the

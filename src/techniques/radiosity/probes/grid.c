@@ -12,11 +12,6 @@ static struct box3 bounds_of(const struct charts *charts)
     return box;
 }
 
-static int32_t cells_along(float length, float spacing)
-{
-    return (int32_t)fmaxf(ceilf(length / spacing - 1e-3f), 1.0f);
-}
-
 static bool is_within(vec3s size, float spacing, double most)
 {
     double product = 1.0;
@@ -41,22 +36,12 @@ static float spacing_of(vec3s size, float least, double most)
 struct frame_probes radiosity_probe_grid(const struct radiosity_map *map,
                                          const struct radiosity_options *options)
 {
-    struct frame_probes grid = {
-        .spacing_m = 1.0f, .count_x = 1, .count_y = 1, .count_z = 1, .slab = 1
-    };
     const struct box3 box = bounds_of(&map->charts);
     const vec3s size = box3_size(box);
-    if (box3_is_empty(box) || !(glms_vec3_max(size) > 0.0f)) return grid;
-    grid.spacing_m =
+    if (box3_is_empty(box) || !(glms_vec3_max(size) > 0.0f)) return probe_grid_of_one();
+    return probe_grid_over(
+        box,
         options->probe_spacing > 0.0f
             ? spacing_of(size, options->probe_spacing, MOST_PROBES)
-            : spacing_of(size, 0.0f, fmin((double)radiosity_probes_most(options), MOST_PROBES));
-    int32_t *const counts[3] = { &grid.count_x, &grid.count_y, &grid.count_z };
-    for (int a = 0; a < 3; a++) {
-        *counts[a] = cells_along(size.raw[a], grid.spacing_m);
-        grid.first_m.raw[a] =
-            box.min.raw[a] + 0.5f * (size.raw[a] - grid.spacing_m * (float)(*counts[a] - 1));
-    }
-    grid.slab = grid.count_z;
-    return grid;
+            : spacing_of(size, 0.0f, fmin((double)radiosity_probes_most(options), MOST_PROBES)));
 }

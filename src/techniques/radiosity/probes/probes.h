@@ -5,10 +5,9 @@
 #include "techniques/technique.h"
 
 struct radiosity_probes {
-    struct frame_probes grid;
+    struct probe_volume volume;
     uint32_t count, entries;           // entries: of a row
     gpu_buffer owners, table, factors; // of probes
-    gpu_image volume, depth;           // common/probes/lookup.glsl
     gpu_pipeline gather, apply_some, apply_all;
     gpu_sampler linear;
     bool fresh; // the volume has the light of the newest update

@@ -8,7 +8,7 @@ void radiosity_probes_record_gather(struct radiosity_probes *p, struct gpu_cmd *
                                     const struct frame_view *view, gpu_image radiosity,
                                     bool emitters)
 {
-    const struct radiosity_probe_gather_push push = { p->grid, p->count, p->entries,
+    const struct radiosity_probe_gather_push push = { p->volume.grid, p->count, p->entries,
                                                       emitters ? 1.0f : 0.0f };
     gpu_scope_begin(cmd, "probes");
     gpu_dispatch(cmd, p->gather,
@@ -16,7 +16,7 @@ void radiosity_probes_record_gather(struct radiosity_probes *p, struct gpu_cmd *
                           { .name = "probe_table", .buffer = p->table },
                           { .name = "probe_factors", .buffer = p->factors },
                           { .name = "radiosity_sent", .image = radiosity },
-                          { .name = "volume", .image = p->volume }),
+                          { .name = "volume", .image = p->volume.image }),
                  &push, sizeof push, gpu_groups(push.probes, RADIOSITY_LOCAL), 1, 1);
     gpu_scope_end(cmd);
     p->fresh = true;
@@ -28,7 +28,8 @@ void radiosity_probes_record_apply(const struct radiosity_probes *p, struct gpu_
     static const uint32_t none = 0;
     const gpu_image *layers = view->layers;
     const gpu_image dielectric = layers[FRAME_DIELECTRIC];
-    const struct radiosity_probe_apply_push push = { p->grid, lit.instances, dielectric.id != 0 };
+    const struct radiosity_probe_apply_push push = { p->volume.grid, lit.instances,
+                                                     dielectric.id != 0 };
     const size_t words = lit.words && lit.instances > 0 ? (lit.instances + 31) / 32 : 1;
     gpu_scope_begin(cmd, "apply_probes");
     gpu_dispatch(
@@ -42,8 +43,8 @@ void radiosity_probes_record_apply(const struct radiosity_probes *p, struct gpu_
             { .name = "dielectric", .image = dielectric.id ? dielectric : layers[FRAME_MATERIAL] },
             { .name = "id", .image = layers[FRAME_ID] },
             gpu_transient(cmd, "probe_lit", lit.words ? lit.words : &none, words * sizeof none),
-            { .name = "volume", .image = p->volume, .sampler = p->linear },
-            { .name = "probe_depths", .image = p->depth, .sampler = p->linear },
+            { .name = "volume", .image = p->volume.image, .sampler = p->linear },
+            { .name = "probe_depths", .image = p->volume.depth, .sampler = p->linear },
             { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
             { .name = "specular", .image = layers[FRAME_SPECULAR] }),
         &push, sizeof push, gpu_groups(view->width, RADIOSITY_LOCAL_2D),

@@ -8,13 +8,12 @@
 
 enum { PROBES_PER_TASK = 32 };
 enum { OUT_SOURCE, OUT_FACTOR, OUT_PLACE, OUT_SKY, OUT_EMITTED, OUT_DEPTH, OUT_COUNT };
-enum { DEPTHS = PROBE_DEPTH_SIDE * PROBE_DEPTH_SIDE };
 
 bool radiosity_probe_plan(struct bake_plan *plan, struct frame_probes grid,
                           const struct radiosity_options *options,
                           bool (*run)(const struct bake_task *task), size_t room_bytes)
 {
-    const uint64_t probes = radiosity_probe_count(grid), most = 2 * (uint64_t)options->sources;
+    const uint64_t probes = probe_grid_count(grid), most = 2 * (uint64_t)options->sources;
     const struct bake_output out[OUT_COUNT] = {
         { RADIOSITY_PROBE_SOURCE, TENSOR_U32, 2, { probes, most }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_PROBE_FACTOR, TENSOR_F16, 3, { probes, most, 4 }, BAKE_ROWS, BAKE_SAVED },
@@ -26,7 +25,12 @@ bool radiosity_probe_plan(struct bake_plan *plan, struct frame_probes grid,
           { probes, RADIOSITY_SH, 3 },
           BAKE_ROWS,
           BAKE_SAVED },
-        { RADIOSITY_PROBE_DEPTH, TENSOR_F16, 3, { probes, DEPTHS, 2 }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_PROBE_DEPTH,
+          TENSOR_F16,
+          3,
+          { probes, PROBE_DEPTHS, 2 },
+          BAKE_ROWS,
+          BAKE_SAVED },
     };
     const size_t tasks = (size_t)((probes + PROBES_PER_TASK - 1) / PROBES_PER_TASK);
     return bake_plan_add(
@@ -56,13 +60,13 @@ static void write_probe(const struct bake_task *task, uint64_t i,
                         const struct radiosity_probe *probe)
 {
     float *place = (float *)task->out[OUT_PLACE] + 4 * i;
-    uint16_t *depth = (uint16_t *)task->out[OUT_DEPTH] + 2 * DEPTHS * i;
     memcpy(place, probe->position.raw, sizeof probe->position.raw);
     place[3] = probe->valid;
     memcpy((float *)task->out[OUT_SKY] + RADIOSITY_SH * i, probe->sky, sizeof probe->sky);
     memcpy((float *)task->out[OUT_EMITTED] + 3 * RADIOSITY_SH * i, probe->emitted,
            sizeof probe->emitted);
-    for (int d = 0; d < 2 * DEPTHS; d++) depth[d] = half_from_float(probe->depth[d / 2][d % 2]);
+    memcpy((uint16_t *)task->out[OUT_DEPTH] + 2 * PROBE_DEPTHS * i, probe->depth,
+           sizeof probe->depth);
 }
 
 bool radiosity_probe_run(const struct bake_task *task, const struct radiosity_scene *scene,

@@ -1,0 +1,40 @@
+// Rays around a probe, in equal squares of the octahedral map (frame/octahedral.h): where a probe
+// is outside of geometry, and how far it sees.
+#pragma once
+
+#include "core/vec.h"
+
+#include "techniques/common/probes/depth_shared.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { PROBE_DEPTHS = PROBE_DEPTH_SIDE * PROBE_DEPTH_SIDE };
+
+struct probe_ray {
+    vec3s from, direction;
+    float solid_angle; // of its part of the sphere
+};
+
+// Returns the distance of what a ray meets, INFINITY: nothing. *inside: it is the back of a
+// single-sided surface.
+struct probe_tracer {
+    float (*trace)(void *user, const struct probe_ray *ray, bool *inside);
+    void *user;
+};
+
+// The middle of a cell, or where that is inside of something, the nearest place before a surface of
+// it that is not, within the cell. False: there is none.
+bool probe_find_place(const struct probe_tracer *tracer, vec3s center, float spacing_m,
+                      vec3s *position);
+
+// About so many rays.
+struct probe_sphere {
+    int side;    // rays along an edge of the map
+    float scale; // solid angles of the rays sum to 4π with it
+};
+struct probe_sphere probe_sphere_of(int rays);
+
+// The depths of a probe: common/probes/lookup.glsl. Halves.
+void probe_trace_depths(const struct probe_sphere *sphere, const struct probe_tracer *tracer,
+                        vec3s from, float spacing_m, uint16_t depth[PROBE_DEPTHS][2]);

@@ -1,0 +1,30 @@
+// Published probe volumes.
+#pragma once
+
+#include "core/host.h"
+#include "frame/frame_shared.h"
+#include "gpu/gpu.h"
+
+#include "techniques/common/probes/depth_shared.h"
+
+// Irradiance at the points of a grid, in the format of frame/probes.glsl. Each update fills it.
+struct probe_volume {
+    gpu_image image; // RGBA16F
+    struct frame_probes grid;
+    // Not empty: what probes see, RG16F, and the image has the slab that common/probes/lookup.glsl
+    // needs, by which no light passes through walls.
+    gpu_image depth;
+};
+
+// slabs: FRAME_PROBE_SLABS, or one more.
+struct gpu_image_desc probe_volume_desc(const char *name, struct frame_probes grid, int slabs);
+
+// The depth atlas of a grid's probes. depth: halves, [probes][PROBE_DEPTH_SIDE²][2].
+bool probe_depth_create(struct host *host, struct gpu *gpu, uint32_t probes, const uint16_t *depth,
+                        gpu_image *out);
+
+// Of a probe, of a volume with depths.
+enum {
+    PROBE_DEPTH_BYTES = 4 * PROBE_DEPTH_TILE * PROBE_DEPTH_TILE,
+    PROBE_VOLUME_BYTES = 8 * (FRAME_PROBE_SLABS + 1) + PROBE_DEPTH_BYTES,
+};
