@@ -484,6 +484,7 @@ static void record_light(struct frame *f, struct gpu_cmd *cmd, const struct fram
     view->bounds = input->pose->bounds;
     view->geometry_moved = f->common->scene.moved;
     view->lights_changed = f->lights_changed;
+    view->light_hash = f->light_hash;
     if (indirect && indirect->update) indirect->update(indirect->user, cmd, view);
 }
 

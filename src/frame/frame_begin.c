@@ -4,9 +4,8 @@
 #include "frame/frame_scale.h"
 #include "frame/projection.h"
 
+#include "core/hash.h"
 #include "scene/unlit.h"
-
-#include <string.h>
 
 static struct frame_light scaled_light(const struct world_light *light, float scale)
 {
@@ -27,24 +26,17 @@ static struct frame_light scaled_light(const struct world_light *light, float sc
     };
 }
 
-// Field by field, since padding bytes are undefined.
-static bool same_light(const struct world_light *a, const struct world_light *b)
-{
-    return a->type == b->type && memcmp(&a->position, &b->position, sizeof a->position) == 0 &&
-           memcmp(&a->direction, &b->direction, sizeof a->direction) == 0 &&
-           memcmp(&a->intensity, &b->intensity, sizeof a->intensity) == 0 &&
-           a->cos_inner == b->cos_inner && a->cos_outer == b->cos_outer && a->range_m == b->range_m;
-}
-
 static void begin_lights(struct frame *f, const struct frame_input *input, float scale)
 {
     int count = input->light_count < FRAME_MAX_LIGHTS ? input->light_count : FRAME_MAX_LIGHTS;
-    f->lights_changed = f->index == 0 || count != f->light_count;
+    uint64_t hash = (uint64_t)count;
     for (int i = 0; i < count; i++) {
-        if (!same_light(&f->world_lights[i], &input->lights[i])) f->lights_changed = true;
-        f->world_lights[i] = input->lights[i];
+        const struct frame_light physical = scaled_light(&input->lights[i], 1.0f);
+        hash = hash_bytes(&physical, sizeof physical, hash);
         f->lights[i] = scaled_light(&input->lights[i], scale);
     }
+    f->lights_changed = f->index == 0 || hash != f->lights_hash;
+    f->lights_hash = hash;
     f->light_count = count;
 }
 
@@ -61,6 +53,14 @@ static void begin_camera(struct frame *f, const struct frame_input *input)
         projection_view_from_world(input->camera.eye, input->camera.forward, input->camera.up);
     c->camera_position = input->camera.eye;
     c->near_m = input->camera.near_m;
+}
+
+static uint64_t light_hash(const struct frame *f)
+{
+    const struct frame_constants *c = &f->constants;
+    uint64_t hash = hash_bytes(&c->radiance_scale, sizeof c->radiance_scale, f->lights_hash);
+    hash = hash_bytes(&c->sky, sizeof c->sky, hash);
+    return hash_bytes(&f->common->options.shadow_filter, sizeof(int32_t), hash);
 }
 
 static float emissive_scale(const struct frame_constants *c, const struct frame_input *input)
@@ -99,6 +99,7 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
     c->frame_index = (uint32_t)f->index;
     begin_lights(f, input, c->radiance_scale);
     c->light_count = (uint32_t)f->light_count;
+    f->light_hash = light_hash(f);
     shadow_place(&f->common->shadow, f->lights, f->light_count,
                  &(struct shadow_view){
                      .camera = input->camera,

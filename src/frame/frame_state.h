@@ -68,7 +68,7 @@ struct frame {
     struct frame_constants constants;
     struct frame_light lights[FRAME_MAX_LIGHTS];
     int light_count;
-    struct world_light world_lights[FRAME_MAX_LIGHTS]; // to detect changes
+    uint64_t lights_hash, light_hash; // of the physical lights; of struct frame_view
     struct world_camera camera;
     vec3s emitted_irradiance; // scaled lux
     float fallback_luminance; // scaled, see frame_fallback_luminance

@@ -255,15 +255,16 @@ TEST_GPU(every_size_renders)
 struct changes {
     bool cut, moved, lights;
     float ratio;
-    uint64_t index;
+    uint64_t index, light;
 };
 
 static void store_changes(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     (void)cmd;
     *(struct changes *)user =
-        (struct changes){ view->camera_cut, view->geometry_moved, view->lights_changed,
-                          view->constants->previous_scale_ratio, view->index };
+        (struct changes){ view->camera_cut,     view->geometry_moved,
+                          view->lights_changed, view->constants->previous_scale_ratio,
+                          view->index,          view->light_hash };
 }
 
 TEST_GPU(changes_are_reported_once)
@@ -287,6 +288,28 @@ TEST_GPU(changes_are_reported_once)
     s.input.camera_cut = true;
     fixture_render(&s);
     CHECK(c.cut && !c.moved && !c.lights);
+    fixture_finish(&s);
+}
+
+TEST_GPU(the_hash_of_light_is_of_lights_sky_and_shadow_filter)
+{
+    struct frame_fixture s;
+    begin(&s, gpu);
+    struct changes c;
+    uint64_t seen[5];
+    s.indirect = (struct frame_indirect){ .record = store_changes, .user = &c, .needs = 0 };
+    fixture_open(&s);
+    for (int i = 0; i < 5; i++) {
+        if (i == 2) s.lights[1].position.x += 0.1f;
+        if (i == 3) s.input.sky.y = 1;
+        s.options.shadow_filter = i == 4 ? 1 : 0;
+        assert_true(frame_set_options(s.frame, &s.options));
+        fixture_look(&s, vec3_of((float)i, 2, 3), vec3_of(0, 0, 0)); // not of the camera
+        fixture_render(&s);
+        seen[i] = c.light;
+    }
+    for (int i = 0; i < 5; i++)
+        for (int k = 0; k < i; k++) CHECK((seen[i] == seen[k]) == (i == 1));
     fixture_finish(&s);
 }
 

@@ -16,6 +16,7 @@ endfunction()
 
 ag_technique_tests(emission gi_bake gi_spec radiosity radiosity_bake radiosity_damage radiosity_frames radiosity_seams radiosity_views technique_invariants technique_smoke visibility vo)
 target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")
+ag_test(techniques/kept USES techniques)
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
 ag_test(techniques/light_trials USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)
 ag_test(techniques/radiosity_corridor USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)

@@ -105,7 +105,7 @@ static bool holpv_create(void *state, const struct technique_create *how)
 
 static void forget_light(struct lpv *lpv)
 {
-    for (; lpv; lpv = lpv->coarser) lpv->history.valid = false;
+    for (; lpv; lpv = lpv->coarser) lpv->kept.known = false;
 }
 
 static void lpv_set_options(void *state, const void *options)
@@ -130,8 +130,7 @@ static void lpv_invalidate(void *state, uint32_t changes)
 static bool record_light(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const bool changed = lpv->coarser && record_light(lpv->coarser, cmd, view);
-    lpv_history_update(lpv, view);
-    if (lpv->history.kept && !changed) return false;
+    if (lpv_is_kept(lpv, view) && !changed) return false;
     lpv_record_injection(lpv, cmd, view);
     lpv_record_geometry(lpv, cmd, view);
     lpv_record_surfaces(lpv, cmd, view);

@@ -33,25 +33,11 @@ bool lpv_statics_equal(const struct lpv_statics *cached, const struct lpv_static
 }
 
 // Lights that did not change and objects that did not move have equal reflective shadow maps. Their
-// surfels of the camera's view (geometry=maps) may still differ.
-static uint64_t light_of(const struct lpv *lpv, const struct frame_view *view)
+// surfels of the camera's view (geometry=maps) may still differ. A frame without light is not
+// recorded, nor what moved in it.
+bool lpv_is_kept(struct lpv *lpv, const struct frame_view *view)
 {
-    uint64_t hash = hash_bytes(&lpv->params, sizeof lpv->params, (uint64_t)lpv->options.steps);
-    hash =
-        hash_bytes(view->rsm_faces, (size_t)view->rsm_face_count * sizeof *view->rsm_faces, hash);
-    return hash_bytes(view->emitters, (size_t)view->emitter_count * sizeof *view->emitters, hash);
-}
-
-void lpv_history_update(struct lpv *lpv, const struct frame_view *view)
-{
-    const struct lpv_history last = lpv->history;
-    // A frame without light is not recorded, nor what moved in it.
-    const bool follows = last.valid && view->index > 0 && view->index == last.index + 1;
-    struct lpv_history now = { .valid = true,
-                               .moved = !follows || view->geometry_moved,
-                               .index = view->index,
-                               .light = light_of(lpv, view) };
-    now.kept = view->keep && !now.moved && !view->lights_changed && now.light == last.light &&
-               lpv->options.geometry != LPV_GEOMETRY_MAPS;
-    lpv->history = now;
+    const uint64_t steps = hash_bytes(&lpv->options.steps, sizeof(int32_t), view->light_hash);
+    kept_update(&lpv->kept, view, hash_bytes(&lpv->params, sizeof lpv->params, steps));
+    return view->keep && lpv->kept.same && lpv->options.geometry != LPV_GEOMETRY_MAPS;
 }

@@ -13,16 +13,9 @@ struct scene_draw;
 bool lpv_is_static(const struct scene_draw *draw);
 bool lpv_is_moving(const struct scene_draw *draw);
 
-// Whether objects and lights are those of the frame before, and whether the light of a cascade is,
-// too, unless that of the coarser cascades has changed. Zero: no frame before.
-struct lpv_history {
-    bool valid, moved, kept;
-    uint64_t index; // of the frame
-    uint64_t light; // hash of what the light depends on
-};
-
-// Of the frame being recorded, whose parameters and grid are complete.
-void lpv_history_update(struct lpv *lpv, const struct frame_view *view);
+// Whether the light of a cascade is that of the frame before, unless that of the coarser cascades
+// has changed. The parameters and the grid of the frame are complete.
+bool lpv_is_kept(struct lpv *lpv, const struct frame_view *view);
 
 // What a cached result of the static draws depends on. Zero: nothing is cached.
 struct lpv_statics {

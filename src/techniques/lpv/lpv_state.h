@@ -1,6 +1,7 @@
 // The private state of light propagation volumes, shared by all stages.
 #pragma once
 
+#include "techniques/common/kept.h"
 #include "techniques/lpv/lpv_grid.h"
 #include "techniques/lpv/lpv_history.h"
 #include "techniques/lpv/lpv_math.h"
@@ -67,7 +68,7 @@ struct lpv {
     struct lpv_volumes volumes;
     struct lpv_geometry_cache geometry;
     struct lpv_surface_cache surfaces;
-    struct lpv_history history;
+    struct kept kept;
     struct lpv_grid grid;
     struct lpv_params params; // of the frame being recorded
     bool lit;                 // the frame being recorded has light and a scene with extent

@@ -44,7 +44,7 @@ void lpv_record_surfaces(struct lpv *lpv, struct gpu_cmd *cmd, const struct fram
     struct lpv_surface_cache *cache = &lpv->surfaces;
     const struct lpv_statics now = lpv_statics_of(lpv, view);
     const bool same_static = lpv_statics_equal(&cache->statics, &now);
-    const bool rest = now.moving_count == 0 || !lpv->history.moved;
+    const bool rest = now.moving_count == 0 || lpv->kept.still;
     if (lpv->options.bounces == 0) return;
     cache->statics = now;
     if (same_static && rest && cache->at_rest) return;

@@ -7,10 +7,6 @@
 
 #include "techniques/mrt/mrt_state.h"
 
-#include "core/hash.h"
-
-#include "techniques/common/light_hash.h"
-
 #include <string.h>
 
 #define OPTION(...) OPTION_ROW(struct mrt_options, __VA_ARGS__)
@@ -128,20 +124,14 @@ static void mrt_set_options(void *state, const void *options)
     struct mrt *mrt = state;
     option_copy_live(mrt->delta ? &technique_drt.options : &technique_mrt.options, options,
                      &mrt->options);
-    mrt->inputs.valid = false;
+    mrt->kept.known = false;
 }
 
 static void mrt_invalidate(void *state, uint32_t changes)
 {
     struct mrt *mrt = state;
     if (changes & CHANGED_OPTIONS) mrt->lit = false;
-    if (changes & ~(uint32_t)CHANGED_CAMERA) mrt->inputs.valid = false;
-}
-
-// Lights, sky and live options, in the units of the frame.
-static uint64_t hash_of_light(const struct mrt *mrt, const struct frame_view *view)
-{
-    return hash_bytes(&mrt->options, sizeof mrt->options, light_hash(view));
+    if (changes & ~(uint32_t)CHANGED_CAMERA) mrt->kept.known = false;
 }
 
 // The light map shows the light of a frame since which nothing has changed. Feedback converges over
@@ -150,22 +140,18 @@ static bool is_complete(const struct mrt *mrt)
 {
     const struct mrt_host_solver *cpu = &mrt->host_solver;
     if (mrt->options.feedback) return false;
-    return mrt->options.solver == MRT_SOLVER_GPU ||
-           (cpu->solved && cpu->newest >= mrt->inputs.since);
+    return mrt->options.solver == MRT_SOLVER_GPU || (cpu->solved && cpu->newest >= mrt->kept.since);
 }
 
-static void find_kept(struct mrt *mrt, const struct frame_view *view)
+// Whether this frame has the light of the one before.
+static bool is_kept(struct mrt *mrt, const struct frame_view *view)
 {
-    const struct mrt_inputs last = mrt->inputs;
-    const bool follows = last.valid && view->index > 0 && view->index == last.index + 1;
-    const uint64_t light = hash_of_light(mrt, view);
-    const bool same =
-        follows && !view->geometry_moved && !view->lights_changed && light == last.light;
-    mrt->inputs = (struct mrt_inputs){ true, view->index, same ? last.since : view->index, light };
-    mrt->kept = view->keep && same && is_complete(mrt);
-    if (follows || mrt->options.solver == MRT_SOLVER_GPU) return;
+    kept_update(&mrt->kept, view, view->light_hash);
+    const bool kept = view->keep && mrt->kept.same && is_complete(mrt);
+    if (mrt->kept.follows || mrt->options.solver == MRT_SOLVER_GPU) return kept;
     mrt_host_solver_forget(&mrt->host_solver);
     mrt->lit = false;
+    return kept;
 }
 
 // The weight of the last frame's irradiance in this frame's first bounce.
@@ -220,9 +206,8 @@ static void mrt_update(void *state, struct gpu_cmd *cmd, const struct frame_view
 {
     struct mrt *mrt = state;
     if (mrt->map.count == 0) return;
-    if (mrt_update_record(mrt, cmd)) mrt->inputs.valid = false;
-    find_kept(mrt, view);
-    if (!mrt->kept) {
+    if (mrt_update_record(mrt, cmd)) mrt->kept.known = false;
+    if (!is_kept(mrt, view)) {
         mrt_record_direct(&mrt->runtime, cmd, view, mrt->options.emitters);
         record_solution(mrt, cmd, view);
         mrt_record_light_map(&mrt->runtime, cmd);

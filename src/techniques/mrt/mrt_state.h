@@ -2,6 +2,7 @@
 #pragma once
 
 #include "techniques/mrt/dictionary/dictionary.h"
+#include "techniques/common/kept.h"
 #include "techniques/mrt/clutter/clutter_light.h"
 #include "techniques/mrt/clutter/delta_cache.h"
 #include "techniques/mrt/level/solver.h"
@@ -53,13 +54,7 @@ struct mrt {
     struct mrt_runtime runtime;
     struct mrt_host_solver host_solver; // MRT_SOLVER_CPU
     bool lit;                           // the irradiance of the last frame is valid
-    // What the light of the newest frame was computed from; kept: this frame's is the same.
-    struct mrt_inputs {
-        bool valid;
-        uint64_t index, since; // since: the first frame with this light
-        uint64_t light;        // hash
-    } inputs;
-    bool kept;
+    struct kept kept;
 };
 
 // ---- mrt_level.c

@@ -7,8 +7,6 @@
 #include "techniques/radiosity/radiosity_state.h"
 #include "scene/statics.h"
 
-#include "techniques/common/light_hash.h"
-
 #include "technique_shaders.h"
 
 #define OPTION(...) OPTION_ROW(struct radiosity_options, __VA_ARGS__)
@@ -145,29 +143,13 @@ static void set_options(void *state, const void *options)
 {
     struct radiosity *s = state;
     option_copy_live(&technique_radiosity.options, options, &s->options);
-    s->inputs.valid = false;
-    s->update.at_once = true;
+    s->kept.known = false;
 }
 
 static void invalidate(void *state, uint32_t changes)
 {
     struct radiosity *s = state;
-    if (changes & ~(uint32_t)CHANGED_CAMERA) s->inputs.valid = false;
-    if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL | CHANGED_OPTIONS)) s->update.at_once = true;
-}
-
-// Whether this frame has the light of the one before.
-static bool is_kept(struct radiosity *s, const struct frame_view *view)
-{
-    const uint64_t light = light_hash(view);
-    const bool next = view->index > 0 && view->index == s->inputs.index + 1;
-    const bool same = view->keep && s->inputs.valid && next && light == s->inputs.light &&
-                      !view->geometry_moved && !view->lights_changed;
-    if (!next) s->update.at_once = true;
-    s->inputs.valid = true;
-    s->inputs.index = view->index;
-    s->inputs.light = light;
-    return same;
+    if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL | CHANGED_OPTIONS)) s->kept.known = false;
 }
 
 static void follow(void *state, const struct scene_pose *pose, bool wait)
@@ -187,7 +169,9 @@ static void gather_probes(struct radiosity *s, struct gpu_cmd *cmd, const struct
 static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct radiosity *s = state;
-    if (!is_kept(s, view)) s->update.changed = true;
+    kept_update(&s->kept, view, view->light_hash);
+    s->update.at_once |= !s->kept.follows;
+    s->update.changed |= !(view->keep && s->kept.same);
     if (s->map.texel_count > 0)
         radiosity_record_update(s, cmd, view);
     else if (s->update.changed)

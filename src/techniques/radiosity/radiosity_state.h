@@ -1,6 +1,7 @@
 // The private state of radiosity.
 #pragma once
 
+#include "techniques/common/kept.h"
 #include "techniques/radiosity/probes/probes.h"
 #include "techniques/common/light_map/surface.h"
 #include "techniques/radiosity/radiosity_follow.h"
@@ -85,11 +86,7 @@ struct radiosity {
     struct radiosity_update update;
     struct radiosity_probes probes;
     struct radiosity_followed followed;
-    // What the light of the newest frame was computed from.
-    struct {
-        bool valid;
-        uint64_t index, light; // of the frame; hash
-    } inputs;
+    struct kept kept;
 };
 
 // ---- radiosity_upload.c, radiosity_factors.c, radiosity_places.c

@@ -184,7 +184,7 @@ static void vct_invalidate(void *state, uint32_t changes)
     struct vct *vct = state;
     if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL)) invalidate_voxels(vct);
     if (changes & CHANGED_OPTIONS) vct->light_valid = vct->bounced_valid = false;
-    vct->lit_index = VCT_NEVER;
+    vct->kept.lit = false;
     // The history follows lights and movable geometry.
     if (changes & ~(uint32_t)(CHANGED_LIGHT | CHANGED_MOVABLE)) forget_histories(vct);
 }
@@ -272,6 +272,7 @@ static void vct_update(void *state, struct gpu_cmd *cmd, const struct frame_view
     if (!vct->ready) return;
     vct->params = params_of(vct, view);
     vct->settles = vct->bounces_left > 0;
+    kept_update(&vct->kept, view, view->light_hash);
     begin_view(vct, view);
     record_voxels(vct, cmd, view);
     const bool bounced = !vct->options.occlusion && vct_record_bounce(vct, cmd, view);

@@ -1,6 +1,7 @@
 // The state of voxel cone tracing, shared by its folders.
 #pragma once
 
+#include "techniques/common/kept.h"
 #include "techniques/vct/clipmap/clipmap.h"
 #include "techniques/vct/cones/cones.h"
 #include "techniques/vct/cones/temporal.h"
@@ -25,8 +26,6 @@ struct vct_clip {
     bool revoxelized;                             // in this frame
     bool new_statics;                             // static_set is another one in this frame
 };
-
-#define VCT_NEVER (UINT64_MAX - 1) // no frame follows that index
 
 struct vct_overflow { // of voxel sets, reported some frames later
     struct gpu_readback readback;
@@ -85,12 +84,11 @@ struct vct {
     vec3s cone_axes[VCT_MAX_CONES];
 
     // Kept between frames.
+    struct kept kept;
     struct vct_params params; // of the frame being recorded, but for the placement of a grid
     bool ready;               // the grids are placed
     bool revoxelized;         // some voxels of this frame are new
     bool light_valid;         // the light volume is that of the previous frame, of this grid
-    uint64_t lit_index;       // of the last frame whose light it is
-    int lit_shadow_radius;    // texels, of that frame's shadows
     bool light_outdated;      // it has texels whose voxels are gone
     bool bounced_valid;       // bounced irradiance is that of `bounce_inputs`
     struct vct_bounce_inputs bounce_inputs;
@@ -100,6 +98,5 @@ struct vct {
     uint64_t draw_list;        // of scene_gpu, as is static_set
     uint64_t static_set;       // of the static voxels
     int moving_draws;          // in the previous frame
-    uint64_t voxelized_index;  // of the previous frame
     struct vct_overflow overflow;
 };

@@ -128,7 +128,7 @@ static float brightest(const float *e, size_t count)
 
 static bool is_kept(const struct lpv *lpv)
 {
-    return lpv->history.kept && (!lpv->coarser || is_kept(lpv->coarser));
+    return lpv->kept.same && (!lpv->coarser || is_kept(lpv->coarser));
 }
 
 TEST_GPU(lpv_equals_to_the_bit_that_without_earlier_frames)

@@ -23,7 +23,7 @@ bool lpv_record_geometry_scene(struct lpv *lpv, struct gpu_cmd *cmd, const struc
     const struct lpv_statics now = lpv_statics_of(lpv, view);
     const bool same_static = lpv_statics_equal(&lpv->geometry.statics, &now);
     lpv->geometry.statics = now;
-    if (same_static && (now.moving_count == 0 || !lpv->history.moved)) return false;
+    if (same_static && (now.moving_count == 0 || lpv->kept.still)) return false;
     if (!same_static) record_coverage(lpv, cmd, view->scene, lpv_is_static, v->static_coverage);
     record_coverage(lpv, cmd, view->scene, lpv_is_moving, v->moving_coverage);
     lpv_dispatch_cells(lpv, cmd, lpv->pipelines.geometry_faces, 1,

@@ -81,7 +81,7 @@ uint64_t vct_temporal_memory(uint32_t width, uint32_t height)
 
 void vct_temporal_invalidate(struct vct_temporal *t)
 {
-    t->known = false;
+    t->kept.known = false;
 }
 
 // ---- A frame ------------------------------------------------------------------------------------
@@ -95,12 +95,6 @@ static bool same_camera(const struct world_camera *a, const struct world_camera 
 {
     return same(a->eye, b->eye) && same(a->forward, b->forward) && same(a->up, b->up) &&
            a->vertical_fov_rad == b->vertical_fov_rad && a->near_m == b->near_m;
-}
-
-static bool light_changed(const struct vct_temporal *t, const struct frame_view *view)
-{
-    return view->geometry_moved ||
-           (!t->unlit && (view->lights_changed || !same(t->sky, view->constants->sky)));
 }
 
 // The image plane of the previous frame: the point at distance d along the view axis behind pixel
@@ -138,8 +132,9 @@ static void follow(struct vct_temporal *t, bool moves, bool settles)
 void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, int32_t most,
                         float clamp, bool settles)
 {
-    const bool known = t->known && !view->camera_cut && view->index == t->index + 1;
-    const bool moves = known && light_changed(t, view);
+    kept_update(&t->kept, view, view->light_hash);
+    const bool known = t->kept.follows && !view->camera_cut;
+    const bool moves = known && !(t->unlit ? t->kept.still : t->kept.same);
     t->still =
         known && !moves && !settles && same_camera(&t->camera, &view->camera) ? t->still + 1 : 0;
     t->params = (struct vct_history_params){ .known = known, .clamp = clamp };
@@ -148,10 +143,7 @@ void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, i
     follow(t, moves, known && settles);
     t->number = known ? t->number + (t->held == 0) : 0;
     previous_image_plane(&t->camera, view->width, view->height, &t->params);
-    t->known = true;
-    t->index = view->index;
     t->camera = view->camera;
-    t->sky = view->constants->sky;
     t->newest = 1 - t->newest;
 }
 

@@ -1,7 +1,7 @@
 // Temporal accumulation (Hong 2015, sec. 4.3).
 #pragma once
 
-#include "frame/frame.h"
+#include "techniques/common/kept.h"
 #include "techniques/vct/cones/cones_shared.h"
 
 struct vct_temporal {
@@ -13,13 +13,11 @@ struct vct_temporal {
     gpu_image surface[2];       // RG32F: depth and normal, see temporal.comp
     int newest;                 // index of this frame's history
     bool unlit;                 // visibility is filtered: independent of lights and radiance scale
-    bool known;                 // the history is valid
-    uint64_t index;             // of the previous frame
+    struct kept kept;           // known: the history is valid
     uint32_t number;            // rotations since the history began
     int held;                   // frames with the rotation of this one before it
     uint32_t still;             // frames since anything changed
     struct world_camera camera; // of the previous frame
-    vec3s sky;                  // of the previous frame, scaled
     struct vct_history_params params; // of the frame being recorded
 };
 

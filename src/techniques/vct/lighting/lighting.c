@@ -45,10 +45,7 @@ static void light_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct fram
 static bool same_light(const struct vct *vct, const struct frame_view *view)
 {
     if (!view->keep || !vct->light_valid || vct->revoxelized) return false;
-    if (vct->options.occlusion) return true;
-    return view->index == vct->lit_index + 1 && !view->lights_changed && view->maps_drawn == 0 &&
-           view->shadow_radius == vct->lit_shadow_radius &&
-           view->constants->previous_scale_ratio == 1.0f;
+    return vct->options.occlusion || (vct->kept.same && view->maps_drawn == 0);
 }
 
 void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
@@ -56,8 +53,6 @@ void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
 {
     if (bounced || !same_light(vct, view)) light_voxels(vct, cmd, view);
     vct->light_valid = true;
-    vct->lit_index = view->index;
-    vct->lit_shadow_radius = view->shadow_radius;
 }
 
 // ---- Bounced light ------------------------------------------------------------------------------

@@ -168,12 +168,12 @@ static void voxelize(struct vct *vct, const struct vct_clip *clip, struct gpu_cm
 static void voxelize_level(struct vct *vct, struct vct_clip *clip, struct gpu_cmd *cmd,
                            const struct frame_view *view)
 {
-    const bool moved = view->geometry_moved || view->index != vct->voxelized_index + 1;
     const int moving = view->scene->dynamic_count;
     clip->new_statics = !clip->static_valid || view->scene->static_set != vct->static_set;
     if (clip->new_statics) voxelize(vct, clip, cmd, view, &clip->static_set, false);
     // A set whose last draw is gone is emptied once.
-    clip->revoxelized = clip->new_statics || (moving > 0 && moved) || moving != vct->moving_draws;
+    clip->revoxelized =
+        clip->new_statics || (moving > 0 && !vct->kept.still) || moving != vct->moving_draws;
     if (clip->revoxelized) voxelize(vct, clip, cmd, view, &clip->dynamic_set, true);
     clip->static_valid = true;
 }
@@ -183,5 +183,4 @@ void vct_voxelize(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view 
     for (int i = 0; i < vct->clip_count; i++) voxelize_level(vct, &vct->clips[i], cmd, view);
     vct->moving_draws = view->scene->dynamic_count;
     vct->static_set = view->scene->static_set;
-    vct->voxelized_index = view->index;
 }
