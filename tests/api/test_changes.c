@@ -348,6 +348,41 @@ TEST(radiosity_warns_once_of_changes_that_need_another_bake)
     fixture_close(&s);
 }
 
+// The camera moves with it: each pixel shows the same point of the cube. Emissive surfaces and the
+// sky have no shadow maps, which would follow.
+TEST(static_geometry_that_moves_keeps_its_light_of_radiosity)
+{
+    static const char gi[] = "radiosity:texels=16384,rays=64,sources=16";
+    static const float before_m[3] = { 0, 1, 1.5f }, after_m[3] = { -0.3f, 2.2f, 0.4f };
+    const struct ag_technique_info info = { .needs_bake = true };
+    struct renderer_fixture s = fixture_open_lit("none");
+    const struct cube cube = add_cube(s.scene, 1.0f, false);
+    assert_int_equal(ag_scene_remove_lights(s.scene), AG_OK);
+    struct ag_bake *bake = fixture_bake(&s, gi, &info);
+    struct ag_image *irradiance[2];
+    ag_renderer_destroy(s.renderer);
+    s.renderer = new_renderer(&s, gi, bake);
+    ag_bake_destroy(bake);
+    for (int i = 0; i < 2; i++) {
+        const float angle_rad = 0.3f + 0.5f * (float)i, *at = i == 0 ? before_m : after_m;
+        const float eye[3] = { at[0] + 1.5f * sinf(angle_rad - 0.6f), at[1] + 0.6f,
+                               at[2] + 1.5f * cosf(angle_rad - 0.6f) };
+        float matrix[16];
+        placed(matrix, angle_rad, at[0], at[1], at[2]);
+        if (i == 1)
+            assert_int_equal(ag_scene_set_instance_transform(s.scene, cube.instance, matrix),
+                             AG_OK);
+        assert_int_equal(ag_scene_look_at(s.scene, eye, at, 0.3f, &s.frame.camera), AG_OK);
+        ag_image_destroy(s.context, color_of(&s, s.renderer));
+        irradiance[i] = fixture_read(&s, "irradiance");
+    }
+    const double change = difference(irradiance[0], irradiance[1]);
+    print_message("irradiance of the moved cube changes by %.2g\n", change);
+    CHECK(change < 1e-4);
+    for (int i = 0; i < 2; i++) ag_image_destroy(s.context, irradiance[i]);
+    fixture_close(&s);
+}
+
 TEST(two_renderers_of_one_scene_follow_it)
 {
     struct renderer_fixture s = fixture_open("lpv", NULL);

@@ -47,69 +47,10 @@ static void *run(void *user)
     return NULL;
 }
 
-// ---- where instances were
-
-struct mrt_place {
-    int mesh; // −1: none
-    bool deformed;
-    mat4s world_from_mesh;
-};
-
-static void free_places(struct mrt_update *u, struct mrt_places *places)
-{
-    host_free(&u->host, places->at);
-    host_free(&u->host, places->moves);
-    *places = (struct mrt_places){ 0 };
-}
-
-// Of the snapshot.
-static bool note_places(struct mrt_update *u, struct mrt_places *out)
-{
-    const struct scene *scene = &u->snapshot.scene;
-    free_places(u, out);
-    out->at = host_alloc(&u->host, (size_t)scene->instance_count, sizeof *out->at);
-    out->moves = host_alloc(&u->host, (size_t)scene->instance_count, sizeof *out->moves);
-    if (!out->at || !out->moves) return false;
-    out->count = scene->instance_count;
-    for (int i = 0; i < out->count; i++) {
-        struct mrt_place *at = &out->at[i];
-        at->mesh = scene->instances[i].mesh;
-        if (at->mesh < 0) continue;
-        at->deformed = u->snapshot.pose.deformed[i].positions;
-        at->world_from_mesh = pose_world_from_instance(&u->snapshot.pose, i);
-    }
-    return true;
-}
-
-static struct light_map_move move_of(mat4s m)
-{
-    return (struct light_map_move){ vec3_xyz(m.col[0]), vec3_xyz(m.col[1]), vec3_xyz(m.col[2]),
-                                    vec3_xyz(m.col[3]) };
-}
-
-// Whether an instance is elsewhere in the frame.
-static bool find_move(const struct mrt_update *u, int i)
-{
-    const struct mrt_place *was = &u->places.at[i];
-    const struct scene *scene = u->pose->scene;
-    struct light_map_move *move = &u->places.moves[i];
-    *move = (struct light_map_move){ 0 };
-    if (i >= scene->instance_count || scene->instances[i].mesh != was->mesh || was->mesh < 0)
-        return was->mesh >= 0;
-    *move = move_of(glms_mat4_identity());
-    if (was->deformed) return false; // the map has its triangles as they were
-    const mat4s now = pose_world_from_instance(u->pose, i);
-    if (memcmp(&now, &was->world_from_mesh, sizeof now) == 0) return false;
-    *move = move_of(glms_mat4_mul(was->world_from_mesh, glms_mat4_inv(now)));
-    return true;
-}
-
-// Pixels of a moved object find the light that it had at the same point of its surface.
 static void find_moves(struct mrt *mrt)
 {
     struct mrt_update *u = &mrt->update;
-    bool moved = false;
-    for (int i = 0; i < u->places.count; i++) moved |= find_move(u, i);
+    const bool moved = light_map_find_moves(&u->places, u->pose);
     mrt->runtime.clutter.map.surfaces.moves = moved ? u->places.moves : NULL;
 }
 
@@ -172,7 +113,8 @@ static void join(struct mrt *mrt)
     u->next.gpu = mrt->gpu;
     u->next.host = mrt->host;
     u->next.linear = mrt->runtime.linear;
-    if (!note_places(u, &u->next_places) || !mrt_plan_create(&u->plan, &u->next)) {
+    if (!light_map_places_init(&u->next_places, &u->host, &u->snapshot.pose) ||
+        !mrt_plan_create(&u->plan, &u->next)) {
         fail(mrt, "out of memory");
         return;
     }
@@ -253,9 +195,9 @@ bool mrt_update_record(struct mrt *mrt, struct gpu_cmd *cmd)
     mrt_runtime_finish(&mrt->runtime);
     mrt->runtime = u->next;
     u->next = (struct mrt_runtime){ 0 };
-    free_places(u, &u->places);
+    light_map_places_finish(&u->places, &u->host);
     u->places = u->next_places;
-    u->next_places = (struct mrt_places){ 0 };
+    u->next_places = (struct light_map_places){ 0 };
     find_moves(mrt);
     mrt_parts_replace(&mrt->parts, u->parts);
     u->swapped = true;
@@ -273,7 +215,8 @@ bool mrt_update_init(struct mrt *mrt, const struct scene_pose *pose)
     u->host.user = u;
     u->snapshot.host = &u->host;
     u->parts = host_alloc(&u->host, 1, sizeof *u->parts);
-    return (u->parts && scene_snapshot_take(&u->snapshot, pose) && note_places(u, &u->places) &&
+    return (u->parts && scene_snapshot_take(&u->snapshot, pose) &&
+            light_map_places_init(&u->places, &u->host, &u->snapshot.pose) &&
             mrt_delta_cache_init(&u->cache, &u->host, mrt->map.count)) ||
            mrt_update_pass_on(mrt);
 }
@@ -294,8 +237,8 @@ void mrt_update_finish(struct mrt *mrt)
         pthread_join(u->thread, NULL);
     }
     drop(mrt);
-    free_places(u, &u->places);
-    free_places(u, &u->next_places);
+    light_map_places_finish(&u->places, &u->host);
+    light_map_places_finish(&u->next_places, &u->host);
     host_free(&u->host, u->parts);
     host_free(&u->host, u->changed);
     mrt_delta_cache_finish(&u->cache);

@@ -7,6 +7,7 @@
 
 #include "scene/snapshot.h"
 
+#include "techniques/common/light_map/moves.h"
 #include "techniques/mrt/clutter/delta_cache.h"
 #include "techniques/mrt/runtime/objects.h"
 
@@ -17,13 +18,6 @@ struct mrt;
 struct mrt_parts;
 
 enum mrt_update_state { MRT_IDLE, MRT_RUNNING, MRT_COPYING };
-
-// Where instances were when operators were made, and the way back from where they are.
-struct mrt_places {
-    struct mrt_place *at;
-    struct light_map_move *moves;
-    int count;
-};
 
 struct mrt_update {
     // Of the thread. It has libc's memory: an allocator of the program is called on its thread
@@ -41,10 +35,10 @@ struct mrt_update {
     struct mrt_parts *parts; // being made
     struct mrt_runtime next;
     struct mrt_plan plan;
-    struct mrt_places places, next_places;
-    const struct scene_pose *pose; // of the frame
-    double seconds;                // the last one took
-    bool *changed;                 // [changed_count]: instances, since the operators before
+    struct light_map_places places, next_places; // of the operators, of those being copied
+    const struct scene_pose *pose;               // of the frame
+    double seconds;                              // the last one took
+    bool *changed; // [changed_count]: instances, since the operators before
     int changed_count;
     bool said_walls, said_failure;
     bool swapped; // this frame has other operators than the last

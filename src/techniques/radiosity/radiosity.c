@@ -157,6 +157,7 @@ static void follow(void *state, const struct scene_pose *pose, bool wait)
     struct radiosity *s = state;
     (void)wait;
     radiosity_followed_update(&s->followed, pose);
+    s->tables.surfaces.moves = s->followed.any_moved ? s->followed.places.moves : NULL;
 }
 
 static void gather_probes(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view)

@@ -4,29 +4,17 @@
 
 #include <string.h>
 
-struct radiosity_baked {
-    bool is_static; // in the bake
-    int mesh, material;
-    uint64_t added, deformed; // of the instance; hash of its vertices where they are deformed
-    mat4s world_from_mesh;
-};
+// In the bake.
+static bool is_static(const struct radiosity_followed *f, uint32_t i)
+{
+    return i < f->count && f->places.at[i].mesh >= 0;
+}
 
 static uint64_t deformed_hash(const struct scene_pose *pose, int i)
 {
     const vec3s *positions = pose->deformed[i].positions;
     const size_t count = scene_mesh_of(pose->scene, i)->vertex_count;
     return positions ? hash_bytes(positions, count * sizeof *positions, 0) : 0;
-}
-
-static struct radiosity_baked baked_of(const struct scene_pose *pose, int i)
-{
-    const struct instance *it = &pose->scene->instances[i];
-    return (struct radiosity_baked){ .is_static = true,
-                                     .mesh = it->mesh,
-                                     .material = scene_mesh_of(pose->scene, i)->material,
-                                     .added = it->added,
-                                     .deformed = deformed_hash(pose, i),
-                                     .world_from_mesh = pose_world_from_instance(pose, i) };
 }
 
 bool radiosity_followed_init(struct radiosity_followed *out, struct host *host,
@@ -37,11 +25,12 @@ bool radiosity_followed_init(struct radiosity_followed *out, struct host *host,
                                         .count = count,
                                         .started = pose->scene->revisions.newest,
                                         .revision = UINT64_MAX };
-    out->baked = host_alloc(host, count, sizeof *out->baked);
+    out->deformed = host_alloc(host, count, sizeof *out->deformed);
     out->lit = host_alloc(host, count / 32 + 1, sizeof *out->lit);
-    if (!out->baked || !out->lit) return false;
+    if (!out->deformed || !out->lit || !light_map_places_init(&out->places, host, &statics->pose))
+        return false;
     for (uint32_t i = 0; i < count; i++)
-        if (statics->scene.instances[i].mesh >= 0) out->baked[i] = baked_of(pose, (int)i);
+        if (is_static(out, i)) out->deformed[i] = deformed_hash(pose, (int)i);
     radiosity_followed_update(out, pose);
     return true;
 }
@@ -49,24 +38,20 @@ bool radiosity_followed_init(struct radiosity_followed *out, struct host *host,
 void radiosity_followed_finish(struct radiosity_followed *f)
 {
     if (!f->host) return;
-    host_free(f->host, f->baked);
+    host_free(f->host, f->deformed);
+    light_map_places_finish(&f->places, f->host);
     host_free(f->host, f->lit);
     *f = (struct radiosity_followed){ 0 };
 }
 
 // ---- changes
 
-static bool is_in_place(const struct radiosity_followed *f, const struct scene_pose *pose,
-                        uint32_t i)
+// Whether its triangles are those of the light map, wherever they are.
+static bool has_map(const struct radiosity_followed *f, const struct scene_pose *pose, uint32_t i)
 {
-    const struct scene *scene = pose->scene;
-    const struct radiosity_baked *was = &f->baked[i];
-    const struct instance *is = &scene->instances[i];
-    if (is->mesh < 0 || is->mesh != was->mesh || is->added != was->added) return false;
-    if (scene->meshes[is->mesh].revision > f->started) return false;
-    const mat4s now = pose_world_from_instance(pose, (int)i);
-    return memcmp(&now, &was->world_from_mesh, sizeof now) == 0 &&
-           deformed_hash(pose, (int)i) == was->deformed;
+    if (light_map_is_gone(&f->places, (int)i)) return false;
+    return scene_mesh_of(pose->scene, (int)i)->revision <= f->started &&
+           deformed_hash(pose, (int)i) == f->deformed[i];
 }
 
 static void say(struct radiosity_followed *f, bool *said, const char *what)
@@ -77,17 +62,17 @@ static void say(struct radiosity_followed *f, bool *said, const char *what)
 
 static void check_static(struct radiosity_followed *f, const struct scene_pose *pose, uint32_t i)
 {
-    const struct radiosity_baked *was = &f->baked[i];
-    if (!is_in_place(f, pose, i)) {
-        f->lit[i / 32] |= 1u << i % 32;
+    const bool mapped = has_map(f, pose, i);
+    if (!mapped) f->lit[i / 32] |= 1u << i % 32;
+    if (!mapped || f->places.at[i].moved)
         say(f, &f->said_moved,
-            "static geometry changed: probes light it, but the light that it blocks and reflects "
-            "stays that of the bake; mark as movable what moves");
-    } else if (pose->scene->materials[was->material].revision > f->started) {
+            "static geometry changed: what moved keeps the light of the bake, probes light the "
+            "rest, but the light that both block and reflect stays; mark as movable what moves");
+    else if (pose->scene->materials[scene_mesh_of(pose->scene, (int)i)->material].revision >
+             f->started)
         say(f, &f->said_material,
             "materials of static geometry changed: the light that it reflects and emits stays "
             "that of the bake");
-    }
 }
 
 static void check_other(struct radiosity_followed *f, const struct scene *scene, uint32_t i)
@@ -106,9 +91,10 @@ void radiosity_followed_update(struct radiosity_followed *f, const struct scene_
     if (scene->revisions.newest == f->revision) return;
     f->revision = scene->revisions.newest;
     f->any_lit = false;
+    f->any_moved = light_map_find_moves(&f->places, pose);
     memset(f->lit, 0, (f->count / 32 + 1) * sizeof *f->lit);
     for (uint32_t i = 0; i < (uint32_t)scene->instance_count; i++) {
-        if (i < f->count && f->baked[i].is_static)
+        if (is_static(f, i))
             check_static(f, pose, i);
         else
             check_other(f, scene, i);

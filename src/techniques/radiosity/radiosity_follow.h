@@ -1,15 +1,17 @@
-// Which instances are where they were baked. The others have the light of probes.
+// Which instances are those that were baked, and where. The others have the light of probes.
 #pragma once
 
 #include "scene/statics.h"
 
-struct radiosity_baked;
+#include "techniques/common/light_map/moves.h"
 
 struct radiosity_followed {
     struct host *host;
-    struct radiosity_baked *baked; // [count] at the start
+    struct light_map_places places; // at the start, of static ones
+    uint64_t *deformed;             // [count] hashes of their vertices where these are deformed
     uint32_t count;
-    uint32_t *lit;    // a bit for each of these: it is not in the light map, or elsewhere
+    uint32_t *lit;    // a bit for each of these: it is not in the light map
+    bool any_moved;   // of those that are
     bool any_lit;     // one of these that is in use, or a later one
     uint64_t started; // revisions of the scene
     uint64_t revision;

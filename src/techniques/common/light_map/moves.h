@@ -1,0 +1,36 @@
+// Where instances were when a light map was made: pixels of a moved instance find the light that it
+// had at the same point of its surface.
+#pragma once
+
+#include "scene/pose.h"
+
+#include "techniques/common/light_map/surface_shared.h"
+
+struct light_map_place {
+    int mesh; // −1: none
+    bool deformed;
+    bool moved;     // it is elsewhere in the newest pose, or gone
+    uint64_t added; // of the instance
+    mat4s world_from_mesh;
+};
+
+struct light_map_places {
+    struct light_map_place *at;   // [count]
+    struct light_map_move *moves; // [count] of the newest pose
+    int count;                    // of instances
+};
+
+// Of the pose of a map, in place of those of another one or of zero, which light_map_places_finish
+// accepts. false: no memory.
+bool light_map_places_init(struct light_map_places *out, struct host *host,
+                           const struct scene_pose *pose);
+void light_map_places_finish(struct light_map_places *places, struct host *host);
+// Writes the moves of a later pose of the scene; whether there are any. The row of an instance that
+// is not there any more, or has another mesh, is 0.
+bool light_map_find_moves(struct light_map_places *places, const struct scene_pose *pose);
+
+// Whether an instance of the map is not there any more.
+static inline bool light_map_is_gone(const struct light_map_places *places, int instance)
+{
+    return glms_vec3_norm2(places->moves[instance].x) == 0.0f;
+}
