@@ -402,6 +402,13 @@ static bool set_clear(struct arguments *a, const char *value, const char **why)
     return true;
 }
 
+static bool set_all(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->all = true;
+    return true;
+}
+
 static bool set_layer(struct arguments *a, const char *value, const char **why)
 {
     (void)why;

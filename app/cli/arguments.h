@@ -61,8 +61,8 @@ struct arguments {
     const char *report;       // NULL: none
     const char *lightmap;     // a folder; NULL: none
     bool denoise;
-    // cache
-    bool clear;
+    bool clear; // cache
+    bool all;   // list
     // compare
     const char *methods[MAX_METHODS]; // each a --gi
     int method_count;

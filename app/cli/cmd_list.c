@@ -39,8 +39,9 @@ static json_t *choices_json(const char *choices)
 
 static json_t *option_json(const struct ag_option_info *option)
 {
-    json_t *object = json_pack("{s:s, s:s, s:s, s:s}", "name", option->name, "type", option->type,
-                               "effect", option->effect, "help", option->help);
+    json_t *object =
+        json_pack("{s:s, s:s, s:s, s:b, s:s}", "name", option->name, "type", option->type, "effect",
+                  option->effect, "expert", option->expert, "help", option->help);
     if (!object) return NULL;
     char name[64];
     if (option_is(option, "choice")) {
@@ -167,10 +168,27 @@ static void print_option(const struct ag_option_info *o)
     print_wrapped(used < HELP_COLUMN ? HELP_COLUMN : used + 1, text);
 }
 
-static void print_options(option_getter *get, int owner)
+// Returns how many there are.
+static int print_options_of(option_getter *get, int owner, bool expert, bool print)
 {
     struct ag_option_info option;
-    for (int i = 0; get(owner, i, &option); i++) print_option(&option);
+    int count = 0;
+    for (int i = 0; get(owner, i, &option); i++) {
+        if (option.expert != expert) continue;
+        if (print) print_option(&option);
+        count++;
+    }
+    return count;
+}
+
+// Those for experts come last, or as a count. name: of the owner, for `list`; "": none.
+static void print_options(option_getter *get, int owner, const char *name, bool all)
+{
+    print_options_of(get, owner, false, true);
+    const int experts = print_options_of(get, owner, true, all);
+    if (experts > 0 && !all)
+        printf("    and %d for experts: afterglow list%s%s --all\n", experts, name[0] ? " " : "",
+               name);
 }
 
 // Two techniques may have the same options with other defaults.
@@ -237,8 +255,8 @@ static void print_debug_views(int technique)
     }
 }
 
-// whole: with the options that an earlier technique has too.
-static void print_technique(int technique, const struct ag_technique_info *t, bool whole)
+// whole: with the options that an earlier technique has too; all: with those for experts.
+static void print_technique(int technique, const struct ag_technique_info *t, bool whole, bool all)
 {
     printf("\n%s: %s (%s)\n", t->name, t->title, t->role);
     if (t->paper && t->paper[0] && strcmp(t->paper, "none") != 0) {
@@ -253,30 +271,30 @@ static void print_technique(int technique, const struct ag_technique_info *t, bo
     if (before >= 0)
         print_other_defaults(technique, before);
     else
-        print_options(ag_technique_option_get, technique);
+        print_options(ag_technique_option_get, technique, t->name, all);
     print_presets(technique);
     if (before < 0 || !debug_views_are_equal(before, technique)) print_debug_views(technique);
 }
 
-static void print_techniques(void)
+static void print_techniques(bool all)
 {
     struct ag_technique_info t;
     printf("Techniques: --gi SOURCE[+VISIBILITY], options as NAME:OPTION=VALUE,OPTION=VALUE\n"
            "Options are listed with their default: OPTION=DEFAULT\n");
-    for (int i = 0; ag_technique_get(i, &t); i++) print_technique(i, &t, false);
+    for (int i = 0; ag_technique_get(i, &t); i++) print_technique(i, &t, false, all);
 }
 
-static void print_scene(int i, const struct ag_builtin_scene_info *scene)
+static void print_scene(int i, const struct ag_builtin_scene_info *scene, bool all)
 {
     printf("\n@%s: %s\n", scene->name, scene->title);
-    print_options(ag_builtin_scene_option_get, i);
+    print_options(ag_builtin_scene_option_get, i, scene->name, all);
 }
 
-static void print_scenes(void)
+static void print_scenes(bool all)
 {
     struct ag_builtin_scene_info scene;
     printf("\nBuilt-in scenes: @NAME or @NAME:OPTION=VALUE,OPTION=VALUE\n");
-    for (int i = 0; ag_builtin_scene_get(i, &scene); i++) print_scene(i, &scene);
+    for (int i = 0; ag_builtin_scene_get(i, &scene); i++) print_scene(i, &scene, all);
 }
 
 static void print_devices(const struct ag_device_info *devices, int count)
@@ -308,7 +326,7 @@ static enum status unknown_name(const char *wanted)
         "unknown name %s: it is neither a technique nor a built-in scene (afterglow list)", wanted);
 }
 
-static enum status list_one(const char *wanted, bool json)
+static enum status list_one(const char *wanted, bool json, bool all)
 {
     struct ag_technique_info t;
     struct ag_builtin_scene_info scene;
@@ -316,13 +334,13 @@ static enum status list_one(const char *wanted, bool json)
     for (int i = 0; name == wanted && ag_technique_get(i, &t); i++) {
         if (strcmp(t.name, name) != 0) continue;
         if (json) return json_print(technique_json(i, &t));
-        print_technique(i, &t, true);
+        print_technique(i, &t, true, all);
         return DONE;
     }
     for (int i = 0; ag_builtin_scene_get(i, &scene); i++) {
         if (strcmp(scene.name, name) != 0) continue;
         if (json) return json_print(scene_json(i, &scene));
-        print_scene(i, &scene);
+        print_scene(i, &scene, all);
         return DONE;
     }
     return unknown_name(wanted);
@@ -330,7 +348,8 @@ static enum status list_one(const char *wanted, bool json)
 
 static enum status list(const struct arguments *arguments)
 {
-    if (arguments->positional_count > 0) return list_one(arguments->positional[0], arguments->json);
+    if (arguments->positional_count > 0)
+        return list_one(arguments->positional[0], arguments->json, arguments->all);
     struct session session;
     struct ag_device_info devices[MAX_DEVICES];
     int count = 0;
@@ -345,10 +364,10 @@ static enum status list(const struct arguments *arguments)
     if (arguments->json) {
         status = list_json(devices, count);
     } else {
-        print_techniques();
+        print_techniques(arguments->all);
         printf("\nFrame options: --frame-options OPTION=VALUE,OPTION=VALUE\n\n");
-        print_options(frame_option, 0);
-        print_scenes();
+        print_options(frame_option, 0, "", arguments->all);
+        print_scenes(arguments->all);
         print_devices(devices, count);
     }
     session_end(&session);
@@ -363,9 +382,11 @@ const struct command command_list = {
     .summary = "list techniques with their options, built-in scenes and devices",
     .text = "Lists techniques for --gi with options, presets and debug views,\n"
             "built-in scenes with options, frame options, and the devices of this machine.\n"
-            "With NAME, of a technique or built-in scene, only that one.\n",
+            "With NAME, of a technique or built-in scene, only that one.\n"
+            "Options for experts, such as those measured without gain, need --all.\n",
     .examples = "  afterglow list\n"
                 "  afterglow list lpv\n"
+                "  afterglow list mrt --all\n"
                 "  afterglow list @maze\n"
                 "  afterglow list --json | jq '.techniques[].name'\n",
     .run = list,

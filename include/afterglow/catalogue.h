@@ -16,7 +16,8 @@ struct ag_option_info {
     const char *unit;
     const char *effect; ///< of a change: "live", "invalidate", "resize", "recreate" or "rebake"
     const char *help;
-    uint64_t reserved[4]; ///< 0; see ABI in types.h
+    bool expert; ///< without gain in measurements, for comparisons, or of a method's inside
+    uint64_t reserved[3]; ///< 0; see ABI in types.h
 };
 
 struct ag_technique_info {

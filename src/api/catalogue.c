@@ -50,7 +50,8 @@ static bool option_get(const struct option_table *table, int index, struct ag_op
                                     .max = row->max,
                                     .unit = row->unit,
                                     .effect = effect_name(row->effect),
-                                    .help = row->help };
+                                    .help = row->help,
+                                    .expert = row->expert };
     return true;
 }
 

@@ -44,6 +44,9 @@ enum option_type {
 
 // What a running technique must do when the option changes, in ascending order.
 enum option_effect { LIVE, INVALIDATE, RESIZE, RECREATE, REBAKE };
+// Beside an effect, as in LIVE | EXPERT: the option was measured without gain, compares with a
+// paper or tunes a method's inside; lists show it on demand.
+enum { EXPERT = 1 << 8 };
 
 struct option_row {
     enum option_type type;
@@ -51,6 +54,7 @@ struct option_row {
     double initial, min, max;
     const char *unit; // for choice: "first|second|…"
     enum option_effect effect;
+    bool expert;
     const char *help;
     size_t offset;
 };
@@ -77,7 +81,8 @@ struct option_table {
       .min = (min_),                                                                               \
       .max = (max_),                                                                               \
       .unit = (unit_),                                                                             \
-      .effect = (effect_),                                                                         \
+      .effect = (enum option_effect)((effect_) & ~EXPERT),                                         \
+      .expert = ((effect_)&EXPERT) != 0,                                                           \
       .help = (help_),                                                                             \
       .offset = offsetof(struct_type, name_) },
 #define OPTION_TABLE(struct_type, rows_, aliases_)                                                 \

@@ -116,6 +116,7 @@ TEST(list_names_every_technique_scene_and_layer)
 {
     json_t *list = run_json(run_expect(0, "list --json --quiet", NULL));
     bool has_none = false, has_cornell = false;
+    int experts = 0;
     json_t *item, *option;
     size_t i, k;
     json_array_foreach(json_object_get(list, "techniques"), i, item)
@@ -125,6 +126,8 @@ TEST(list_names_every_technique_scene_and_layer)
         {
             CHECK(text(option, "help")[0] && text(option, "name")[0]);
             CHECK(json_object_get(option, "default"));
+            CHECK(json_is_boolean(json_object_get(option, "expert")));
+            experts += json_is_true(json_object_get(option, "expert"));
             if (strcmp(text(option, "type"), "int") == 0 ||
                 strcmp(text(option, "type"), "float") == 0)
                 CHECK(number(option, "min") <= number(option, "max"));
@@ -134,11 +137,35 @@ TEST(list_names_every_technique_scene_and_layer)
     }
     json_array_foreach(json_object_get(list, "scenes"), i, item) has_cornell |=
         strcmp(text(item, "name"), "@cornell") == 0;
-    CHECK(has_none && has_cornell);
+    CHECK(has_none && has_cornell && experts > 20);
     CHECK(json_array_size(json_object_get(list, "layers")) >= 10);
     CHECK(json_is_array(json_object_get(list, "devices")));
     CHECK(json_array_size(json_object_get(list, "frame_options")) >= 1);
     json_decref(list);
     const char *out = run_expect(0, "list --quiet", NULL)->out;
     CHECK(strstr(out, "Techniques") && strstr(out, "@cornell") && strstr(out, "lpv"));
+}
+
+TEST(options_for_experts_are_listed_with_all_and_counted_without)
+{
+    static const char *const commands[] = { "list radiosity", "list --quiet" };
+    for (int i = 0; i < 2; i++) {
+        char all[64];
+        snprintf(all, sizeof all, "%s --all", commands[i]);
+        const char *out = run_expect(0, commands[i], NULL)->out;
+        CHECK(strstr(out, "    texels=") && !strstr(out, "    seams="));
+        CHECK(strstr(out, "    and 3 for experts: afterglow list radiosity --all\n"));
+        out = run_expect(0, all, NULL)->out;
+        CHECK(!strstr(out, "for experts"));
+        CHECK(strstr(out, "    texels=") && strstr(out, "    texels=") < strstr(out, "    seams="));
+    }
+    json_t *technique = run_json(run_expect(0, "list radiosity --json", NULL));
+    json_t *option;
+    size_t i;
+    json_array_foreach(json_object_get(technique, "options"), i, option)
+        CHECK(json_is_true(json_object_get(option, "expert")) ==
+              (strcmp(text(option, "name"), "seams") == 0 ||
+               strcmp(text(option, "name"), "smooth") == 0 ||
+               strcmp(text(option, "name"), "cluster") == 0));
+    json_decref(technique);
 }

@@ -338,6 +338,14 @@ TEST(numbers_have_a_dot_in_every_locale)
     CHECK_STRING(text, "2.5");
 }
 
+TEST(an_option_for_experts_has_its_effect)
+{
+    const struct option_row *steps = option_find(&table, "steps"),
+                            *dim = option_find(&table, "dim");
+    CHECK(steps->expert && steps->effect == INVALIDATE);
+    CHECK(!dim->expert && dim->effect == RESIZE);
+}
+
 TEST(difference_is_the_strongest_effect)
 {
     struct options a = defaults(), b = a;
