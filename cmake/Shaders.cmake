@@ -83,17 +83,17 @@ function(ag_shaders_for target header folder)
     list(TRANSFORM defines PREPEND -D)
     set(inc ${generated}/${name}.inc)
     set(spv ${PROJECT_BINARY_DIR}/shaders/${name}.spv)
+    # The words of the .spv file, as text for the C compiler.
     add_custom_command(OUTPUT ${inc} ${spv}
       COMMAND ${GLSLC} -fshader-stage=${stage} --target-env=vulkan1.3 -Werror -DAG_GLSL=1 ${defines}
-              -I${PROJECT_SOURCE_DIR}/src -MD -MF ${inc}.d -MT ${inc} -mfmt=c -o ${inc} ${shader}
-      COMMAND ${GLSLC} -fshader-stage=${stage} --target-env=vulkan1.3 -DAG_GLSL=1 ${defines}
-              -I${PROJECT_SOURCE_DIR}/src -o ${spv} ${shader}
+              -I${PROJECT_SOURCE_DIR}/src -MD -MF ${inc}.d -MT ${inc} -o ${spv} ${shader}
+      COMMAND od -An -v -tx4 -w64 ${spv} | sed "s/ \\([0-9a-f]*\\)/0x\\1,/g" > ${inc}
       DEPENDS ${shader} DEPFILE ${inc}.d COMMENT "GLSL ${name}" VERBATIM)
     list(APPEND words ${inc})
     list(APPEND spirv ${spv})
     string(APPEND declarations "extern const struct gpu_shader shader_${symbol};\n")
     string(APPEND definitions
-      "static const uint32_t ${symbol}_words[] =\n#include \"${name}.inc\"\n;\n"
+      "static const uint32_t ${symbol}_words[] = {\n#include \"${name}.inc\"\n};\n"
       "const struct gpu_shader shader_${symbol} = { \"${name}\", ${symbol}_words, sizeof ${symbol}_words / 4 };\n")
   endforeach()
   file(MAKE_DIRECTORY ${generated} ${PROJECT_BINARY_DIR}/shaders)
