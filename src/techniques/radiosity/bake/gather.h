@@ -1,7 +1,7 @@
 // Light that reaches a texel, by rays: form factors of the clusters, the sky, emissive surfaces.
 #pragma once
 
-#include "trace/trace_scene.h"
+#include "trace/texels/light.h"
 
 #include "techniques/radiosity/radiosity_map.h"
 #include "scene/statics.h"
@@ -23,12 +23,6 @@ bool radiosity_scene_init(struct radiosity_scene *scene, struct host *host,
                           struct radiosity_map *map);
 void radiosity_scene_finish(struct radiosity_scene *scene);
 
-// Irradiance on the texel, and the integral of radiance times direction over its hemisphere (the
-// vector irradiance), whose component along the normal is that irradiance.
-struct radiosity_light {
-    float irradiance, vector[3];
-};
-
 // Sums over rays: the share of those that meet a cluster, and of a texel the components of their
 // directions over the cosine along its tangents (basis_of); of a probe their directions.
 struct radiosity_factor {
@@ -39,28 +33,13 @@ struct radiosity_gather {
     struct radiosity_factor *factor; // [clusters], in shares of 1
     uint32_t *met;                   // clusters whose factor is not 0, in the order of the rays
     uint32_t met_count;
-    struct radiosity_light sky;        // of radiance 1
-    struct radiosity_light emitted[3]; // by colour, lux
-    float inverse_distance;            // mean over the rays, 1/m
+    struct texel_lights light;
+    float inverse_distance; // mean over the rays, 1/m
 };
 
-enum { RADIOSITY_RAYS_PER_LIGHT_SAMPLE = 4 };
-
-// What a ray meets.
-struct radiosity_seen {
-    uint32_t cluster; // CHART_NONE: it has no texel there
-    bool inside;      // the back of a single-sided surface
-    vec3s emission;   // cd/m²; 0: none
-    float pdf;        // of light_sample_emitter, sr⁻¹
-};
-struct radiosity_seen radiosity_seen_at(const struct radiosity_scene *scene, const struct ray *ray,
-                                        const struct ray_hit *hit);
-
-// Sample k of `count` on emissive surfaces. False: its light does not arrive; with a normal, at
-// that side of a surface.
-bool radiosity_sample_emitter(const struct radiosity_scene *scene, vec3s position,
-                              const vec3s *normal, uint32_t k, uint32_t count, uint32_t seed,
-                              struct emitter_sample *out);
+// The cluster that a ray meets; CHART_NONE: none.
+uint32_t radiosity_cluster_at(const struct radiosity_scene *scene, const struct ray_hit *hit,
+                              const struct texel_seen *seen);
 
 // Where a texel is sampled, and the share of it that is not inside of something; 0: none is.
 struct radiosity_point {

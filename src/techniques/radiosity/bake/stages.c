@@ -116,8 +116,9 @@ static void gather_texel(const struct bake_task *task, struct room *room, uint64
                                               task->bake_seed ^ (uint64_t)texel << 32, room->row);
     write_row(room->row, count, (uint32_t *)task->out[OUT_SOURCE] + i * sources,
               (uint16_t *)task->out[OUT_FACTOR] + 3 * i * sources);
-    memcpy((float *)task->out[OUT_SKY] + 4 * i, &gather->sky, sizeof gather->sky);
-    memcpy((float *)task->out[OUT_EMITTED] + 12 * i, gather->emitted, sizeof gather->emitted);
+    memcpy((float *)task->out[OUT_SKY] + 4 * i, &gather->light.sky, sizeof gather->light.sky);
+    memcpy((float *)task->out[OUT_EMITTED] + 12 * i, gather->light.emitted,
+           sizeof gather->light.emitted);
     ((float *)task->out[OUT_DISTANCE])[i] = gather->inverse_distance;
     const vec4s albedo = radiosity_reflectance(&job->scene, texel);
     memcpy((float *)task->out[OUT_ALBEDO] + 4 * i, albedo.raw, sizeof albedo.raw);

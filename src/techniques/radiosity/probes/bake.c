@@ -5,20 +5,21 @@
 
 #include <math.h>
 
+// The distance of what a ray meets; INFINITY: nothing.
 static float meet(const struct radiosity_scene *scene, const struct probe_ray *from,
-                  struct radiosity_seen *seen)
+                  struct ray_hit *hit, struct texel_seen *seen)
 {
     const struct ray ray = { from->from, from->direction, 0.0f, INFINITY };
-    struct ray_hit hit;
-    if (!embree_closest(scene->trace->embree, &ray, NULL, false, &hit)) return INFINITY;
-    *seen = radiosity_seen_at(scene, &ray, &hit);
-    return hit.distance;
+    if (!embree_closest(scene->trace->embree, &ray, NULL, false, hit)) return INFINITY;
+    *seen = texel_seen_at(scene->trace, &ray, hit);
+    return hit->distance;
 }
 
 static float look(void *user, const struct probe_ray *ray, bool *inside)
 {
-    struct radiosity_seen seen = { .inside = false };
-    const float distance = meet(user, ray, &seen);
+    struct ray_hit hit;
+    struct texel_seen seen = { .inside = false };
+    const float distance = meet(user, ray, &hit, &seen);
     *inside = seen.inside;
     return distance;
 }
@@ -67,15 +68,20 @@ struct job {
 static float gather_ray(void *user, const struct probe_ray *ray, bool *inside)
 {
     struct job *job = user;
-    struct radiosity_seen seen = { .cluster = CHART_NONE };
-    const float distance = meet(job->scene, ray, &seen);
+    struct ray_hit hit;
+    struct texel_seen seen = { .inside = false };
+    const float distance = meet(job->scene, ray, &hit, &seen);
     *inside = seen.inside;
-    if (!isfinite(distance)) add_sh(ray->direction, ray->solid_angle, job->out->sky, 1);
+    if (!isfinite(distance)) {
+        add_sh(ray->direction, ray->solid_angle, job->out->sky, 1);
+        return distance;
+    }
+    const uint32_t cluster = radiosity_cluster_at(job->scene, &hit, &seen);
     if (glms_vec3_max(seen.emission) > 0.0f)
         add_emission(job->out, ray->direction, seen.emission,
                      1.0f / ray->solid_angle + (float)job->light_samples * seen.pdf);
-    if (seen.cluster != CHART_NONE)
-        add_cluster(job->gather, seen.cluster, ray->direction, ray->solid_angle / (4.0f * GLM_PIf));
+    if (cluster != CHART_NONE)
+        add_cluster(job->gather, cluster, ray->direction, ray->solid_angle / (4.0f * GLM_PIf));
     return distance;
 }
 
@@ -84,8 +90,8 @@ static void sample_emitters(const struct job *job)
     const float across = 2.0f / (float)job->sphere.side;
     for (uint32_t k = 0; k < job->light_samples; k++) {
         struct emitter_sample s;
-        if (!radiosity_sample_emitter(job->scene, job->out->position, NULL, k, job->light_samples,
-                                      job->seed, &s))
+        if (!texel_sample_emitter(job->scene->trace, job->out->position, NULL, k,
+                                  job->light_samples, job->seed, &s))
             continue;
         const vec3s d = s.to_light;
         const float norm = glms_vec3_norm_one(d);
@@ -109,9 +115,7 @@ void radiosity_probe_gather(const struct radiosity_scene *scene, struct frame_pr
     const int rays = 2 * scene->options.rays;
     struct job job = { scene,
                        probe_sphere_of(rays),
-                       scene->trace->lights.has_emitters
-                           ? (uint32_t)(rays / RADIOSITY_RAYS_PER_LIGHT_SAMPLE)
-                           : 0,
+                       (uint32_t)texel_light_samples(scene->trace, rays),
                        (uint32_t)rng_mix(seed ^ (uint64_t)probe << 32),
                        gather,
                        out };

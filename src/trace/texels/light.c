@@ -1,0 +1,93 @@
+#include "trace/texels/light.h"
+
+#include "core/rng.h"
+#include "core/sampling.h"
+#include "trace/surface.h"
+
+#include <math.h>
+
+struct texel_seen texel_seen_at(const struct trace_scene *scene, const struct ray *ray,
+                                const struct ray_hit *hit)
+{
+    const struct trace_mesh *mesh = &scene->meshes[hit->geometry];
+    const float along = -glms_vec3_dot(mesh->facets[hit->triangle].normal, ray->direction);
+    struct texel_seen seen = { .back = along < 0.0f };
+    seen.inside = seen.back && !mesh->material->double_sided;
+    if (seen.inside || !mesh->material->emissive) return seen;
+    seen.emission = surface_emission(mesh, hit->triangle, hit->u, hit->v);
+    seen.pdf = light_emitter_pdf(scene, hit->geometry, hit->triangle, hit->distance, fabsf(along));
+    return seen;
+}
+
+float texel_sample_density(const struct texel_receiver *r, vec3s direction, float pdf_light)
+{
+    const float rays = glms_vec3_norm2(r->normal) > 0.0f
+                           ? (float)r->rays * glms_vec3_dot(direction, r->normal) / GLM_PIf
+                           : (float)r->rays / (4.0f * GLM_PIf);
+    return rays + (float)r->light_samples * pdf_light;
+}
+
+bool texel_sample_emitter(const struct trace_scene *scene, vec3s position, const vec3s *normal,
+                          uint32_t k, uint32_t count, uint32_t seed, struct emitter_sample *out)
+{
+    const vec2s jitter = sobol_2d(k, pcg_hash(seed));
+    const float choice = fminf(((float)k + jitter.x) / (float)count, 1.0f - 0x1p-24f);
+    *out = light_sample_emitter(scene, position, choice, sobol_2d(k, pcg_hash(seed + 1u) | 1u));
+    if (!(out->pdf > 0.0f) || (normal && !(glms_vec3_dot(out->to_light, *normal) > 0.0f)))
+        return false;
+    return !trace_occluded(scene, position, glms_vec3_sub(out->position, position), 1.0f);
+}
+
+static void add_emission(struct texel_lights *out, const struct texel_receiver *r, vec3s direction,
+                         vec3s radiance, float pdf_light)
+{
+    const float cosine = glms_vec3_dot(direction, r->normal);
+    const float density = texel_sample_density(r, direction, pdf_light);
+    if (!(cosine > 0.0f) || !(density > 0.0f)) return;
+    for (int c = 0; c < 3; c++) {
+        const float light = radiance.raw[c] / density;
+        out->emitted[c].irradiance += light * cosine;
+        for (int k = 0; k < 3; k++) out->emitted[c].vector[k] += light * direction.raw[k];
+    }
+}
+
+static void add_sky(struct texel_lights *out, const struct texel_receiver *r, vec3s direction,
+                    float cosine)
+{
+    const float rays = (float)r->rays;
+    out->sky.irradiance += GLM_PIf / rays;
+    for (int k = 0; k < 3; k++) out->sky.vector[k] += GLM_PIf / rays * direction.raw[k] / cosine;
+}
+
+// Directions along the surface have no finite weight in the vector irradiance.
+static const float LEAST_COSINE = 1e-3f;
+
+void texel_gather_light(const struct trace_scene *scene, const struct texel_receiver *r,
+                        texel_visit visit, void *user, struct texel_lights *out)
+{
+    vec3s tangent, bitangent;
+    *out = (struct texel_lights){ 0 };
+    basis_of(r->normal, &tangent, &bitangent);
+    for (uint32_t k = 0; k < (uint32_t)r->rays; k++) {
+        vec3s local = sample_hemisphere_cosine(sobol_2d(k, r->seed));
+        local.z = fmaxf(local.z, LEAST_COSINE);
+        struct ray ray = { r->position, glms_vec3_scale(r->normal, local.z), 0.0f, INFINITY };
+        ray.direction = glms_vec3_muladds(tangent, local.x, ray.direction);
+        ray.direction = glms_vec3_muladds(bitangent, local.y, ray.direction);
+        struct ray_hit hit;
+        if (!embree_closest(scene->embree, &ray, NULL, false, &hit)) {
+            add_sky(out, r, ray.direction, local.z);
+            continue;
+        }
+        const struct texel_seen seen = texel_seen_at(scene, &ray, &hit);
+        if (glms_vec3_max(seen.emission) > 0.0f)
+            add_emission(out, r, ray.direction, seen.emission, seen.pdf);
+        if (visit) visit(user, &ray, &hit, local, &seen);
+    }
+    for (uint32_t k = 0; k < (uint32_t)r->light_samples; k++) {
+        struct emitter_sample s;
+        if (texel_sample_emitter(scene, r->position, &r->normal, k, (uint32_t)r->light_samples,
+                                 r->seed, &s))
+            add_emission(out, r, s.to_light, s.radiance, s.pdf);
+    }
+}

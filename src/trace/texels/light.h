@@ -1,0 +1,56 @@
+// Light of emissive surfaces and the sky at a point, by rays and by samples of emitters. Both are
+// weighted by the balance heuristic (Veach 1997, section 9.2): rays alone find small emitters by
+// chance.
+#pragma once
+
+#include "trace/trace_scene.h"
+
+// A surface, whose rays are cosine-distributed, or a point with uniform rays: normal 0.
+struct texel_receiver {
+    vec3s position, normal; // position: offset against self-intersection
+    int rays, light_samples;
+    uint32_t seed;
+};
+
+enum { RAYS_PER_LIGHT_SAMPLE = 4 };
+
+// Emitter samples for so many rays; 0 without emissive surfaces.
+static inline int texel_light_samples(const struct trace_scene *scene, int rays)
+{
+    return scene->lights.has_emitters ? rays / RAYS_PER_LIGHT_SAMPLE : 0;
+}
+
+// What a ray meets.
+struct texel_seen {
+    bool back, inside; // inside: the back of a single-sided surface
+    vec3s emission;    // cd/m²; 0: none
+    float pdf;         // of light_sample_emitter, sr⁻¹
+};
+struct texel_seen texel_seen_at(const struct trace_scene *scene, const struct ray *ray,
+                                const struct ray_hit *hit);
+
+// Samples of a direction per steradian, of both kinds; pdf_light: of light_sample_emitter.
+float texel_sample_density(const struct texel_receiver *receiver, vec3s direction, float pdf_light);
+
+// Sample k of `count` on emissive surfaces. False: its light does not arrive; with a normal, at
+// that side of a surface.
+bool texel_sample_emitter(const struct trace_scene *scene, vec3s position, const vec3s *normal,
+                          uint32_t k, uint32_t count, uint32_t seed, struct emitter_sample *out);
+
+// Irradiance on the texel, and the integral of radiance times direction over its hemisphere (the
+// vector irradiance), whose component along the normal is that irradiance.
+struct texel_light {
+    float irradiance, vector[3];
+};
+
+struct texel_lights {
+    struct texel_light sky;        // of radiance 1
+    struct texel_light emitted[3]; // by colour, lux
+};
+
+// Calls `visit`, which may be NULL, for each ray that meets a surface; local: its direction in the
+// basis of the normal (basis_of). The receiver is a surface.
+typedef void (*texel_visit)(void *user, const struct ray *ray, const struct ray_hit *hit,
+                            vec3s local, const struct texel_seen *seen);
+void texel_gather_light(const struct trace_scene *scene, const struct texel_receiver *receiver,
+                        texel_visit visit, void *user, struct texel_lights *out);
