@@ -25,7 +25,7 @@ struct mrt_outdoors {
         *probes; // [count[2]][count[1]][count[0]]; NULL: all places are enclosed
 };
 
-struct mrt_emitter_samples;
+struct trace_scene;
 bool mrt_outdoors_init(struct host *host, const struct mrt_block_map *map, struct box3 bounds,
-                       struct mrt_emitter_samples *samples, struct mrt_outdoors *out);
+                       const struct trace_scene *scene, struct mrt_outdoors *out);
 void mrt_outdoors_finish(struct mrt_outdoors *outdoors); // accepts zero

@@ -30,9 +30,9 @@ mat3s mrt_block_rotation(const struct mrt_block *block);
 // The probe of the level at texel i of a block's brick. Beyond a wall: the nearest of the block.
 int mrt_probe_of_brick_texel(const struct mrt_block_map *map, int p, int block, int i);
 
-struct mrt_emitter_samples;
+struct trace_scene;
 // Light of emitters and the sky at all probes; those inside solids take that of the nearest probe
-// of their block that is not. samples->rays is set.
+// of their block that is not.
 struct mrt_unbounced_probe *mrt_unbounced_probes_create(struct host *host,
                                                         const struct mrt_block_map *map, int p,
-                                                        struct mrt_emitter_samples *samples);
+                                                        const struct trace_scene *scene);

@@ -1,77 +1,43 @@
-// Irradiance of emissive surfaces and of the sky at texels: points and cosine-distributed rays.
+// Irradiance of emissive surfaces and of the sky at texels.
 #include "unbounced.h"
 
-#include "techniques/mrt/level/unbounced_samples.h"
+#include "techniques/mrt/level/unbounced_points.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"
-#include "core/sampling.h"
 
-#include <math.h>
 #include <string.h>
 
 enum {
     PROBES = 8, // rays per texel that find out whether the sky is seen at all
     RAYS = 64,
+    LIGHT_SAMPLES = 64,
 };
 
 static const float RAY_OFFSET = 1e-3f; // m, along the normal
 
 struct job {
-    struct mrt_emitter_samples samples;
+    const struct trace_scene *scene;
     struct mrt_scene_images *images;
+    int rays;
 };
-
-static struct mrt_receiver receiver_of(const struct job *job, size_t i)
-{
-    const struct mrt_geometry_texel *texel = &job->images->geometry[i];
-    return (struct mrt_receiver){ texel->position, texel->normal };
-}
-
-static void gather_points(const struct job *job, size_t i)
-{
-    const struct mrt_receiver at = receiver_of(job, i);
-    const struct mrt_point_subset subset = mrt_points_of(&job->samples, i);
-    for (int k = subset.first; k < job->samples.emitters->count; k += subset.step) {
-        vec3s direction, light = mrt_light_of_point(&job->samples, &at, k, &subset, &direction);
-        float cosine = fmaxf(glms_vec3_dot(direction, at.normal), 0.0f);
-        job->images->emitted[i] = glms_vec3_muladds(light, cosine, job->images->emitted[i]);
-    }
-}
-
-static vec3s turned_to(vec3s normal, vec3s local)
-{
-    vec3s side = fabsf(normal.y) < 0.7f ? vec3_of(0, 1, 0) : vec3_of(1, 0, 0);
-    vec3s u = vec3_unit(glms_vec3_cross(side, normal)), v = glms_vec3_cross(normal, u);
-    return glms_vec3_add(glms_vec3_muladds(u, local.x, glms_vec3_scale(v, local.y)),
-                         glms_vec3_scale(normal, local.z));
-}
-
-static void gather_rays(const struct job *job, size_t i)
-{
-    const struct mrt_receiver at = receiver_of(job, i);
-    vec3s emitted = vec3_of(0, 0, 0);
-    vec3s from = glms_vec3_muladds(at.normal, RAY_OFFSET, at.position);
-    int sky = 0;
-    for (int k = 0; k < job->samples.rays; k++) {
-        vec2s u = sobol_2d((uint32_t)k, pcg_hash((uint32_t)i) | 1u);
-        vec3s direction = turned_to(at.normal, sample_hemisphere_cosine(u));
-        struct trace_hit hit;
-        if (!trace_closest(job->samples.scene, from, direction, INFINITY, &hit))
-            sky++;
-        else
-            emitted = glms_vec3_add(emitted, mrt_light_of_hit(&job->samples, &at, direction, &hit));
-    }
-    job->images->sky[i] = (float)sky / (float)job->samples.rays;
-    job->images->emitted[i] = glms_vec3_divs(emitted, (float)job->samples.rays);
-}
 
 static void gather(void *user, size_t i)
 {
     const struct job *job = user;
-    if (!job->images->geometry[i].found) return;
-    gather_rays(job, i);
-    gather_points(job, i);
+    const struct mrt_geometry_texel *at = &job->images->geometry[i];
+    struct texel_lights light;
+    if (!at->found) return;
+    const struct texel_receiver receiver = {
+        .position = glms_vec3_muladds(at->normal, RAY_OFFSET, at->position),
+        .normal = at->normal,
+        .rays = job->rays,
+        .light_samples = job->scene->lights.has_emitters ? LIGHT_SAMPLES : 0,
+        .seed = pcg_hash((uint32_t)i) | 1u,
+    };
+    texel_gather_light(job->scene, &receiver, NULL, NULL, &light);
+    job->images->sky[i] = light.sky.irradiance / GLM_PIf;
+    for (int c = 0; c < 3; c++) job->images->emitted[i].raw[c] = light.emitted[c].irradiance;
 }
 
 static bool sees_sky(const struct mrt_scene_images *images, int texels)
@@ -83,11 +49,11 @@ static bool sees_sky(const struct mrt_scene_images *images, int texels)
 
 static void gather_all(struct job *job, size_t texels)
 {
-    const bool emitters = job->samples.emitters->count > 0;
-    job->samples.rays = emitters ? RAYS : PROBES;
+    const bool emitters = job->scene->lights.has_emitters;
+    job->rays = emitters ? RAYS : PROBES;
     parallel_for(texels, 64, gather, job);
     if (emitters || !sees_sky(job->images, (int)texels)) return;
-    job->samples.rays = RAYS;
+    job->rays = RAYS;
     parallel_for(texels, 64, gather, job);
 }
 
@@ -103,11 +69,11 @@ static bool gather_probes(struct job *job, const struct level_points *level)
     struct mrt_scene_images *images = job->images;
     const size_t count = (size_t)level->map->count * (size_t)mrt_probes_of_block(level->probes);
     // Texels have found neither emitters nor the sky.
-    if (job->samples.rays == PROBES)
+    if (job->rays == PROBES)
         images->unbounced = host_alloc(images->host, count, sizeof *images->unbounced);
     else
         images->unbounced =
-            mrt_unbounced_probes_create(images->host, level->map, level->probes, &job->samples);
+            mrt_unbounced_probes_create(images->host, level->map, level->probes, job->scene);
     return images->unbounced;
 }
 
@@ -116,21 +82,11 @@ static bool trace_light(struct mrt_scene_images *images, const struct scene_pose
                         const struct trace_scene *scene, size_t texels,
                         const struct level_points *level)
 {
-    struct emitters emitters = { 0 };
-    struct job job = { .images = images };
-    bool ok = emitters_init(&emitters, images->host, pose->scene);
-    if (ok) emitters_update(&emitters, pose);
-    ok = ok && mrt_emitter_samples_init(&job.samples, images->host, scene, &emitters,
-                                        pose->scene->instance_count);
-    if (ok) {
-        gather_all(&job, texels);
-        ok = !level || ((level->probes == 0 || gather_probes(&job, level)) &&
-                        mrt_outdoors_init(images->host, level->map, pose->bounds, &job.samples,
-                                          &images->outdoors));
-    }
-    mrt_emitter_samples_finish(&job.samples);
-    emitters_finish(&emitters);
-    return ok;
+    struct job job = { .scene = scene, .images = images };
+    gather_all(&job, texels);
+    return !level ||
+           ((level->probes == 0 || gather_probes(&job, level)) &&
+            mrt_outdoors_init(images->host, level->map, pose->bounds, scene, &images->outdoors));
 }
 
 static struct mrt_geometry_texel *geometry_of(struct host *host, const struct scene_pose *walls,

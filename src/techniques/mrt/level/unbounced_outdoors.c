@@ -108,7 +108,7 @@ static bool place_points(const struct points *points, struct mrt_outdoor_probe *
 }
 
 bool mrt_outdoors_init(struct host *host, const struct mrt_block_map *map, struct box3 bounds,
-                       struct mrt_emitter_samples *samples, struct mrt_outdoors *out)
+                       const struct trace_scene *scene, struct mrt_outdoors *out)
 {
     struct points points = { 0 };
     *out = (struct mrt_outdoors){ .host = host, .grid = grid_of(bounds) };
@@ -117,7 +117,7 @@ bool mrt_outdoors_init(struct host *host, const struct mrt_block_map *map, struc
     bool ok = out->probes && points_alloc(&points, host, (size_t)count);
     if (ok) {
         find_points(&points, map, &out->grid, count);
-        ok = mrt_unbounced_points(host, samples, RAYS,
+        ok = mrt_unbounced_points(host, scene, RAYS,
                                   &(struct mrt_unbounced_points){ (size_t)points.count,
                                                                   points.position, points.light,
                                                                   points.solid });

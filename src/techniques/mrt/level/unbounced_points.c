@@ -2,12 +2,15 @@
 #include "unbounced_points.h"
 
 #include "core/parallel.h"
+#include "core/rng.h"
 #include "core/sh.h"
 
 #include "techniques/mrt/dictionary/rays.h"
 
+#include <math.h>
+
 struct job {
-    const struct mrt_emitter_samples *samples;
+    const struct trace_scene *scene;
     struct mrt_rays rays;
     const struct mrt_unbounced_points *points;
 };
@@ -19,51 +22,58 @@ static void add(vec3s light, const float weight[MRT_PROBE_VALUES], struct mrt_un
 }
 
 // More back than front faces: inside a solid.
-static bool gather_rays(const struct job *job, const struct mrt_receiver *at,
+static bool gather_rays(const struct job *job, const struct texel_receiver *at,
                         struct mrt_unbounced_probe *out)
 {
+    const float per_sr = (float)job->rays.count / (4.0f * GLM_PIf);
     int backs = 0;
     for (int k = 0; k < job->rays.count; k++) {
         const float *weight = job->rays.weight + k * job->rays.values;
-        struct trace_hit hit;
-        vec3s direction = job->rays.direction[k];
-        if (!trace_closest(job->samples->scene, at->position, direction, INFINITY, &hit)) {
+        const struct ray ray = { at->position, job->rays.direction[k], 0.0f, INFINITY };
+        struct ray_hit hit;
+        if (!embree_closest(job->scene->embree, &ray, NULL, false, &hit)) {
             for (int i = 0; i < MRT_PROBE_VALUES; i++) out->sky[i] += weight[i];
             continue;
         }
-        backs += !hit.front;
-        add(mrt_light_of_hit(job->samples, at, direction, &hit), weight, out);
+        const struct texel_seen seen = texel_seen_at(job->scene, &ray, &hit);
+        const float density = texel_sample_density(at, ray.direction, seen.pdf);
+        backs += seen.back;
+        add(glms_vec3_scale(seen.emission, GLM_PIf * per_sr / density), weight, out);
     }
     return 2 * backs > job->rays.count;
 }
 
-static void gather_points(const struct job *job, size_t i, const struct mrt_receiver *at,
-                          struct mrt_unbounced_probe *out)
+static void sample_emitters(const struct job *job, const struct texel_receiver *at,
+                            struct mrt_unbounced_probe *out)
 {
-    const struct mrt_point_subset subset = mrt_points_of(job->samples, i);
-    for (int k = subset.first; k < job->samples->emitters->count; k += subset.step) {
-        vec3s direction;
+    const uint32_t count = (uint32_t)at->light_samples;
+    for (uint32_t k = 0; k < count; k++) {
+        struct emitter_sample s;
         float basis[MRT_PROBE_VALUES], weight[MRT_PROBE_VALUES];
-        vec3s light = mrt_light_of_point(job->samples, at, k, &subset, &direction);
-        sh_eval(3, direction, basis);
+        if (!texel_sample_emitter(job->scene, at->position, NULL, k, count, at->seed, &s)) continue;
+        sh_eval(3, s.to_light, basis);
         sh_irradiance(3, basis, weight);
-        add(light, weight, out);
+        add(glms_vec3_divs(s.radiance, texel_sample_density(at, s.to_light, s.pdf)), weight, out);
     }
 }
 
 static void gather(void *user, size_t i)
 {
     const struct job *job = user;
-    const struct mrt_receiver at = { .position = job->points->position[i] };
+    const struct texel_receiver at = {
+        .position = job->points->position[i],
+        .rays = job->rays.count,
+        .light_samples = texel_light_samples(job->scene, job->rays.count),
+        .seed = pcg_hash((uint32_t)i) | 1u,
+    };
     job->points->solid[i] = gather_rays(job, &at, &job->points->light[i]);
-    gather_points(job, i, &at, &job->points->light[i]);
+    sample_emitters(job, &at, &job->points->light[i]);
 }
 
-bool mrt_unbounced_points(struct host *host, struct mrt_emitter_samples *samples, int rays,
+bool mrt_unbounced_points(struct host *host, const struct trace_scene *scene, int rays,
                           const struct mrt_unbounced_points *points)
 {
-    struct job job = { .samples = samples, .points = points };
-    samples->rays = rays;
+    struct job job = { .scene = scene, .points = points };
     if (!mrt_rays_init(host, MRT_PROBE, rays, &job.rays)) return false;
     parallel_for(points->count, 8, gather, &job);
     mrt_rays_finish(host, &job.rays);

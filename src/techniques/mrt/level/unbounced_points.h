@@ -1,8 +1,8 @@
-// Light of emitters and the sky at points, by uniform rays and points on the emitters.
+// Light of emitters and the sky at points, by uniform rays and samples of the emitters.
 #pragma once
 
 #include "techniques/mrt/level/probes.h"
-#include "techniques/mrt/level/unbounced_samples.h"
+#include "trace/texels/light.h"
 
 struct mrt_unbounced_points {
     size_t count;
@@ -12,5 +12,5 @@ struct mrt_unbounced_points {
 };
 
 // rays: a power of two. false: out of memory.
-bool mrt_unbounced_points(struct host *host, struct mrt_emitter_samples *samples, int rays,
+bool mrt_unbounced_points(struct host *host, const struct trace_scene *scene, int rays,
                           const struct mrt_unbounced_points *points);

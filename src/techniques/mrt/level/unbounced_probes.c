@@ -48,7 +48,7 @@ static void find_positions(const struct job *job)
 
 struct mrt_unbounced_probe *mrt_unbounced_probes_create(struct host *host,
                                                         const struct mrt_block_map *map, int p,
-                                                        struct mrt_emitter_samples *samples)
+                                                        const struct trace_scene *scene)
 {
     const size_t count = (size_t)map->count * (size_t)mrt_probes_of_block(p);
     struct job job = { .map = map, .p = p };
@@ -59,7 +59,7 @@ struct mrt_unbounced_probe *mrt_unbounced_probes_create(struct host *host,
     if (ok) {
         find_positions(&job);
         ok = mrt_unbounced_points(
-            host, samples, RAYS,
+            host, scene, RAYS,
             &(struct mrt_unbounced_points){ count, job.position, job.probes, job.solid });
     }
     if (ok) {
