@@ -8,21 +8,15 @@
 bool gather_scene_init(struct gather_scene *s, struct host *host, const struct scene_pose *pose,
                        const struct charts *charts)
 {
-    const size_t instances = (size_t)pose->scene->instance_count;
     *s = (struct gather_scene){ .host = host, .charts = charts };
     s->trace = trace_scene_create(host, pose);
-    s->mesh_of = host_alloc(host, instances, sizeof *s->mesh_of);
-    if (!s->trace || !s->mesh_of) return false;
-    for (uint32_t m = 0; m < s->trace->mesh_count; m++)
-        s->mesh_of[s->trace->meshes[m].instance] = m;
-    return gather_list_triangles(s);
+    return s->trace && gather_list_triangles(s);
 }
 
 void gather_scene_finish(struct gather_scene *s)
 {
     if (!s->host) return;
     trace_scene_destroy(s->trace);
-    host_free(s->host, s->mesh_of);
     host_free(s->host, s->first);
     host_free(s->host, s->meeting);
     *s = (struct gather_scene){ 0 };

@@ -10,7 +10,6 @@ struct gather_scene {
     struct host *host;
     const struct charts *charts;
     struct trace_scene *trace;
-    uint32_t *mesh_of; // [instances] in trace->meshes
     uint32_t *first;   // [texel_count + 1] of the texel, in `meeting`
     uint32_t *meeting; // triangles in charts->triangles that meet the texel's square
 };

@@ -4,6 +4,8 @@
 #include "core/rng.h"
 #include "core/sampling.h"
 #include "scene/charts/raster.h"
+#include "trace/texels/inside.h"
+#include "trace/texels/texels.h"
 
 #include <math.h>
 
@@ -113,19 +115,16 @@ struct surface gather_surface(const struct gather_scene *s, const struct gather_
                               bool back)
 {
     const struct chart_triangle *t = &s->charts->triangles[point->triangle];
-    const struct ray_hit hit = {
-        .geometry = s->mesh_of[t->instance], .triangle = t->triangle, .u = point->u, .v = point->v
-    };
-    const struct trace_mesh *mesh = &s->trace->meshes[hit.geometry];
-    const vec3s front = mesh->facets[t->triangle].normal;
-    const struct ray ray = { .direction = back ? front : glms_vec3_negate(front) };
+    const struct trace_mesh *mesh = trace_mesh_of(s->trace, t->instance);
     struct surface surface;
-    surface_at(s->trace, &ray, &hit, NULL, &surface);
+    const vec3s front = mesh->facets[t->triangle].normal;
+    texel_surface(s->trace, t, point->u, point->v, back ? glms_vec3_negate(front) : front,
+                  &surface);
     uint32_t corner[3];
     trace_corners(mesh, t->triangle, corner);
-    vec3s n = glms_vec3_scale(mesh->vertices[corner[0]].normal, 1.0f - hit.u - hit.v);
-    n = glms_vec3_muladds(mesh->vertices[corner[1]].normal, hit.u, n);
-    n = vec3_unit(glms_vec3_muladds(mesh->vertices[corner[2]].normal, hit.v, n));
+    vec3s n = glms_vec3_scale(mesh->vertices[corner[0]].normal, 1.0f - point->u - point->v);
+    n = glms_vec3_muladds(mesh->vertices[corner[1]].normal, point->u, n);
+    n = vec3_unit(glms_vec3_muladds(mesh->vertices[corner[2]].normal, point->v, n));
     if (back) n = glms_vec3_negate(n);
     surface.normal = glms_vec3_dot(n, surface.geometric) > 0.0f ? n : surface.geometric;
     surface.material = (struct bsdf_material){ .albedo = vec3_of(1, 1, 1), .roughness = 1.0f };
@@ -134,40 +133,24 @@ struct surface gather_surface(const struct gather_scene *s, const struct gather_
     return surface;
 }
 
-static bool meets_back(const struct gather_scene *s, vec3s from, vec3s direction)
-{
-    const struct ray ray = { from, direction, 0.0f, INFINITY };
-    struct ray_hit hit;
-    if (!embree_closest(s->trace->embree, &ray, NULL, false, &hit)) return false;
-    const struct trace_mesh *mesh = &s->trace->meshes[hit.geometry];
-    return !mesh->material->double_sided &&
-           glms_vec3_dot(mesh->facets[hit.triangle].normal, direction) > 0.0f;
-}
+// Points whose first rays meet no back are not inside.
+enum { FIRST_RAYS = 4 };
 
-// Most rays meet the back of single-sided surfaces. Points whose first rays meet none are not.
-enum { FIRST_PROBES = 4, PROBES = 16 };
-
-static bool is_inside(const struct gather_scene *s, const struct gather_point *point, bool back)
+static bool is_point_inside(const struct gather_scene *s, const struct gather_point *point,
+                            bool back)
 {
     const struct surface surface = gather_surface(s, point, back);
-    vec3s u, v;
-    int behind = 0;
-    basis_of(surface.geometric, &u, &v);
-    for (uint32_t k = 0; k < PROBES; k++) {
-        if (k == FIRST_PROBES && behind == 0) return false;
-        const vec3s local = sample_hemisphere_cosine(sobol_2d(k, 1));
-        vec3s direction = glms_vec3_scale(surface.geometric, local.z);
-        direction = glms_vec3_muladds(u, local.x, direction);
-        direction = glms_vec3_muladds(v, local.y, direction);
-        behind += meets_back(s, surface_leave(&surface, direction), direction);
-    }
-    return 2 * behind > PROBES;
+    const vec3s normal = surface.geometric, from = surface_leave(&surface, normal);
+    const int backs = inside_backs(s->trace, from, normal, 0, FIRST_RAYS);
+    return backs > 0 &&
+           is_inside(backs + inside_backs(s->trace, from, normal, FIRST_RAYS, INSIDE_RAYS),
+                     INSIDE_RAYS);
 }
 
 static void add_point(const struct gather_scene *s, const struct gather_point *point,
                       struct gather_points *out)
 {
-    if (!is_inside(s, point, out->back)) out->at[out->count++] = *point;
+    if (!is_point_inside(s, point, out->back)) out->at[out->count++] = *point;
 }
 
 // The triangle at a share of the chart's area.

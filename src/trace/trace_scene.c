@@ -166,11 +166,15 @@ static bool create_mesh(struct trace_scene *s, const struct scene_pose *pose, in
 
 static bool create_meshes(struct trace_scene *s, const struct scene_pose *pose)
 {
-    s->meshes = host_alloc(s->host, (size_t)s->scene->instance_count, sizeof *s->meshes);
+    const size_t instances = (size_t)s->scene->instance_count;
+    s->meshes = host_alloc(s->host, instances, sizeof *s->meshes);
+    s->mesh_of = host_alloc(s->host, instances, sizeof *s->mesh_of);
     s->embree = embree_create(s->host);
-    if (!s->meshes || !s->embree) return false;
+    if (!s->meshes || !s->mesh_of || !s->embree) return false;
     for (int i = 0; i < s->scene->instance_count; i++) {
+        s->mesh_of[i] = UINT32_MAX;
         if (scene_mesh_of(s->scene, i)->index_count == 0) continue;
+        s->mesh_of[i] = s->mesh_count;
         struct trace_mesh *mesh = &s->meshes[s->mesh_count++];
         if (!create_mesh(s, pose, i, mesh) || !embree_add(s->embree, &mesh->geometry)) return false;
     }
@@ -276,6 +280,7 @@ void trace_scene_destroy(struct trace_scene *s)
     host_free(s->host, s->data_textures);
     host_free(s->host, s->materials);
     host_free(s->host, s->meshes);
+    host_free(s->host, s->mesh_of);
     host_free(s->host, s);
 }
 

@@ -48,11 +48,17 @@ struct trace_scene {
     struct embree *embree;
     struct trace_mesh *meshes; // [mesh_count]; the index is Embree's geometry
     uint32_t mesh_count;
+    uint32_t *mesh_of; // [scene->instance_count] in `meshes`; UINT32_MAX: without triangles
     struct trace_material *materials;               // [scene->material_count]
     struct texture *color_textures, *data_textures; // [scene->image_count], created on use
     struct light_table lights;
     uint64_t key; // hash of everything that affects the light
 };
+
+static inline const struct trace_mesh *trace_mesh_of(const struct trace_scene *scene, int instance)
+{
+    return &scene->meshes[scene->mesh_of[instance]];
+}
 
 // The vertex indices of a triangle, counter-clockwise from the front.
 static inline void trace_corners(const struct trace_mesh *mesh, uint32_t triangle,

@@ -5,6 +5,7 @@
 #include "techniques/dnrt/bake/job.h"
 #include "techniques/dnrt/bake/volume.h"
 #include "techniques/dnrt/dnrt_tensors.h"
+#include "trace/texels/inside.h"
 
 #include <string.h>
 
@@ -105,7 +106,7 @@ static bool run_samples(const struct bake_task *task)
         dnrt_transfer_at(&how, dnrt_grid_point(&grid, (int)(first + i)),
                          dnrt_seed_of(task, first + i), &at);
         write_transfer(&job->options, &at, (float *)task->out[OUT_TRANSFER] + planes * i);
-        ((uint8_t *)task->out[OUT_INSIDE])[i] = at.inside > 0.5f;
+        ((uint8_t *)task->out[OUT_INSIDE])[i] = is_inside(at.backs, how.rays);
     }
     return true;
 }

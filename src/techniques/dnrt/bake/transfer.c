@@ -7,6 +7,7 @@
 #include "core/sampling.h"
 #include "techniques/dnrt/bake/self.h"
 #include "trace/reflectance.h"
+#include "trace/texels/inside.h"
 
 #include <math.h>
 
@@ -70,8 +71,7 @@ static void add_hit(const struct dnrt_sampling *how, const struct ray *ray,
             of->reflected[j] = glms_vec3_muladds(reflected[j], weights[i], of->reflected[j]);
             of->hidden[j] += weights[i] * at_direction[j];
         }
-    if (!surface.front && !how->trace->meshes[hit->geometry].material->double_sided)
-        sum->inside += 1.0f;
+    sum->backs += inside_side_of(how->trace, ray, hit) > 0;
 }
 
 static void scale(const struct dnrt_sampling *how, struct dnrt_transfer *sum)
@@ -82,7 +82,6 @@ static void scale(const struct dnrt_sampling *how, struct dnrt_transfer *sum)
             sum->of[i].reflected[j] = glms_vec3_scale(sum->of[i].reflected[j], factor);
             sum->of[i].hidden[j] *= factor;
         }
-    sum->inside /= (float)how->rays;
 }
 
 void dnrt_transfer_at(const struct dnrt_sampling *how, vec3s point, uint32_t seed,
@@ -90,7 +89,7 @@ void dnrt_transfer_at(const struct dnrt_sampling *how, vec3s point, uint32_t see
 {
     const struct cone cone = cone_of(how, point);
     struct rng rng = rng_for(seed, 0, 0);
-    *out = (struct dnrt_transfer){ .inside = 0.0f };
+    *out = (struct dnrt_transfer){ .backs = 0 };
     for (uint32_t i = 0; i < (uint32_t)how->rays; i++) {
         const struct ray ray = { point, direction_in(&cone, how, sobol_2d(i, seed)), 0.0f,
                                  INFINITY };

@@ -31,7 +31,7 @@ struct dnrt_vectors {
 
 struct dnrt_transfer {
     struct dnrt_vectors of[DNRT_MAX_NORMALS];
-    float inside; // share of the rays that meet the back of a single-sided surface
+    int backs; // rays that meet the back of a single-sided surface
 };
 
 struct dnrt_sampling {

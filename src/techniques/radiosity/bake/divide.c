@@ -33,7 +33,8 @@ static uint32_t first_open(const struct radiosity_scene *scene, uint32_t cluster
     const struct radiosity_map *map = &scene->map;
     for (uint32_t m = map->first[cluster]; m < map->first[cluster + 1]; m++) {
         const uint32_t texel = map->members[m];
-        if (!radiosity_is_inside(scene, texel, chart_texel_of(&map->charts, texel)->position))
+        if (!texel_is_inside(scene->trace, &map->charts, texel,
+                             chart_texel_of(&map->charts, texel)->position))
             return texel;
     }
     return map->members[map->first[cluster]];

@@ -8,19 +8,13 @@ bool radiosity_scene_init(struct radiosity_scene *scene, struct host *host,
                           const struct scene_pose *pose, const struct radiosity_options *options,
                           struct radiosity_map *map)
 {
-    const size_t instances = (size_t)pose->scene->instance_count;
     *scene = (struct radiosity_scene){ .host = host, .options = *options, .map = *map };
     *map = (struct radiosity_map){ 0 };
     if (!scene_statics_init(&scene->statics, host, pose)) return false;
     if (!scene->map.host && !radiosity_map_init(&scene->map, host, &scene->statics.pose, options))
         return false;
     scene->trace = trace_scene_create(host, &scene->statics.pose);
-    scene->mesh_of = host_alloc(host, instances, sizeof *scene->mesh_of);
-    if (!scene->trace || !scene->mesh_of) return false;
-    for (size_t i = 0; i < instances; i++) scene->mesh_of[i] = UINT32_MAX;
-    for (uint32_t m = 0; m < scene->trace->mesh_count; m++)
-        scene->mesh_of[scene->trace->meshes[m].instance] = m;
-    return radiosity_divide(scene);
+    return scene->trace && radiosity_divide(scene);
 }
 
 void radiosity_scene_finish(struct radiosity_scene *scene)
@@ -28,7 +22,6 @@ void radiosity_scene_finish(struct radiosity_scene *scene)
     if (!scene->host) return;
     trace_scene_destroy(scene->trace);
     scene_statics_finish(&scene->statics);
-    host_free(scene->host, scene->mesh_of);
     host_free(scene->host, scene->part);
     host_free(scene->host, scene->is_group);
     radiosity_map_finish(&scene->map);
@@ -82,7 +75,7 @@ void radiosity_gather(const struct radiosity_scene *scene, uint32_t texel, vec3s
                       uint64_t seed, struct radiosity_gather *gather)
 {
     const struct chart_triangle *of = chart_triangle_of(&scene->map.charts, texel);
-    const struct trace_mesh *mesh = &scene->trace->meshes[scene->mesh_of[of->instance]];
+    const struct trace_mesh *mesh = trace_mesh_of(scene->trace, of->instance);
     const vec3s normal = chart_texel_normal(&scene->map.charts, texel);
     const struct texel_receiver receiver = {
         .position = glms_vec3_muladds(normal, mesh->facets[of->triangle].reach, position),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "trace/texels/light.h"
+#include "trace/texels/texels.h"
 
 #include "techniques/radiosity/radiosity_map.h"
 #include "scene/statics.h"
@@ -13,9 +14,8 @@ struct radiosity_scene {
     struct radiosity_options options;
     struct radiosity_map map;
     struct trace_scene *trace;
-    uint32_t *mesh_of; // [instances] in trace->meshes
-    uint8_t *part;     // [texels]
-    bool *is_group;    // [nodes] clusters of it see each other
+    uint8_t *part;  // [texels]
+    bool *is_group; // [nodes] clusters of it see each other
 };
 // map: taken over, without parts; zero: it is made.
 bool radiosity_scene_init(struct radiosity_scene *scene, struct host *host,
@@ -41,24 +41,12 @@ struct radiosity_gather {
 uint32_t radiosity_cluster_at(const struct radiosity_scene *scene, const struct ray_hit *hit,
                               const struct texel_seen *seen);
 
-// Where a texel is sampled, and the share of it that is not inside of something; 0: none is.
-struct radiosity_point {
-    vec3s position;
-    float share;
-};
-struct radiosity_point radiosity_find_point(const struct radiosity_scene *scene, uint32_t texel);
-
 // ---- divide.c
 
 // Parts of all texels, the clusters that follow, and which nodes are groups.
 bool radiosity_divide(struct radiosity_scene *scene);
 
-// ---- point.c, reflectance.c
-
-bool radiosity_is_inside(const struct radiosity_scene *scene, uint32_t texel, vec3s at);
-
-// Barycentric weights of a place in the atlas. False: it is outside of the triangle.
-bool radiosity_weigh(const struct chart_triangle *triangle, float x, float y, float *u, float *v);
+// ----
 
 // position: of the texel. Clears what the last call left in *gather, whose arrays are zeroed before
 // the first one.
@@ -67,7 +55,3 @@ void radiosity_gather(const struct radiosity_scene *scene, uint32_t texel, vec3s
 
 // Clears what the last call left.
 void radiosity_gather_clear(struct radiosity_gather *gather);
-
-// Mean reflectance of a texel for light that bounces, 0…1 (brdf_bounce_reflectance); w: the mean
-// cosine between its shading normals and the normal of its triangle.
-vec4s radiosity_reflectance(const struct radiosity_scene *scene, uint32_t texel);

@@ -107,7 +107,8 @@ static void gather_texel(const struct bake_task *task, struct room *room, uint64
     const size_t sources = (size_t)job->options.sources;
     const uint32_t texel = (uint32_t)(first + i);
     struct radiosity_gather *gather = &room->gather;
-    const struct radiosity_point point = radiosity_find_point(&job->scene, texel);
+    const struct charts *charts = &job->scene.map.charts;
+    const struct texel_point point = texel_find_point(job->scene.trace, charts, texel);
     memcpy((float *)task->out[OUT_POINT] + 4 * i, &point, sizeof point);
     ((uint8_t *)task->out[OUT_PART])[i] = job->scene.part[texel];
     if (point.share == 0.0f) return;
@@ -120,7 +121,7 @@ static void gather_texel(const struct bake_task *task, struct room *room, uint64
     memcpy((float *)task->out[OUT_EMITTED] + 12 * i, gather->light.emitted,
            sizeof gather->light.emitted);
     ((float *)task->out[OUT_DISTANCE])[i] = gather->inverse_distance;
-    const vec4s albedo = radiosity_reflectance(&job->scene, texel);
+    const vec4s albedo = texel_reflectance(job->scene.trace, charts, texel);
     memcpy((float *)task->out[OUT_ALBEDO] + 4 * i, albedo.raw, sizeof albedo.raw);
 }
 
@@ -186,7 +187,7 @@ struct clusters {
     const struct radiosity_map *map;
     const uint32_t *source;
     const uint16_t *factor;
-    const struct radiosity_point *points;
+    const struct texel_point *points;
     size_t sources;
     float *area; // [clusters] of the texels, as far as they are open, m²
 };

@@ -1,60 +1,31 @@
 // Where a texel is sampled: in its middle, or where that is inside of something, beside it. A texel
 // of a ledge whose larger part is in a wall still has light.
-#include "techniques/radiosity/bake/gather.h"
-
-#include "core/rng.h"
-#include "core/sampling.h"
+#include "trace/texels/inside.h"
+#include "trace/texels/texels.h"
 
 #include <limits.h>
 #include <math.h>
 
-// PROBES: rays that find the nearest surface. CROSSINGS: rays that count all surfaces.
-enum { ACROSS = 8, PROBES = 16, CROSSINGS = 6, MOST_CROSSED = 64, MOST_TRIANGLES = 16 };
+// CROSSINGS: rays that count all surfaces.
+enum { ACROSS = 8, CROSSINGS = 6, MOST_CROSSED = 64, MOST_TRIANGLES = 16 };
 
 struct probe {
-    const struct radiosity_scene *scene;
-    vec3s from, normal, u, v;
+    const struct trace_scene *scene;
+    vec3s from, normal;
 };
 
-static struct probe probe_at(const struct radiosity_scene *scene, uint32_t texel, vec3s at)
+static struct probe probe_at(const struct trace_scene *scene, const struct charts *charts,
+                             uint32_t texel, vec3s at)
 {
-    const struct chart_triangle *of = chart_triangle_of(&scene->map.charts, texel);
-    const struct trace_mesh *mesh = &scene->trace->meshes[scene->mesh_of[of->instance]];
-    struct probe p = { .scene = scene, .normal = chart_texel_normal(&scene->map.charts, texel) };
-    p.from = glms_vec3_muladds(p.normal, mesh->facets[of->triangle].reach, at);
-    basis_of(p.normal, &p.u, &p.v);
-    return p;
+    const struct chart_triangle *of = chart_triangle_of(charts, texel);
+    const vec3s normal = chart_texel_normal(charts, texel);
+    const float reach = trace_mesh_of(scene, of->instance)->facets[of->triangle].reach;
+    return (struct probe){ scene, glms_vec3_muladds(normal, reach, at), normal };
 }
 
-static struct ray ray_of(const struct probe *p, uint32_t k)
-{
-    const vec3s local = sample_hemisphere_cosine(sobol_2d(k, 1));
-    struct ray ray = { p->from, glms_vec3_scale(p->normal, local.z), 0.0f, INFINITY };
-    ray.direction = glms_vec3_muladds(p->u, local.x, ray.direction);
-    ray.direction = glms_vec3_muladds(p->v, local.y, ray.direction);
-    return ray;
-}
-
-// 1: the back of a single-sided surface, −1: its front, 0: a double-sided one.
-static int side_of(const struct radiosity_scene *scene, const struct ray *ray,
-                   const struct ray_hit *hit)
-{
-    const struct trace_mesh *mesh = &scene->trace->meshes[hit->geometry];
-    if (mesh->material->double_sided) return 0;
-    return glms_vec3_dot(mesh->facets[hit->triangle].normal, ray->direction) > 0.0f ? 1 : -1;
-}
-
-// How many of the rays from a point meet the back of a single-sided surface first.
 static int count_backs(const struct probe *p)
 {
-    int behind = 0;
-    for (uint32_t k = 0; k < PROBES; k++) {
-        const struct ray ray = ray_of(p, k);
-        struct ray_hit hit;
-        if (embree_closest(p->scene->trace->embree, &ray, NULL, false, &hit))
-            behind += side_of(p->scene, &ray, &hit) > 0;
-    }
-    return behind;
+    return inside_backs(p->scene, p->from, p->normal, 0, INSIDE_RAYS);
 }
 
 // Backs less fronts that the rays meet up to infinity. Inside of a closed solid each ray meets one
@@ -64,11 +35,11 @@ static int count_crossings(const struct probe *p)
 {
     int sum = 0;
     for (uint32_t k = 0; k < CROSSINGS; k++) {
-        struct ray ray = ray_of(p, k);
+        struct ray ray = inside_ray(p->from, p->normal, k);
         struct ray_hit hit;
         for (int i = 0; i < MOST_CROSSED; i++) {
-            if (!embree_closest(p->scene->trace->embree, &ray, NULL, false, &hit)) break;
-            sum += side_of(p->scene, &ray, &hit);
+            if (!embree_closest(p->scene->embree, &ray, NULL, false, &hit)) break;
+            sum += inside_side_of(p->scene, &ray, &hit);
             ray.near = hit.distance * (1.0f + 0x1p-18f) + 0x1p-18f;
         }
     }
@@ -80,10 +51,11 @@ static bool is_in_solid(const struct probe *p)
     return count_crossings(p) > CROSSINGS / 2;
 }
 
-bool radiosity_is_inside(const struct radiosity_scene *scene, uint32_t texel, vec3s at)
+bool texel_is_inside(const struct trace_scene *scene, const struct charts *charts, uint32_t texel,
+                     vec3s at)
 {
-    const struct probe p = probe_at(scene, texel, at);
-    return count_backs(&p) > PROBES / 2 || is_in_solid(&p);
+    const struct probe p = probe_at(scene, charts, texel, at);
+    return is_inside(count_backs(&p), INSIDE_RAYS) || is_in_solid(&p);
 }
 
 static vec3s point_of(const struct chart_triangle *t, float u, float v)
@@ -94,7 +66,8 @@ static vec3s point_of(const struct chart_triangle *t, float u, float v)
 }
 
 struct search {
-    const struct radiosity_scene *scene;
+    const struct trace_scene *scene;
+    const struct charts *charts;
     const struct chart_triangle *triangle;
     uint32_t texel;
     int tried;
@@ -110,7 +83,7 @@ static void try_point(struct search *s, float u, float v)
     const vec3s at = point_of(s->triangle, u, v);
     s->tried++;
     if (s->count == ACROSS * ACROSS) return;
-    const struct probe p = probe_at(s->scene, s->texel, at);
+    const struct probe p = probe_at(s->scene, s->charts, s->texel, at);
     s->points[s->count].at = at;
     s->points[s->count++].crossings = count_crossings(&p);
 }
@@ -123,7 +96,7 @@ static int triangles_of(const struct search *s, const struct chart_texel *t,
     int count = 0;
     out[count++] = s->triangle;
     for (uint32_t i = 0; i < chart->triangle_count && count < MOST_TRIANGLES; i++) {
-        const struct chart_triangle *c = &s->scene->map.charts.triangles[chart->first_triangle + i];
+        const struct chart_triangle *c = &s->charts->triangles[chart->first_triangle + i];
         const vec2s low = glms_vec2_minv(glms_vec2_minv(c->place[0], c->place[1]), c->place[2]);
         const vec2s high = glms_vec2_maxv(glms_vec2_maxv(c->place[0], c->place[1]), c->place[2]);
         if (c == s->triangle || high.x < (float)t->x || low.x > (float)t->x + 1.0f ||
@@ -146,7 +119,7 @@ static void try_grid(struct search *s, const struct chart_texel *t, const struct
         const float y = (float)t->y + ((float)(i / across) + 0.5f) / (float)across;
         float u, v;
         int k = 0;
-        while (k < count && !radiosity_weigh(of[k], x, y, &u, &v)) k++;
+        while (k < count && !texel_weigh(of[k], x, y, &u, &v)) k++;
         if (k == count) continue;
         s->triangle = of[k];
         try_point(s, u, v);
@@ -160,7 +133,7 @@ static void try_spot(struct search *s, const struct chart *chart)
     const uint32_t step = 1 + chart->triangle_count / (ACROSS * ACROSS);
     s->tried = 1;
     for (uint32_t i = 0; i < chart->triangle_count; i += step) {
-        s->triangle = &s->scene->map.charts.triangles[chart->first_triangle + i];
+        s->triangle = &s->charts->triangles[chart->first_triangle + i];
         try_point(s, 1.0f / 3.0f, 1.0f / 3.0f);
     }
 }
@@ -184,10 +157,10 @@ static int least_crossings(const struct search *s)
 
 // Of the points with at most so many crossings, the one nearest to the middle of them all, and the
 // share of them.
-static struct radiosity_point middle_of(const struct search *s, int most)
+static struct texel_point middle_of(const struct search *s, int most)
 {
     vec3s middle = vec3_of(0, 0, 0);
-    struct radiosity_point point = { .share = 0.0f };
+    struct texel_point point = { .share = 0.0f };
     float nearest = INFINITY;
     int open = 0;
     for (int i = 0; i < s->count; i++) {
@@ -258,25 +231,27 @@ static float try_edges(struct search *s, const struct chart_texel *t, int most)
 
 // Points of a texel are compared with each other: rooms whose walls are single sheets have fewer
 // crossings than the open.
-struct radiosity_point radiosity_find_point(const struct radiosity_scene *scene, uint32_t texel)
+struct texel_point texel_find_point(const struct trace_scene *scene, const struct charts *charts,
+                                    uint32_t texel)
 {
-    const struct chart_texel *t = chart_texel_of(&scene->map.charts, texel);
+    const struct chart_texel *t = chart_texel_of(charts, texel);
     struct search s = { .scene = scene,
-                        .triangle = &scene->map.charts.triangles[t->triangle],
+                        .charts = charts,
+                        .triangle = &charts->triangles[t->triangle],
                         .texel = texel };
-    const struct chart *chart = &scene->map.charts.charts[s.triangle->chart];
-    const struct radiosity_point middle = { t->position, 1.0f };
-    const struct probe p = probe_at(scene, texel, t->position);
+    const struct chart *chart = &charts->charts[s.triangle->chart];
+    const struct texel_point middle = { t->position, 1.0f };
+    const struct probe p = probe_at(scene, charts, texel, t->position);
     const int backs = count_backs(&p), crossings = count_crossings(&p);
     if (backs == 0 && crossings <= CROSSINGS / 2) return middle;
-    const bool inside = backs > PROBES / 2 || crossings > CROSSINGS / 2;
+    const bool inside = is_inside(backs, INSIDE_RAYS) || crossings > CROSSINGS / 2;
     const int most = crossings - CROSSINGS / 2 - 1; // of points that are outside of one solid more
     try_texel(&s, t, chart, inside ? ACROSS : ACROSS / 2);
     if (least_crossings(&s) <= most) return middle_of(&s, most);
     if (!inside) return middle;
     const float part = chart->spot ? 0.0f : try_edges(&s, t, most);
-    if (part == 0.0f) return (struct radiosity_point){ t->position, 0.0f };
-    struct radiosity_point point = middle_of(&s, most);
+    if (part == 0.0f) return (struct texel_point){ t->position, 0.0f };
+    struct texel_point point = middle_of(&s, most);
     point.share *= part;
     return point;
 }

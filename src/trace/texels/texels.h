@@ -1,0 +1,34 @@
+// Texels of charts in a trace scene of the same pose: where they are sampled, and the surface
+// there. Texels are those of both sides.
+#pragma once
+
+#include "scene/charts/charts.h"
+#include "trace/surface.h"
+
+// The surface at a point of a chart's triangle, seen from the side of `normal`.
+void texel_surface(const struct trace_scene *scene, const struct chart_triangle *of, float u,
+                   float v, vec3s normal, struct surface *out);
+
+// Barycentric weights of a place in the atlas. False: it is outside of the triangle.
+bool texel_weigh(const struct chart_triangle *triangle, float x, float y, float *u, float *v);
+
+// ---- point.c
+
+// Whether a point of the texel's surface is inside geometry.
+bool texel_is_inside(const struct trace_scene *scene, const struct charts *charts, uint32_t texel,
+                     vec3s at);
+
+// Where a texel is sampled, and the share of it that is not inside geometry; 0: none is.
+struct texel_point {
+    vec3s position;
+    float share;
+};
+struct texel_point texel_find_point(const struct trace_scene *scene, const struct charts *charts,
+                                    uint32_t texel);
+
+// ---- reflectance.c
+
+// Mean reflectance of a texel for light that bounces, 0…1 (brdf_bounce_reflectance); w: the mean
+// cosine between its shading normals and the normal of its triangle.
+vec4s texel_reflectance(const struct trace_scene *scene, const struct charts *charts,
+                        uint32_t texel);
