@@ -294,6 +294,45 @@ int gpu_reload_shaders(struct gpu *gpu);
 // it all. out NULL: the size alone. false: more than `capacity`, or out of memory.
 bool gpu_pipeline_cache_read(struct gpu *gpu, void *out, size_t capacity, size_t *bytes);
 
+// ---- Tables of objects --------------------------------------------------------------------------
+
+enum gpu_kind { GPU_BUFFER, GPU_READBACK, GPU_IMAGE, GPU_SAMPLER, GPU_PIPELINE };
+
+// An object of a state: its handle is the member at this offset. Conditions are in what it has: a
+// buffer of 0 bytes, an image of width 0 and a pipeline without a shader are not created. A sampler
+// is linear and clamped.
+struct gpu_object {
+    enum gpu_kind kind;
+    const char *name;
+    size_t member;
+    bool of_view;    // its size is that of a view, with which it is created again
+    size_t bytes;    // of a buffer (GPU_BUFFER_STORAGE) or a readback
+    uint32_t usage;  // of a buffer, in addition
+    uint32_t consts; // of a pipeline: bits of gpu_objects.constants
+    const struct gpu_shader *vertex, *shader; // vertex: a graphics pipeline without targets
+    struct gpu_image_desc image;              // but for its name
+};
+
+enum { GPU_MAX_OBJECTS = 288, GPU_MAX_CONSTANTS = 16 };
+struct gpu_objects {
+    int count;
+    struct gpu_object at[GPU_MAX_OBJECTS];
+    struct gpu_constant constants[GPU_MAX_CONSTANTS]; // that pipelines choose from
+};
+
+// Adds rows whose members are those of a struct at this offset of the state.
+void gpu_objects_add(struct gpu_objects *table, size_t base, const struct gpu_object *rows,
+                     size_t count);
+#define GPU_ADD(table, base, ...)                                                                  \
+    gpu_objects_add(table, base, (const struct gpu_object[]){ __VA_ARGS__ },                       \
+                    sizeof((const struct gpu_object[]){ __VA_ARGS__ }) /                           \
+                        sizeof(struct gpu_object))
+// false: gpu_objects_destroy frees what was created; it accepts any half-built state.
+bool gpu_objects_create(struct gpu *gpu, const struct gpu_objects *table, void *state);
+void gpu_objects_destroy(struct gpu *gpu, const struct gpu_objects *table, void *state);
+// Bytes of buffers and texels, without what a driver pads.
+uint64_t gpu_objects_bytes(const struct gpu_objects *table);
+
 // ---- Commands -----------------------------------------------------------------------------------
 
 enum {

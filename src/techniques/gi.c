@@ -31,12 +31,13 @@ static bool check_term(const struct gi *gi, const struct technique *technique,
 }
 
 // The common state gets the further views, too.
-static bool add_views(const struct gi *gi, const struct technique *technique, void *state)
+static bool add_views(const struct gi *gi, const struct technique *technique, const void *options,
+                      void *state)
 {
     for (int v = 1; v < FRAME_MAX_VIEWS; v++) {
         const struct gi_view *view = &gi->views[v];
-        if (view->width > 0 && technique->resize &&
-            !technique->resize(state, v, view->width, view->height))
+        if (view->width > 0 &&
+            !technique_resize(technique, gi->gpu, state, options, v, view->width, view->height))
             return false;
     }
     return true;
@@ -56,17 +57,18 @@ bool gi_create_state(const struct gi *gi, const struct technique *technique, con
     if (!check_term(gi, technique, bake, &how)) return false;
     if (!(*state = host_alloc(gi->host, 1, technique->state_size))) return false;
     gpu_owner_push(gi->gpu, technique->name);
-    const bool ok = technique->create(*state, &how) &&
+    const bool ok = technique_create(technique, *state, &how) &&
                     (technique->bake_version == 0 || technique->load(*state, bake)) &&
-                    (gi_is_per_view(technique) || add_views(gi, technique, *state));
+                    (gi_is_per_view(technique) || add_views(gi, technique, options, *state));
     gpu_owner_pop(gi->gpu);
     return ok;
 }
 
-void gi_destroy_state(const struct gi *gi, const struct technique *technique, void *state)
+void gi_destroy_state(const struct gi *gi, const struct technique *technique, const void *options,
+                      void *state)
 {
     if (!state) return;
-    technique->destroy(state);
+    technique_destroy(technique, gi->gpu, state, options);
     host_free(gi->host, state);
 }
 
@@ -102,9 +104,9 @@ void gi_destroy(struct gi *gi)
 {
     if (!gi) return;
     for (int i = 0; i < gi->spec.count; i++) {
-        gi_destroy_state(gi, gi->spec.technique[i], gi->state[i]);
+        gi_destroy_state(gi, gi->spec.technique[i], gi->spec.options[i], gi->state[i]);
         for (int v = 1; v < FRAME_MAX_VIEWS; v++)
-            gi_destroy_state(gi, gi->spec.technique[i], gi->views[v].state[i]);
+            gi_destroy_state(gi, gi->spec.technique[i], gi->spec.options[i], gi->views[v].state[i]);
     }
     gpu_image_destroy(gi->gpu, &gi->debug_image);
     probe_view_destroy(&gi->probe_view, gi->gpu);
@@ -129,7 +131,8 @@ bool gi_resize(struct gi *gi, uint32_t width, uint32_t height)
     gi->height = height;
     for (int i = 0; i < gi->spec.count; i++) {
         const struct technique *technique = enter(gi, i);
-        const bool ok = !technique->resize || technique->resize(gi->state[i], 0, width, height);
+        const bool ok = technique_resize(technique, gi->gpu, gi->state[i], gi->spec.options[i], 0,
+                                         width, height);
         leave(gi);
         if (!ok) return false;
     }
@@ -139,17 +142,18 @@ bool gi_resize(struct gi *gi, uint32_t width, uint32_t height)
 static bool resize_term(struct gi *gi, int term, int v, const struct scene_pose *pose)
 {
     const struct technique *technique = gi->spec.technique[term];
+    const void *options = gi->spec.options[term];
     struct gi_view *view = &gi->views[v];
     if (!gi_is_per_view(technique))
-        return !technique->resize ||
-               technique->resize(gi->state[term], v, view->width, view->height);
+        return technique_resize(technique, gi->gpu, gi->state[term], options, v, view->width,
+                                view->height);
     if (view->state[term] && view->width > 0)
-        return !technique->resize ||
-               technique->resize(view->state[term], 0, view->width, view->height);
-    gi_destroy_state(gi, technique, view->state[term]);
+        return technique_resize(technique, gi->gpu, view->state[term], options, 0, view->width,
+                                view->height);
+    gi_destroy_state(gi, technique, options, view->state[term]);
     view->state[term] = NULL;
-    return view->width == 0 || gi_create_state(gi, technique, gi->spec.options[term], NULL, pose, v,
-                                               &view->state[term]);
+    return view->width == 0 ||
+           gi_create_state(gi, technique, options, NULL, pose, v, &view->state[term]);
 }
 
 static void remove_view(struct gi *gi, int view, const struct scene_pose *pose)

@@ -89,7 +89,8 @@ static void exchange(struct gi *gi, struct gi_spec *next, const struct created *
     if (gi->debug_name) move_debug_view(gi, before.spec.technique[before.debug_term]);
     for (int i = 0; i < before.spec.count; i++)
         for (int v = 0; v < FRAME_MAX_VIEWS; v++)
-            gi_destroy_state(gi, before.spec.technique[i], *state_of(&before, v, i));
+            gi_destroy_state(gi, before.spec.technique[i], before.spec.options[i],
+                             *state_of(&before, v, i));
     gi_spec_finish(&before.spec);
 }
 
@@ -112,7 +113,7 @@ static void destroy_created(const struct gi *gi, const struct gi_spec *next,
 {
     for (int i = 0; i < next->count; i++)
         for (int v = 0; v < FRAME_MAX_VIEWS; v++)
-            gi_destroy_state(gi, next->technique[i], created->state[v][i]);
+            gi_destroy_state(gi, next->technique[i], next->options[i], created->state[v][i]);
 }
 
 bool gi_change(struct gi *gi, const struct gi_spec *spec, const struct gi_bakes *bakes,

@@ -261,26 +261,16 @@ uint64_t gi_view_memory_estimate(const struct gi_spec *spec, uint32_t width, uin
                                  bool apart)
 {
     uint64_t bytes = 0;
-    for (int i = 0; i < spec->count; i++) {
-        const struct technique *technique = spec->technique[i];
-        const void *options = spec->options[i];
-        if (apart && technique->memory_estimate)
-            bytes += technique->memory_estimate(options, width, height) -
-                     technique->memory_estimate(options, 0, 0);
-        else if (technique->view_memory)
-            bytes += technique->view_memory(options, width, height);
-    }
+    for (int i = 0; i < spec->count; i++)
+        bytes += technique_view_memory(spec->technique[i], spec->options[i], width, height, !apart);
     return bytes;
 }
 
 uint64_t gi_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height)
 {
     uint64_t bytes = 0;
-    for (int i = 0; i < spec->count; i++) {
-        const struct technique *technique = spec->technique[i];
-        if (technique->memory_estimate)
-            bytes += technique->memory_estimate(spec->options[i], width, height);
-    }
+    for (int i = 0; i < spec->count; i++)
+        bytes += technique_memory(spec->technique[i], spec->options[i], width, height);
     return bytes;
 }
 

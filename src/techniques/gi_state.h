@@ -36,4 +36,5 @@ static inline bool gi_is_per_view(const struct technique *technique)
 bool gi_create_state(const struct gi *gi, const struct technique *technique, const void *options,
                      const struct tensors *bake, const struct scene_pose *pose, int view,
                      void **state);
-void gi_destroy_state(const struct gi *gi, const struct technique *technique, void *state);
+void gi_destroy_state(const struct gi *gi, const struct technique *technique, const void *options,
+                      void *state);

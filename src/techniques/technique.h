@@ -76,8 +76,13 @@ struct technique {
     const struct technique_debug_view *debug_views; // ends with a NULL name; may be NULL
     size_t state_size; // of the private state, allocated zeroed by the host
 
-    // All but create, record and destroy may be NULL. `state` is the private state. Objects and
-    // scopes are named without the technique's name: gi.c has it pushed as their owner.
+    // All but create and record may be NULL. `state` is the private state. Objects and scopes are
+    // named without the technique's name: gi.c has it pushed as their owner.
+    // The GPU objects of a state whose view `number` has this size, 0 × 0: none. Those before
+    // `create` are of view 0; of further views only rows `of_view` count. Options of effect LIVE
+    // and INVALIDATE do not change the table.
+    void (*objects)(const void *options, int number, uint32_t width, uint32_t height,
+                    struct gpu_objects *out);
     // frame_need bits of these options, in addition to `needs`.
     uint32_t (*more_needs)(const void *options);
     // false: it cannot run on this device and scene; host_fail has the reason.
@@ -95,7 +100,8 @@ struct technique {
     // After `create`: takes what it needs of a bake, whose identity has been checked and whose
     // content is untrusted (tensors_expect). The tensors end with the call.
     bool (*load)(void *state, const struct tensors *bake);
-    // A view has this size: view 0 that of `create` until then. 0 × 0: the view has ended.
+    // A view has this size, and objects for it: view 0 that of `create` until then. 0 × 0: the view
+    // has ended.
     bool (*resize)(void *state, int view, uint32_t width, uint32_t height);
     void (*set_options)(void *state, const void *options); // only effects LIVE and INVALIDATE
     void (*invalidate)(void *state, uint32_t changes);     // technique_change bits
@@ -123,10 +129,24 @@ struct technique {
     bool (*charts)(const struct scene_pose *statics, const void *options, struct host *host,
                    struct charts *out);
     gpu_image (*light_map)(void *state);
-    void (*destroy)(void *state); // accepts any half-built state
-    // Bytes of GPU memory for these options at this size, without creating anything.
-    uint64_t (*memory_estimate)(const void *options, uint32_t width, uint32_t height);
-    // Of these what a further view adds that shares the memory of the first (gpu_image_desc.alias):
-    // its history. NULL: nothing.
-    uint64_t (*view_memory)(const void *options, uint32_t width, uint32_t height);
+    void (*destroy)(void *state); // before that of `objects`; accepts any half-built state
+    // Bytes of GPU memory for these options, beside that of `objects`: of what `load` creates.
+    uint64_t (*memory_estimate)(const void *options);
 };
+
+// ---- technique.c: a technique with its objects. The owner is pushed by the caller.
+
+bool technique_create(const struct technique *technique, void *state,
+                      const struct technique_create *how);
+bool technique_resize(const struct technique *technique, struct gpu *gpu, void *state,
+                      const void *options, int view, uint32_t width, uint32_t height);
+// Accepts any half-built state.
+void technique_destroy(const struct technique *technique, struct gpu *gpu, void *state,
+                       const void *options);
+// Bytes of GPU memory, without creating anything.
+uint64_t technique_memory(const struct technique *technique, const void *options, uint32_t width,
+                          uint32_t height);
+// Of these what a further view of this size adds. shared: it shares the memory of the first
+// (gpu_image_desc.alias).
+uint64_t technique_view_memory(const struct technique *technique, const void *options,
+                               uint32_t width, uint32_t height, bool shared);

@@ -102,11 +102,6 @@ static void sample_record(void *state, struct gpu_cmd *cmd, const struct frame_v
     (void)state, (void)cmd, (void)view;
 }
 
-static void sample_destroy(void *state)
-{
-    (void)state;
-}
-
 static const struct technique sample = { .name = "sample",
                                          .title = "sample",
                                          .paper = "none",
@@ -119,14 +114,13 @@ static const struct technique sample = { .name = "sample",
                                          .bake_report = sample_report,
                                          .create = sample_create,
                                          .load = sample_load,
-                                         .record = sample_record,
-                                         .destroy = sample_destroy };
+                                         .record = sample_record };
 
 const struct technique *const techniques[] = { &technique_none, &sample, NULL };
 
 bool technique_is_sound(const struct technique *technique)
 {
-    return technique->create && technique->record && technique->destroy;
+    return technique->create && technique->record;
 }
 
 const struct technique *technique_find(const char *name)

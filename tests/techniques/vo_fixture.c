@@ -25,7 +25,7 @@ struct vo_fixture vo_fixture_create(struct frame_fixture *frame_fixture, const c
                                           .options = spec.options[1],
                                           .width = frame_fixture->width,
                                           .height = frame_fixture->height };
-    CHECK(technique_vo.create(fixture.vo, &how));
+    CHECK(technique_create(&technique_vo, fixture.vo, &how));
     gi_spec_finish(&spec);
     frame_fixture->indirect = (struct frame_indirect){ .record = record,
                                                        .user = fixture.vo,
@@ -35,7 +35,8 @@ struct vo_fixture vo_fixture_create(struct frame_fixture *frame_fixture, const c
 
 void vo_fixture_destroy(struct vo_fixture *fixture)
 {
-    technique_vo.destroy(fixture->vo);
+    technique_destroy(&technique_vo, fixture->frame_fixture->gpu, fixture->vo,
+                      &fixture->vo->options);
     free(fixture->vo);
     *fixture = (struct vo_fixture){ 0 };
 }

@@ -11,6 +11,7 @@
 #include "technique_shaders.h"
 
 #include <math.h>
+#include <stddef.h>
 
 struct ambient_options {
 #define OPTION OPTION_FIELD
@@ -25,7 +26,6 @@ static const struct option_row option_rows[] = {
 };
 
 struct ambient {
-    struct gpu *gpu;
     struct ambient_options options;
     gpu_pipeline sum, total, fill;
     gpu_buffer partials; // vec3 each: scaled lumen
@@ -36,23 +36,24 @@ enum { VEC3_BYTES = 12, LOCAL = 8 };
 
 static const float MEAN_PATH = 2.0f / 3.0f; // over the distance along the normal
 
+#define MEMBER(member) offsetof(struct ambient, member)
+
+static void ambient_objects(const void *options, int view, uint32_t width, uint32_t height,
+                            struct gpu_objects *out)
+{
+    (void)options, (void)view, (void)width, (void)height;
+    GPU_ADD(out, 0,
+            { GPU_BUFFER, "partials", MEMBER(partials), .bytes = AMBIENT_GROUPS * VEC3_BYTES },
+            { GPU_BUFFER, "result", MEMBER(result), .bytes = VEC3_BYTES },
+            { GPU_PIPELINE, "sum", MEMBER(sum), .shader = &shader_ambient_sum_comp },
+            { GPU_PIPELINE, "total", MEMBER(total), .shader = &shader_ambient_total_comp },
+            { GPU_PIPELINE, "fill", MEMBER(fill), .shader = &shader_ambient_fill_comp });
+}
+
 static bool ambient_create(void *state, const struct technique_create *how)
 {
-    struct ambient *ambient = state;
-    struct gpu *gpu = how->gpu;
-    ambient->gpu = gpu;
-    ambient->options = *(const struct ambient_options *)how->options;
-    const struct gpu_buffer_desc partials = { "partials", AMBIENT_GROUPS * VEC3_BYTES,
-                                              GPU_BUFFER_STORAGE };
-    const struct gpu_buffer_desc result = { "result", VEC3_BYTES, GPU_BUFFER_STORAGE };
-    return gpu_buffer_create(gpu, &partials, &ambient->partials) &&
-           gpu_buffer_create(gpu, &result, &ambient->result) &&
-           gpu_compute_pipeline_create(gpu, "sum", &shader_ambient_sum_comp, NULL, 0,
-                                       &ambient->sum) &&
-           gpu_compute_pipeline_create(gpu, "total", &shader_ambient_total_comp, NULL, 0,
-                                       &ambient->total) &&
-           gpu_compute_pipeline_create(gpu, "fill", &shader_ambient_fill_comp, NULL, 0,
-                                       &ambient->fill);
+    ((struct ambient *)state)->options = *(const struct ambient_options *)how->options;
+    return true;
 }
 
 static void ambient_set_options(void *state, const void *options)
@@ -120,25 +121,6 @@ static void ambient_record(void *state, struct gpu_cmd *cmd, const struct frame_
     gpu_scope_end(cmd);
 }
 
-static void ambient_destroy(void *state)
-{
-    struct ambient *ambient = state;
-    if (!ambient->gpu) return;
-    gpu_buffer_destroy(ambient->gpu, &ambient->partials);
-    gpu_buffer_destroy(ambient->gpu, &ambient->result);
-    gpu_pipeline_destroy(ambient->gpu, &ambient->sum);
-    gpu_pipeline_destroy(ambient->gpu, &ambient->total);
-    gpu_pipeline_destroy(ambient->gpu, &ambient->fill);
-}
-
-static uint64_t ambient_memory_estimate(const void *options, uint32_t width, uint32_t height)
-{
-    (void)options;
-    (void)width;
-    (void)height;
-    return AMBIENT_GROUPS * VEC3_BYTES + VEC3_BYTES;
-}
-
 const struct technique technique_ambient = {
     .name = "ambient",
     .title = "uniform ambient irradiance from the reflected flux",
@@ -148,10 +130,9 @@ const struct technique technique_ambient = {
     .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,
     .options = OPTION_TABLE(struct ambient_options, option_rows, NULL),
     .state_size = sizeof(struct ambient),
+    .objects = ambient_objects,
     .create = ambient_create,
     .set_options = ambient_set_options,
     .update = ambient_update,
     .record = ambient_record,
-    .destroy = ambient_destroy,
-    .memory_estimate = ambient_memory_estimate,
 };

@@ -5,12 +5,11 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 enum { LOCAL = 8, BLUR_ROW = 4 };
 enum { ROTATIONS = 16 }; // of the pattern, in pixels of a tile and in frames
-
-static const enum gpu_format ESTIMATE_FORMAT = GPU_RG32F, HISTORY_FORMAT = GPU_RGBA32F;
 
 static uint32_t step_of(const struct screen_ao_options *options)
 {
@@ -22,108 +21,63 @@ static uint32_t work_size(const struct screen_ao_options *options, uint32_t size
     return gpu_groups(size, step_of(options));
 }
 
-struct gpu_constant screen_ao_step(const struct screen_ao *ao)
-{
-    return (struct gpu_constant){ SCREEN_AO_CONSTANT_STEP, step_of(&ao->options) };
-}
-
-// ---- creation and destruction
-
-static bool create_image(struct screen_ao *ao, const char *name, const char *alias,
-                         enum gpu_format format, gpu_image *out)
-{
-    const struct gpu_image_desc desc = { .name = name,
-                                         .format = format,
-                                         .width = ao->work_width,
-                                         .height = ao->work_height,
-                                         .usage = GPU_SAMPLED | GPU_STORAGE,
-                                         .alias = alias };
-    gpu_image_destroy(ao->gpu, out);
-    return gpu_image_create(ao->gpu, &desc, out);
-}
-
-bool screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height)
-{
-    ao->width = width;
-    ao->height = height;
-    ao->work_width = work_size(&ao->options, width);
-    ao->work_height = work_size(&ao->options, height);
-    ao->previous_near_m = 0.0f;
-    // Of one view at a time, but for the history.
-    if (!create_image(ao, "estimate", "ao.estimate", ESTIMATE_FORMAT, &ao->estimate)) return false;
-    if (ao->options.blur &&
-        !create_image(ao, "scratch", "ao.scratch", ESTIMATE_FORMAT, &ao->scratch))
-        return false;
-    return !ao->options.temporal ||
-           (create_image(ao, "history", NULL, HISTORY_FORMAT, &ao->history[0]) &&
-            create_image(ao, "history", NULL, HISTORY_FORMAT, &ao->history[1]));
-}
-
-static bool create_pipeline(struct screen_ao *ao, const char *name, const struct gpu_shader *shader,
-                            gpu_pipeline *out)
-{
-    const struct gpu_constant step = screen_ao_step(ao);
-    return gpu_compute_pipeline_create(ao->gpu, name, shader, &step, 1, out);
-}
+// ---- objects
 
 static bool needs_upsample(const struct screen_ao_options *options)
 {
     return options->half_resolution || !options->blur;
 }
 
-static bool create_pipelines(struct screen_ao *ao)
+// Views share the memory of the estimate, which one at a time uses, but not of the history.
+void screen_ao_objects(const struct screen_ao_options *o, size_t base, uint32_t width,
+                       uint32_t height, struct gpu_objects *out)
 {
-    const struct screen_ao_options *o = &ao->options;
+    const struct gpu_image_desc estimate = { .format = GPU_RG32F,
+                                             .width = work_size(o, width),
+                                             .height = work_size(o, height),
+                                             .usage = GPU_SAMPLED | GPU_STORAGE,
+                                             .alias = "ao.estimate" };
+    const struct gpu_image_desc none = { .width = 0 };
+    struct gpu_image_desc scratch = estimate, history = estimate;
+    scratch.alias = "ao.scratch";
+    history.alias = NULL;
+    history.format = GPU_RGBA32F;
+    if (!o->blur) scratch = none;
+    if (!o->temporal) history = none;
     const struct gpu_shader *blur_y = o->half_resolution ? &shader_common_screen_ao_blur_y_half_comp
                                                          : &shader_common_screen_ao_blur_y_comp;
-    if (o->blur &&
-        !(create_pipeline(ao, "blur_x", &shader_common_screen_ao_blur_x_comp, &ao->blur_x) &&
-          create_pipeline(ao, "blur_y", blur_y, &ao->blur_y)))
-        return false;
-    if (needs_upsample(o) &&
-        !create_pipeline(ao, "upsample", &shader_common_screen_ao_upsample_comp, &ao->upsample))
-        return false;
-    return !o->temporal ||
-           create_pipeline(ao, "temporal", &shader_common_screen_ao_temporal_comp, &ao->temporal);
+    out->constants[SCREEN_AO_CONSTANT_STEP] =
+        (struct gpu_constant){ SCREEN_AO_CONSTANT_STEP, step_of(o) };
+#define MEMBER(member) offsetof(struct screen_ao, member), .consts = SCREEN_AO_STEP
+    GPU_ADD(out, base,
+            { GPU_IMAGE, "estimate", MEMBER(estimate), .of_view = true, .image = estimate },
+            { GPU_IMAGE, "scratch", MEMBER(scratch), .of_view = true, .image = scratch },
+            { GPU_IMAGE, "history", MEMBER(history[0]), .of_view = true, .image = history },
+            { GPU_IMAGE, "history", MEMBER(history[1]), .of_view = true, .image = history },
+            { GPU_PIPELINE, "blur_x", MEMBER(blur_x),
+              .shader = o->blur ? &shader_common_screen_ao_blur_x_comp : NULL },
+            { GPU_PIPELINE, "blur_y", MEMBER(blur_y), .shader = o->blur ? blur_y : NULL },
+            { GPU_PIPELINE, "upsample", MEMBER(upsample),
+              .shader = needs_upsample(o) ? &shader_common_screen_ao_upsample_comp : NULL },
+            { GPU_PIPELINE, "temporal", MEMBER(temporal),
+              .shader = o->temporal ? &shader_common_screen_ao_temporal_comp : NULL });
+#undef MEMBER
 }
 
-bool screen_ao_init(struct screen_ao *ao, struct gpu *gpu, const struct screen_ao_options *options,
-                    uint32_t width, uint32_t height)
+void screen_ao_init(struct screen_ao *ao, const struct screen_ao_options *options, uint32_t width,
+                    uint32_t height)
 {
-    *ao = (struct screen_ao){ .gpu = gpu, .options = *options };
-    return create_pipelines(ao) && screen_ao_resize(ao, width, height);
+    ao->options = *options;
+    screen_ao_resize(ao, width, height);
 }
 
-void screen_ao_finish(struct screen_ao *ao)
+void screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height)
 {
-    if (!ao->gpu) return;
-    gpu_image_destroy(ao->gpu, &ao->estimate);
-    gpu_image_destroy(ao->gpu, &ao->scratch);
-    for (int i = 0; i < 2; i++) gpu_image_destroy(ao->gpu, &ao->history[i]);
-    gpu_pipeline_destroy(ao->gpu, &ao->temporal);
-    gpu_pipeline_destroy(ao->gpu, &ao->blur_x);
-    gpu_pipeline_destroy(ao->gpu, &ao->blur_y);
-    gpu_pipeline_destroy(ao->gpu, &ao->upsample);
-    *ao = (struct screen_ao){ 0 };
-}
-
-static uint64_t pixels_of(const struct screen_ao_options *options, uint32_t width, uint32_t height)
-{
-    return (uint64_t)work_size(options, width) * work_size(options, height);
-}
-
-uint64_t screen_ao_history_memory(const struct screen_ao_options *options, uint32_t width,
-                                  uint32_t height)
-{
-    if (!options->temporal) return 0;
-    return 2 * (uint64_t)gpu_format_bytes(HISTORY_FORMAT) * pixels_of(options, width, height);
-}
-
-uint64_t screen_ao_memory(const struct screen_ao_options *options, uint32_t width, uint32_t height)
-{
-    return (uint64_t)gpu_format_bytes(ESTIMATE_FORMAT) * (options->blur ? 2 : 1) *
-               pixels_of(options, width, height) +
-           screen_ao_history_memory(options, width, height);
+    ao->width = width;
+    ao->height = height;
+    ao->work_width = work_size(&ao->options, width);
+    ao->work_height = work_size(&ao->options, height);
+    ao->previous_near_m = 0.0f;
 }
 
 // ---- a frame

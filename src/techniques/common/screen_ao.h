@@ -13,7 +13,6 @@ struct screen_ao_options {
 };
 
 struct screen_ao {
-    struct gpu *gpu;
     struct screen_ao_options options;
     uint32_t width, height, work_width, work_height;
     gpu_image estimate;   // RG32F: visibility, depth; (1, 0) without a surface
@@ -26,18 +25,14 @@ struct screen_ao {
     struct screen_ao_params params; // of the frame being recorded
 };
 
-// false: screen_ao_finish frees what was created.
-bool screen_ao_init(struct screen_ao *ao, struct gpu *gpu, const struct screen_ao_options *options,
-                    uint32_t width, uint32_t height);
-bool screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height);
-void screen_ao_finish(struct screen_ao *ao); // accepts zero
-uint64_t screen_ao_memory(const struct screen_ao_options *options, uint32_t width, uint32_t height);
-// Of these the history.
-uint64_t screen_ao_history_memory(const struct screen_ao_options *options, uint32_t width,
-                                  uint32_t height);
-
+// The member of a state at offset `base`; its objects are before it in the table.
+void screen_ao_objects(const struct screen_ao_options *options, size_t base, uint32_t width,
+                       uint32_t height, struct gpu_objects *out);
 // The constant SCREEN_AO_CONSTANT_STEP, which every shader of the estimate has.
-struct gpu_constant screen_ao_step(const struct screen_ao *ao);
+#define SCREEN_AO_STEP (1u << SCREEN_AO_CONSTANT_STEP)
+void screen_ao_init(struct screen_ao *ao, const struct screen_ao_options *options, uint32_t width,
+                    uint32_t height);
+void screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height);
 
 void screen_ao_invalidate(struct screen_ao *ao); // discards the history
 // Once a frame, before the estimate. radius_m: of the sphere; reach: its largest radius on the

@@ -366,12 +366,10 @@ static void destroy(void *state)
 }
 
 // Of one object.
-static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t height)
+static uint64_t memory_estimate(const void *options)
 {
     const struct dnrt_options *o = options;
     const uint64_t n = (uint64_t)dnrt_size(o), samples = n * n * n;
-    (void)width;
-    (void)height;
     const uint64_t maps = o->intrusion == DNRT_INTRUSION_SHADOW ? 6 : 0;
     return samples * (uint64_t)dnrt_normals(o) *
                ((uint64_t)(dnrt_planes(o) * dnrt_coefficients(o)) *

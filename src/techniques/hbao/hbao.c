@@ -8,6 +8,7 @@
 #include "technique_shaders.h"
 
 #include <math.h>
+#include <stddef.h>
 
 enum hbao_falloff { HBAO_FALLOFF_CUBIC, HBAO_FALLOFF_QUADRATIC };
 
@@ -26,7 +27,6 @@ static const struct option_row option_rows[] = {
 static const struct option_alias aliases[] = { { "half", "half_resolution" }, { NULL, NULL } };
 
 struct hbao {
-    struct gpu *gpu;
     struct hbao_options options;
     struct screen_ao ao;
     gpu_pipeline horizons;
@@ -38,22 +38,31 @@ static struct screen_ao_options ao_options(const struct hbao_options *options)
                                        .half_resolution = options->half_resolution };
 }
 
+static void hbao_objects(const void *options, int view, uint32_t width, uint32_t height,
+                         struct gpu_objects *out)
+{
+    const struct screen_ao_options ao = ao_options(options);
+    (void)view;
+    screen_ao_objects(&ao, offsetof(struct hbao, ao), width, height, out);
+    GPU_ADD(out, 0,
+            { GPU_PIPELINE, "horizons", offsetof(struct hbao, horizons),
+              .shader = &shader_hbao_horizons_comp, .consts = SCREEN_AO_STEP });
+}
+
 static bool hbao_create(void *state, const struct technique_create *how)
 {
     struct hbao *hbao = state;
-    hbao->gpu = how->gpu;
     hbao->options = *(const struct hbao_options *)how->options;
     const struct screen_ao_options options = ao_options(&hbao->options);
-    if (!screen_ao_init(&hbao->ao, how->gpu, &options, how->width, how->height)) return false;
-    const struct gpu_constant step = screen_ao_step(&hbao->ao);
-    return gpu_compute_pipeline_create(hbao->gpu, "horizons", &shader_hbao_horizons_comp, &step, 1,
-                                       &hbao->horizons);
+    screen_ao_init(&hbao->ao, &options, how->width, how->height);
+    return true;
 }
 
 static bool hbao_resize(void *state, int view, uint32_t width, uint32_t height)
 {
     (void)view;
-    return screen_ao_resize(&((struct hbao *)state)->ao, width, height);
+    screen_ao_resize(&((struct hbao *)state)->ao, width, height);
+    return true;
 }
 
 static void hbao_set_options(void *state, const void *options)
@@ -79,26 +88,6 @@ static void hbao_record(void *state, struct gpu_cmd *cmd, const struct frame_vie
     screen_ao_record(&hbao->ao, cmd, view);
 }
 
-static void hbao_destroy(void *state)
-{
-    struct hbao *hbao = state;
-    if (!hbao->gpu) return;
-    screen_ao_finish(&hbao->ao);
-    gpu_pipeline_destroy(hbao->gpu, &hbao->horizons);
-}
-
-static uint64_t hbao_memory_estimate(const void *options, uint32_t width, uint32_t height)
-{
-    const struct screen_ao_options ao = ao_options(options);
-    return screen_ao_memory(&ao, width, height);
-}
-
-static uint64_t hbao_view_memory(const void *options, uint32_t width, uint32_t height)
-{
-    const struct screen_ao_options ao = ao_options(options);
-    return screen_ao_history_memory(&ao, width, height);
-}
-
 const struct technique technique_hbao = {
     .name = "hbao",
     .title = "horizon-based ambient occlusion",
@@ -108,11 +97,9 @@ const struct technique technique_hbao = {
     .needs = FRAME_WRITES_VISIBILITY,
     .options = OPTION_TABLE(struct hbao_options, option_rows, aliases),
     .state_size = sizeof(struct hbao),
+    .objects = hbao_objects,
     .create = hbao_create,
     .resize = hbao_resize,
     .set_options = hbao_set_options,
     .record = hbao_record,
-    .destroy = hbao_destroy,
-    .memory_estimate = hbao_memory_estimate,
-    .view_memory = hbao_view_memory,
 };

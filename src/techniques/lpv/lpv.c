@@ -77,20 +77,23 @@ static bool holpv_check(const struct technique_create *how)
     return check("holpv", how);
 }
 
+static void lpv_objects(const void *options, int view, uint32_t width, uint32_t height,
+                        struct gpu_objects *out)
+{
+    (void)view, (void)width, (void)height;
+    lpv_add_volumes(options, out);
+    lpv_add_pipelines(options, out);
+}
+
 static bool create(struct lpv_cascades *cascades, const char *owner,
                    const struct technique_create *how)
 {
-    const struct gpu_sampler_desc linear = { .name = "linear",
-                                             .filter = GPU_LINEAR,
-                                             .wrap_u = GPU_CLAMP,
-                                             .wrap_v = GPU_CLAMP,
-                                             .wrap_w = GPU_CLAMP };
     struct lpv *finest = &cascades->levels[0];
     if (how->pose) lpv_diagnose(how->host, owner, how->options, how->pose);
     finest->gpu = how->gpu;
     finest->options = *(const struct lpv_options *)how->options;
-    return gpu_sampler_get(finest->gpu, &linear, &finest->linear) && lpv_volumes_create(finest) &&
-           lpv_pipelines_create(finest) && lpv_cascades_create(cascades);
+    lpv_cascades_create(cascades);
+    return true;
 }
 
 static bool lpv_create(void *state, const struct technique_create *how)
@@ -176,22 +179,6 @@ static bool lpv_probes(void *state, struct probe_volume *out)
     return lpv_probes_publish(state, out);
 }
 
-static void lpv_destroy(void *state)
-{
-    struct lpv *lpv = state;
-    if (!lpv->gpu) return;
-    lpv_cascades_destroy(state);
-    lpv_volumes_destroy(lpv);
-    lpv_pipelines_destroy(lpv);
-}
-
-static uint64_t lpv_memory_estimate(const void *options, uint32_t width, uint32_t height)
-{
-    (void)width;
-    (void)height;
-    return lpv_volumes_bytes(options);
-}
-
 static uint32_t lpv_more_needs(const void *options)
 {
     const struct lpv_options *o = options;
@@ -206,7 +193,7 @@ static uint32_t lpv_more_needs(const void *options)
     .presets = presets_, .debug_views = debug_views, .state_size = sizeof(struct lpv_cascades),    \
     .set_options = lpv_set_options, .invalidate = lpv_invalidate, .update = lpv_update,            \
     .record = lpv_record, .debug_view = lpv_debug_view, .probes = lpv_probes,                      \
-    .destroy = lpv_destroy, .memory_estimate = lpv_memory_estimate
+    .objects = lpv_objects
 
 const struct technique technique_lpv = {
     LPV_TECHNIQUE("lpv", "light propagation volumes",

@@ -3,25 +3,23 @@
 #include "techniques/lpv/lpv_stages.h"
 
 #include "techniques/lpv/lpv_bindings.h"
-#include "techniques/lpv/lpv_volumes.h"
 
-bool lpv_cascades_create(struct lpv_cascades *cascades)
+#include <stddef.h>
+#include <string.h>
+
+void lpv_cascades_create(struct lpv_cascades *cascades)
 {
+    const size_t own = offsetof(struct lpv_volumes, light);
     const struct lpv *finest = &cascades->levels[0];
     for (int i = 1; i < finest->options.cascades; i++) {
         struct lpv *level = &cascades->levels[i];
+        struct lpv_volumes volumes = finest->volumes;
+        memcpy((char *)&volumes + own, (char *)&level->volumes + own, sizeof volumes - own);
         *level = *finest;
+        level->volumes = volumes;
         level->coarser = NULL;
         cascades->levels[i - 1].coarser = level;
-        if (!lpv_volumes_create_coarser(level)) return false;
     }
-    return true;
-}
-
-void lpv_cascades_destroy(struct lpv_cascades *cascades)
-{
-    for (struct lpv *level = cascades->levels[0].coarser; level; level = level->coarser)
-        lpv_volumes_destroy_coarser(level);
 }
 
 // Enough steps for the light of all bounces, which crosses the coarsest grid several times, at most

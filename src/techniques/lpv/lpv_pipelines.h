@@ -1,9 +1,7 @@
 // All compute pipelines.
 #pragma once
 
-#include <stdbool.h>
+struct gpu_objects;
+struct lpv_options;
 
-struct lpv;
-
-bool lpv_pipelines_create(struct lpv *lpv);
-void lpv_pipelines_destroy(struct lpv *lpv);
+void lpv_add_pipelines(const struct lpv_options *options, struct gpu_objects *out);

@@ -23,9 +23,8 @@ bool lpv_bounces_after(const struct lpv *lpv, int left);
 void lpv_record_bounce(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image arrived);
 
 // lpv_cascades.c
-// The coarser cascades of a complete finest one.
-bool lpv_cascades_create(struct lpv_cascades *cascades);
-void lpv_cascades_destroy(struct lpv_cascades *cascades);
+// The coarser cascades get what the complete finest one shares.
+void lpv_cascades_create(struct lpv_cascades *cascades);
 // Gives each cascade its grid; false: the scene has no extent.
 bool lpv_cascades_place(struct lpv *finest, const struct frame_view *view);
 // Resamples the light of the next coarser cascade into `to`, the input of the first step.

@@ -19,16 +19,16 @@ enum lpv_closure { LPV_CLOSURE_LINEAR, LPV_CLOSURE_POSITIVE };
 enum lpv_precision { LPV_PRECISION_HALF, LPV_PRECISION_FLOAT };
 
 // Images and buffers over the cells of a grid. A light volume is one image: its slabs of dim³
-// texels follow each other along z (lpv_light.glsl).
+// texels follow each other along z (lpv_light.glsl). Members from `light` on are of one cascade.
 struct lpv_volumes {
     gpu_buffer sums;    // [cell][coefficient][colour] 64-bit integers
     gpu_image injected; // injected light
     gpu_image steps[2]; // ping-pong of propagation; half precision: `light` replaces steps[1]
-    gpu_image light;    // RGBA16F: accumulated over all steps
     gpu_image probes;   // RGBA16F: irradiance probes, FRAME_PROBE_SLABS slabs
-    // Further bounces.
-    gpu_image sent;      // injected light + light that surfaces reflect
-    gpu_buffer surfaces; // [cell][direction][colour]: reflecting area (lpv_surfaces.comp)
+    gpu_image sent;     // bounces: injected light + light that surfaces reflect
+
+    gpu_image light;     // RGBA16F: accumulated over all steps
+    gpu_buffer surfaces; // bounces: [cell][direction][colour] reflecting area (lpv_surfaces.comp)
     // Occlusion.
     gpu_image geometry;       // RGBA16F: the geometry volume (geometry.glsl)
     gpu_buffer walls;         // LPV_GEOMETRY_SCENE: [cell] lpv_lookup.glsl
@@ -59,7 +59,7 @@ struct lpv_surface_cache {
 };
 
 // One grid, or one of several cascades. Coarser cascades share the pipelines and all volumes of the
-// finest, except those that lpv_volumes.c marks as owned by each cascade.
+// finest that are not of one cascade.
 struct lpv {
     struct gpu *gpu;
     struct lpv_options options;

@@ -1,11 +1,10 @@
 // Sizes, images and buffers of all volumes.
 #pragma once
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-struct lpv;
+struct gpu_objects;
 struct lpv_grid;
 struct lpv_options;
 
@@ -20,11 +19,5 @@ enum {
 };
 size_t lpv_cell_count(const struct lpv_grid *grid); // in use
 
-// All volumes of the finest cascade, or of the only grid.
-bool lpv_volumes_create(struct lpv *lpv);
-// A coarser cascade holds a copy of the finest's volumes: replaces those that each cascade owns.
-bool lpv_volumes_create_coarser(struct lpv *lpv);
-void lpv_volumes_destroy(struct lpv *lpv);
-void lpv_volumes_destroy_coarser(struct lpv *lpv);
-// GPU memory of all cascades.
-uint64_t lpv_volumes_bytes(const struct lpv_options *options);
+// All volumes, of all cascades.
+void lpv_add_volumes(const struct lpv_options *options, struct gpu_objects *out);

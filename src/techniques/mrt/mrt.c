@@ -274,17 +274,13 @@ static uint64_t estimate(const struct mrt_options *o, bool cluttered)
     });
 }
 
-static uint64_t mrt_memory_estimate(const void *options, uint32_t width, uint32_t height)
+static uint64_t mrt_memory_estimate(const void *options)
 {
-    (void)width;
-    (void)height;
     return estimate(options, false);
 }
 
-static uint64_t drt_memory_estimate(const void *options, uint32_t width, uint32_t height)
+static uint64_t drt_memory_estimate(const void *options)
 {
-    (void)width;
-    (void)height;
     return estimate(options, true);
 }
 

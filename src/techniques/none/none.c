@@ -17,11 +17,6 @@ static void none_record(void *state, struct gpu_cmd *cmd, const struct frame_vie
     gpu_scope_end(cmd);
 }
 
-static void none_destroy(void *state)
-{
-    (void)state;
-}
-
 const struct technique technique_none = {
     .name = "none",
     .title = "no indirect light",
@@ -31,5 +26,4 @@ const struct technique technique_none = {
     .needs = FRAME_WRITES_IRRADIANCE,
     .create = none_create,
     .record = none_record,
-    .destroy = none_destroy,
 };

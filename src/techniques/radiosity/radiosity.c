@@ -277,14 +277,12 @@ static uint64_t rows_bytes(uint64_t rows, uint64_t bytes)
 
 // Of a light map with the texels wanted, on one side, that charts fill by two thirds, with a
 // triangle for each texel.
-static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t height)
+static uint64_t memory_estimate(const void *options)
 {
     const struct radiosity_options *o = options;
     const uint64_t texels = (uint64_t)o->texels, places = texels * 3 / 2;
     const uint64_t clusters = texels / (uint64_t)(o->cluster * o->cluster) + 1;
     const uint64_t nodes = 2 * clusters, sources = (uint64_t)o->sources;
-    (void)width;
-    (void)height;
     const uint64_t of_texels =
         table_bytes(RADIOSITY_TEXEL_PARTS * texels, 16) + rows_bytes(texels, 8 * sources) +
         table_bytes(RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR * texels, 16) + table_bytes(texels, 16) +

@@ -8,6 +8,8 @@
 
 #include "technique_shaders.h"
 
+#include <stddef.h>
+
 _Static_assert(SAMPLE_SET_MOST == SSAO_MOST_SAMPLES, "every set fits into the table");
 
 struct ssao_options {
@@ -25,7 +27,6 @@ static const struct option_row option_rows[] = {
 static const struct option_alias aliases[] = { { "half", "half_resolution" }, { NULL, NULL } };
 
 struct ssao {
-    struct gpu *gpu;
     struct ssao_options options;
     struct screen_ao ao;
     gpu_pipeline points;
@@ -49,31 +50,36 @@ static int fill_table(const struct ssao_options *options, struct ssao_samples *t
     return set->count;
 }
 
-static bool create_points(struct ssao *ssao)
+static void ssao_objects(const void *options, int view, uint32_t width, uint32_t height,
+                         struct gpu_objects *out)
 {
-    const struct gpu_constant constants[] = {
-        screen_ao_step(&ssao->ao),
-        { SSAO_CONSTANT_COUNT, (uint32_t)fill_table(&ssao->options, &ssao->table) },
-        { SSAO_CONSTANT_NORMAL, ssao->options.normal },
-    };
-    return gpu_compute_pipeline_create(ssao->gpu, "points", &shader_ssao_points_comp, constants,
-                                       sizeof constants / sizeof constants[0], &ssao->points);
+    const struct ssao_options *o = options;
+    const struct screen_ao_options ao = ao_options(o);
+    const uint32_t samples = (uint32_t)sample_set_at(SAMPLE_BALL, o->samples)->count;
+    (void)view;
+    out->constants[SSAO_CONSTANT_COUNT] = (struct gpu_constant){ SSAO_CONSTANT_COUNT, samples };
+    out->constants[SSAO_CONSTANT_NORMAL] = (struct gpu_constant){ SSAO_CONSTANT_NORMAL, o->normal };
+    screen_ao_objects(&ao, offsetof(struct ssao, ao), width, height, out);
+    GPU_ADD(out, 0,
+            { GPU_PIPELINE, "points", offsetof(struct ssao, points),
+              .shader = &shader_ssao_points_comp,
+              .consts = SCREEN_AO_STEP | 1u << SSAO_CONSTANT_COUNT | 1u << SSAO_CONSTANT_NORMAL });
 }
 
 static bool ssao_create(void *state, const struct technique_create *how)
 {
     struct ssao *ssao = state;
-    ssao->gpu = how->gpu;
     ssao->options = *(const struct ssao_options *)how->options;
     const struct screen_ao_options options = ao_options(&ssao->options);
-    return screen_ao_init(&ssao->ao, how->gpu, &options, how->width, how->height) &&
-           create_points(ssao);
+    screen_ao_init(&ssao->ao, &options, how->width, how->height);
+    return true;
 }
 
 static bool ssao_resize(void *state, int view, uint32_t width, uint32_t height)
 {
     (void)view;
-    return screen_ao_resize(&((struct ssao *)state)->ao, width, height);
+    screen_ao_resize(&((struct ssao *)state)->ao, width, height);
+    return true;
 }
 
 static void ssao_set_options(void *state, const void *options)
@@ -92,26 +98,6 @@ static void ssao_record(void *state, struct gpu_cmd *cmd, const struct frame_vie
     screen_ao_record(&ssao->ao, cmd, view);
 }
 
-static void ssao_destroy(void *state)
-{
-    struct ssao *ssao = state;
-    if (!ssao->gpu) return;
-    screen_ao_finish(&ssao->ao);
-    gpu_pipeline_destroy(ssao->gpu, &ssao->points);
-}
-
-static uint64_t ssao_memory_estimate(const void *options, uint32_t width, uint32_t height)
-{
-    const struct screen_ao_options ao = ao_options(options);
-    return screen_ao_memory(&ao, width, height);
-}
-
-static uint64_t ssao_view_memory(const void *options, uint32_t width, uint32_t height)
-{
-    const struct screen_ao_options ao = ao_options(options);
-    return screen_ao_history_memory(&ao, width, height);
-}
-
 const struct technique technique_ssao = {
     .name = "ssao",
     .title = "screen-space ambient occlusion, points in a sphere",
@@ -122,11 +108,9 @@ const struct technique technique_ssao = {
     .needs = FRAME_WRITES_VISIBILITY,
     .options = OPTION_TABLE(struct ssao_options, option_rows, aliases),
     .state_size = sizeof(struct ssao),
+    .objects = ssao_objects,
     .create = ssao_create,
     .resize = ssao_resize,
     .set_options = ssao_set_options,
     .record = ssao_record,
-    .destroy = ssao_destroy,
-    .memory_estimate = ssao_memory_estimate,
-    .view_memory = ssao_view_memory,
 };

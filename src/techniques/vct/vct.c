@@ -95,21 +95,35 @@ static bool vctao_check(const struct technique_create *how)
 
 // ---- Creation and changes -----------------------------------------------------------------------
 
-static bool resize_temporal(struct vct *vct, struct vct_temporal *temporal, uint32_t width,
-                            uint32_t height)
+static void add_objects(struct vct_options options, int view, uint32_t width, uint32_t height,
+                        struct gpu_objects *out)
 {
-    if (width == 0) vct_temporal_destroy(temporal, vct->gpu);
-    if (width == 0 || !vct->options.temporal) return true;
-    temporal->unlit = vct->options.occlusion;
-    return vct_temporal_resize(temporal, vct->gpu, width, height) &&
-           (temporal->filter.id || vct_temporal_create(temporal, vct->gpu));
+    vct_add_volumes(&options, out);
+    vct_add_pixels(&options, view, width, height, out);
+    vct_add_pipelines(&options, out);
+}
+
+static void vct_objects(const void *options, int view, uint32_t width, uint32_t height,
+                        struct gpu_objects *out)
+{
+    add_objects(vct_light_options(options), view, width, height, out);
+}
+
+static void vctao_objects(const void *options, int view, uint32_t width, uint32_t height,
+                          struct gpu_objects *out)
+{
+    add_objects(vct_occlusion_options(options), view, width, height, out);
 }
 
 static bool vct_resize(void *state, int view, uint32_t width, uint32_t height)
 {
     struct vct *vct = state;
-    return vct_create_images(vct, view, width, height) &&
-           resize_temporal(vct, &vct->views[view].temporal, width, height);
+    struct vct_view *v = &vct->views[view];
+    v->pixels.width = gpu_groups(width, vct_step(&vct->options));
+    v->pixels.height = gpu_groups(height, vct_step(&vct->options));
+    v->temporal.unlit = vct->options.occlusion;
+    vct_temporal_invalidate(&v->temporal);
+    return true;
 }
 
 static void select_view(struct vct *vct, int view)
@@ -142,9 +156,9 @@ static bool create(struct vct *vct, const char *name, const struct technique_cre
     vct->options = options;
     vct->clip_count = vct_clip_count(&vct->options);
     vct_cone_axes(vct->options.cones, vct->cone_axes);
+    vct->svo.params = vct_svo_params(&vct->options);
     select_view(vct, 0);
-    return vct_resize(vct, 0, how->width, how->height) && vct_create_resources(vct) &&
-           vct_create_pipelines(vct);
+    return vct_resize(vct, 0, how->width, how->height);
 }
 
 static bool vct_create(void *state, const struct technique_create *how)
@@ -292,7 +306,8 @@ static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view
     else
         resume_view(vct, view);
     vct_record_cones(vct, cmd, view);
-    if (vct->options.temporal) vct_temporal_record(vct->temporal, cmd, view, vct_result(vct, view));
+    if (vct->options.temporal)
+        vct_temporal_record(vct->temporal, vct->accumulate, cmd, view, vct_result(vct, view));
     if (vct->options.specular) record_specular(vct, cmd, view);
 }
 
@@ -316,12 +331,7 @@ static void vct_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_
 static void vct_destroy(void *state)
 {
     struct vct *vct = state;
-    if (!vct->gpu) return;
-    vct_report_overflow(vct);
-    for (int i = 0; i < FRAME_MAX_VIEWS; i++)
-        vct_temporal_destroy(&vct->views[i].temporal, vct->gpu);
-    vct_destroy_pipelines(vct);
-    vct_destroy_resources(vct);
+    if (vct->gpu) vct_report_overflow(vct);
 }
 
 static uint32_t vct_more_needs(const void *options)
@@ -335,36 +345,6 @@ static uint32_t vctao_more_needs(const void *options)
 {
     const struct vct_options occlusion = vct_occlusion_options(options);
     return vct_more_needs(&occlusion);
-}
-
-// ---- Memory -------------------------------------------------------------------------------------
-
-static uint64_t memory_estimate(struct vct_options options, uint32_t width, uint32_t height)
-{
-    return vct_resource_bytes(&options, width, height) +
-           (options.temporal ? vct_temporal_memory(width, height) : 0);
-}
-
-static uint64_t vct_memory_estimate(const void *options, uint32_t width, uint32_t height)
-{
-    return memory_estimate(vct_light_options(options), width, height);
-}
-
-static uint64_t vctao_memory_estimate(const void *options, uint32_t width, uint32_t height)
-{
-    return memory_estimate(vct_occlusion_options(options), width, height);
-}
-
-static uint64_t vct_view_memory(const void *options, uint32_t width, uint32_t height)
-{
-    const struct vct_options light = vct_light_options(options);
-    return light.temporal ? vct_temporal_memory(width, height) : 0;
-}
-
-static uint64_t vctao_view_memory(const void *options, uint32_t width, uint32_t height)
-{
-    const struct vct_options occlusion = vct_occlusion_options(options);
-    return occlusion.temporal ? vct_temporal_memory(width, height) : 0;
 }
 
 const struct technique technique_vct = {
@@ -381,6 +361,7 @@ const struct technique technique_vct = {
     .state_size = sizeof(struct vct),
     .more_needs = vct_more_needs,
     .check = vct_check,
+    .objects = vct_objects,
     .create = vct_create,
     .resize = vct_resize,
     .set_options = vct_set_options,
@@ -389,8 +370,6 @@ const struct technique technique_vct = {
     .record = vct_record,
     .debug_view = vct_debug_view,
     .destroy = vct_destroy,
-    .memory_estimate = vct_memory_estimate,
-    .view_memory = vct_view_memory,
 };
 
 const struct technique technique_vctao = {
@@ -408,6 +387,7 @@ const struct technique technique_vctao = {
     .state_size = sizeof(struct vct),
     .more_needs = vctao_more_needs,
     .check = vctao_check,
+    .objects = vctao_objects,
     .create = vctao_create,
     .resize = vct_resize,
     .set_options = vct_set_options,
@@ -416,6 +396,4 @@ const struct technique technique_vctao = {
     .record = vct_record,
     .debug_view = vct_debug_view,
     .destroy = vct_destroy,
-    .memory_estimate = vctao_memory_estimate,
-    .view_memory = vctao_view_memory,
 };

@@ -1,9 +1,7 @@
 // Pipelines for the options.
 #pragma once
 
-#include <stdbool.h>
+struct gpu_objects;
+struct vct_options;
 
-struct vct;
-
-bool vct_create_pipelines(struct vct *vct);
-void vct_destroy_pipelines(struct vct *vct); // accepts any half-built state
+void vct_add_pipelines(const struct vct_options *options, struct gpu_objects *out);

@@ -61,7 +61,7 @@ struct vct {
     gpu_pipeline fill[2];             // without and with moving voxels
     gpu_pipeline inject[2];           // without and with lights
     gpu_pipeline cones[2], bounce[2]; // without and with small emitters
-    gpu_pipeline edges, gather_rows, gather_columns, blur, upsample, specular, debug;
+    gpu_pipeline edges, gather_rows, gather_columns, blur, upsample, accumulate, specular, debug;
 
     // Voxels and the light volume.
     struct vct_small_emitters small_emitters;

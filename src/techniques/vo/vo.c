@@ -8,6 +8,7 @@
 #include "techniques/vo/vo_state.h"
 
 #include <math.h>
+#include <stddef.h>
 
 static const struct option_row option_rows[] = {
 #define OPTION(...) OPTION_ROW(struct vo_options, __VA_ARGS__)
@@ -30,25 +31,31 @@ static struct screen_ao_options ao_options(const struct vo_options *options)
                                        .temporal = options->temporal };
 }
 
+static void vo_objects(const void *options, int view, uint32_t width, uint32_t height,
+                       struct gpu_objects *out)
+{
+    const struct screen_ao_options ao = ao_options(options);
+    (void)view;
+    screen_ao_objects(&ao, offsetof(struct vo, ao), width, height, out);
+    vo_pyramid_objects(options, width, height, out);
+    vo_estimate_objects(options, out);
+}
+
 static bool vo_create(void *state, const struct technique_create *how)
 {
     struct vo *vo = state;
     vo->gpu = how->gpu;
     vo->options = *(const struct vo_options *)how->options;
     const struct screen_ao_options options = ao_options(&vo->options);
-    if (!screen_ao_init(&vo->ao, how->gpu, &options, how->width, how->height)) return false;
-    if (vo->options.mode == VO_MODE_AREAS &&
-        !(vo_create_pyramid(vo) && vo_resize_pyramid(vo, how->width, how->height)))
-        return false;
-    return vo_create_estimate(vo);
+    screen_ao_init(&vo->ao, &options, how->width, how->height);
+    return true;
 }
 
 static bool vo_resize(void *state, int view, uint32_t width, uint32_t height)
 {
     (void)view;
-    struct vo *vo = state;
-    return screen_ao_resize(&vo->ao, width, height) &&
-           (vo->options.mode != VO_MODE_AREAS || vo_resize_pyramid(vo, width, height));
+    screen_ao_resize(&((struct vo *)state)->ao, width, height);
+    return true;
 }
 
 static void vo_set_options(void *state, const void *options)
@@ -68,32 +75,9 @@ static void vo_record(void *state, struct gpu_cmd *cmd, const struct frame_view 
     screen_ao_record(&vo->ao, cmd, view);
 }
 
-static void vo_destroy(void *state)
-{
-    struct vo *vo = state;
-    if (!vo->gpu) return;
-    screen_ao_finish(&vo->ao);
-    gpu_image_destroy(vo->gpu, &vo->moments);
-    gpu_pipeline_destroy(vo->gpu, &vo->pyramid);
-    gpu_pipeline_destroy(vo->gpu, &vo->estimate);
-}
-
-static uint64_t vo_memory_estimate(const void *options, uint32_t width, uint32_t height)
-{
-    const struct screen_ao_options ao = ao_options(options);
-    const bool areas = ((const struct vo_options *)options)->mode == VO_MODE_AREAS;
-    return screen_ao_memory(&ao, width, height) + (areas ? vo_pyramid_memory(width, height) : 0);
-}
-
 static uint32_t vo_more_needs(const void *options)
 {
     return ((const struct vo_options *)options)->temporal ? FRAME_NEEDS_MOTION : 0;
-}
-
-static uint64_t vo_view_memory(const void *options, uint32_t width, uint32_t height)
-{
-    const struct screen_ao_options ao = ao_options(options);
-    return screen_ao_history_memory(&ao, width, height);
 }
 
 const struct technique technique_vo = {
@@ -108,11 +92,9 @@ const struct technique technique_vo = {
     .options = OPTION_TABLE(struct vo_options, option_rows, aliases),
     .presets = presets,
     .state_size = sizeof(struct vo),
+    .objects = vo_objects,
     .create = vo_create,
     .resize = vo_resize,
     .set_options = vo_set_options,
     .record = vo_record,
-    .destroy = vo_destroy,
-    .memory_estimate = vo_memory_estimate,
-    .view_memory = vo_view_memory,
 };

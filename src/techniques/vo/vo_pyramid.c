@@ -4,6 +4,7 @@
 #include "technique_shaders.h"
 
 #include <math.h>
+#include <stddef.h>
 
 enum { LOCAL = 8 };
 
@@ -25,31 +26,21 @@ static uint32_t levels_of(uint32_t width, uint32_t height)
     return levels;
 }
 
-bool vo_create_pyramid(struct vo *vo)
+void vo_pyramid_objects(const struct vo_options *options, uint32_t width, uint32_t height,
+                        struct gpu_objects *out)
 {
-    return gpu_compute_pipeline_create(vo->gpu, "pyramid", &shader_vo_pyramid_comp, NULL, 0,
-                                       &vo->pyramid);
-}
-
-bool vo_resize_pyramid(struct vo *vo, uint32_t width, uint32_t height)
-{
-    const struct gpu_image_desc desc = { .name = "moments",
-                                         .format = GPU_RG32F,
-                                         .width = half_of(width),
-                                         .height = half_of(height),
-                                         .mips = levels_of(width, height),
-                                         .usage = GPU_SAMPLED | GPU_STORAGE,
-                                         .alias = "vo.moments" };
-    gpu_image_destroy(vo->gpu, &vo->moments);
-    return gpu_image_create(vo->gpu, &desc, &vo->moments);
-}
-
-uint64_t vo_pyramid_memory(uint32_t width, uint32_t height)
-{
-    uint64_t texels = 0;
-    for (uint32_t i = 0; i < levels_of(width, height); i++)
-        texels += (uint64_t)level_size(half_of(width), i) * level_size(half_of(height), i);
-    return texels * (uint64_t)gpu_format_bytes(GPU_RG32F);
+    const struct gpu_image_desc moments = { .format = GPU_RG32F,
+                                            .width = width > 0 ? half_of(width) : 0,
+                                            .height = half_of(height),
+                                            .mips = levels_of(width, height),
+                                            .usage = GPU_SAMPLED | GPU_STORAGE,
+                                            .alias = "vo.moments" };
+    if (options->mode == VO_MODE_AREAS)
+        GPU_ADD(out, 0,
+                { GPU_IMAGE, "moments", offsetof(struct vo, moments), .of_view = true,
+                  .image = moments },
+                { GPU_PIPELINE, "pyramid", offsetof(struct vo, pyramid),
+                  .shader = &shader_vo_pyramid_comp });
 }
 
 void vo_record_pyramid(struct vo *vo, struct gpu_cmd *cmd, const struct frame_view *view)

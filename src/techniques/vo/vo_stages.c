@@ -4,6 +4,8 @@
 #include "technique_shaders.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <string.h>
 
 _Static_assert(SAMPLE_SET_MOST == VO_MOST_SAMPLES, "every set fits into the table");
 
@@ -72,17 +74,19 @@ static int fill_table(const struct vo_options *options, struct vo_samples *table
     return fetched;
 }
 
-bool vo_create_estimate(struct vo *vo)
+void vo_estimate_objects(const struct vo_options *options, struct gpu_objects *out)
 {
+    struct vo_samples table;
     const struct gpu_constant constants[] = {
-        screen_ao_step(&vo->ao),
-        { VO_CONSTANT_COUNT, (uint32_t)fill_table(&vo->options, &vo->table) },
-        { VO_CONSTANT_NORMAL, vo->options.normal },
-        { VO_CONSTANT_TWO_RADII, vo->options.radius2 > 0.0f },
+        { VO_CONSTANT_COUNT, (uint32_t)fill_table(options, &table) },
+        { VO_CONSTANT_NORMAL, options->normal },
+        { VO_CONSTANT_TWO_RADII, options->radius2 > 0.0f },
     };
-    const struct estimator *estimator = &estimators[vo->options.mode];
-    return gpu_compute_pipeline_create(vo->gpu, estimator->name, estimator->shader, constants,
-                                       sizeof constants / sizeof constants[0], &vo->estimate);
+    const struct estimator *estimator = &estimators[options->mode];
+    memcpy(out->constants + VO_CONSTANT_COUNT, constants, sizeof constants);
+    GPU_ADD(out, 0,
+            { GPU_PIPELINE, estimator->name, offsetof(struct vo, estimate),
+              .shader = estimator->shader, .consts = SCREEN_AO_STEP | 7u << VO_CONSTANT_COUNT });
 }
 
 void vo_record_estimate(struct vo *vo, struct gpu_cmd *cmd, const struct frame_view *view)

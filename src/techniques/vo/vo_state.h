@@ -24,11 +24,10 @@ struct vo {
     struct vo_samples table;
 };
 
-bool vo_create_estimate(struct vo *vo);
+void vo_estimate_objects(const struct vo_options *options, struct gpu_objects *out);
 void vo_record_estimate(struct vo *vo, struct gpu_cmd *cmd, const struct frame_view *view);
 
 // The pyramid of depth moments, for mode=areas.
-bool vo_create_pyramid(struct vo *vo);
-bool vo_resize_pyramid(struct vo *vo, uint32_t width, uint32_t height);
-uint64_t vo_pyramid_memory(uint32_t width, uint32_t height);
+void vo_pyramid_objects(const struct vo_options *options, uint32_t width, uint32_t height,
+                        struct gpu_objects *out);
 void vo_record_pyramid(struct vo *vo, struct gpu_cmd *cmd, const struct frame_view *view);

@@ -411,8 +411,8 @@ static void check_memory(struct gpu *gpu, const char *options)
     snprintf(gi, sizeof gi, "%s+dnrt:size=16,rays=16%s", SOURCE, options);
     open_scene(&d, gpu, gi, 1);
     const int count = gpu_memory_by_owner(gpu, owners, 32);
-    const uint64_t estimate = d.run.spec.technique[1]->memory_estimate(
-        d.run.spec.options[1], d.fixture.width, d.fixture.height);
+    const uint64_t estimate = technique_memory(d.run.spec.technique[1], d.run.spec.options[1],
+                                               d.fixture.width, d.fixture.height);
     uint64_t bytes = 0;
     for (int i = 0; i < count && i < 32; i++)
         if (strcmp(owners[i].owner, "dnrt") == 0) bytes = owners[i].bytes;

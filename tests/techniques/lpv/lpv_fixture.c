@@ -17,13 +17,13 @@ struct lpv *lpv_fixture_create(struct gpu *gpu, const char *gi)
     CHECK(option_parse(test_host(), &technique->options, "lpv", colon ? colon + 1 : "", &options));
     const struct technique_create how = { .host = test_host(), .gpu = gpu, .options = &options };
     CHECK(technique->check(&how));
-    CHECK(technique->create(lpv, &how));
+    CHECK(technique_create(technique, lpv, &how));
     return lpv;
 }
 
 void lpv_fixture_destroy(struct lpv *lpv)
 {
-    technique_lpv.destroy(lpv);
+    technique_destroy(&technique_lpv, lpv->gpu, lpv, &lpv->options);
     free(lpv);
 }
 

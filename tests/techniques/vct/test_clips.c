@@ -370,7 +370,7 @@ TEST_GPU(memory_estimate_of_levels_matches_the_allocation)
         snprintf(text, sizeof text, "resolution=32,levels=%d", levels);
         option_defaults(&technique_vct.options, &options);
         CHECK(option_parse(test_host(), &technique_vct.options, "vct", text, &options));
-        const double estimated_bytes = (double)technique_vct.memory_estimate(&options, 32, 32);
+        const double estimated_bytes = (double)technique_memory(&technique_vct, &options, 32, 32);
         vct_fixture_hall(&fixture, gpu);
         vct_fixture_open(&fixture, text);
         const int count = gpu_memory_by_owner(gpu, owners, 32);

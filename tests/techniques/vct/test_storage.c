@@ -271,7 +271,7 @@ static double estimate(const char *text)
     struct vct_options options;
     option_defaults(&technique_vct.options, &options);
     CHECK(option_parse(test_host(), &technique_vct.options, "vct", text, &options));
-    return (double)technique_vct.memory_estimate(&options, 32, 32);
+    return (double)technique_memory(&technique_vct, &options, 32, 32);
 }
 
 static double taken(struct gpu *gpu, const char *text)

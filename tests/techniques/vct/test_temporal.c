@@ -403,7 +403,7 @@ TEST_GPU(a_camera_cut_resets_history)
     assert_memory_equal(cut, fresh, bytes);
     free(cut), free(fresh);
     fresh = render_first_frame(gpu, off, OTHER_CAMERA, OTHER_TARGET, 40);
-    CHECK(technique_vct.resize(fixture.vct, 0, 40, 40));
+    CHECK(technique_resize(&technique_vct, gpu, fixture.vct, &fixture.vct->options, 0, 40, 40));
     fixture_resize(&fixture.frame_fixture, 40, 40);
     cut = vct_fixture_irradiance_after(&fixture, 1);
     assert_memory_equal(cut, fresh, floats_of(&fixture) * sizeof *fresh);

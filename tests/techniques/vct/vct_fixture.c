@@ -35,7 +35,7 @@ void vct_fixture_open(struct vct_fixture *fixture, const char *text)
     fixture->vct = calloc(1, technique->state_size);
     CHECK(technique->check(&how));
     gpu_owner_push(s->gpu, technique->name);
-    CHECK(technique->create(fixture->vct, &how));
+    CHECK(technique_create(technique, fixture->vct, &how));
     gpu_owner_pop(s->gpu);
     s->indirect =
         (struct frame_indirect){ .record = record,
@@ -45,7 +45,8 @@ void vct_fixture_open(struct vct_fixture *fixture, const char *text)
 
 void vct_fixture_finish(struct vct_fixture *fixture)
 {
-    fixture->technique->destroy(fixture->vct);
+    struct vct *vct = fixture->vct;
+    technique_destroy(fixture->technique, vct->gpu, vct, &vct->options);
     free(fixture->vct);
     fixture_finish(&fixture->frame_fixture);
 }

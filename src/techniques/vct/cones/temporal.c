@@ -19,65 +19,11 @@
 
 #include "techniques/vct/vct_state.h"
 
-#include "technique_shaders.h"
-
 #include <math.h>
 
-static const enum gpu_format NOW_FORMAT = GPU_RGBA16F, LIGHT_FORMAT = GPU_RGBA32F,
-                             SURFACE_FORMAT = GPU_RG32F;
 static const float STILL_FRAMES = 4096.0f; // maximum weight while nothing changes
 
 enum { HELD_FRAMES = 3 }; // of four with one rotation, while light changes
-
-// ---- Creation and destruction -------------------------------------------------------------------
-
-bool vct_temporal_create(struct vct_temporal *t, struct gpu *gpu)
-{
-    return gpu_compute_pipeline_create(gpu, "temporal", &shader_vct_cones_temporal_comp, NULL, 0,
-                                       &t->filter);
-}
-
-static bool create_image(struct gpu *gpu, const char *name, enum gpu_format format, uint32_t width,
-                         uint32_t height, gpu_image *out)
-{
-    const struct gpu_image_desc desc = { .name = name,
-                                         .format = format,
-                                         .width = width,
-                                         .height = height,
-                                         .usage = GPU_SAMPLED | GPU_STORAGE };
-    gpu_image_destroy(gpu, out);
-    return gpu_image_create(gpu, &desc, out);
-}
-
-bool vct_temporal_resize(struct vct_temporal *t, struct gpu *gpu, uint32_t width, uint32_t height)
-{
-    vct_temporal_invalidate(t);
-    for (int i = 0; i < 2; i++)
-        if (!create_image(gpu, "history", LIGHT_FORMAT, width, height, &t->light[i]) ||
-            !create_image(gpu, "history_surface", SURFACE_FORMAT, width, height, &t->surface[i]) ||
-            !create_image(gpu, "now", NOW_FORMAT, width, height, &t->now[i]) ||
-            !create_image(gpu, "change", NOW_FORMAT, width, height, &t->change[i]))
-            return false;
-    return true;
-}
-
-void vct_temporal_destroy(struct vct_temporal *t, struct gpu *gpu)
-{
-    gpu_pipeline_destroy(gpu, &t->filter);
-    for (int i = 0; i < 2; i++) {
-        gpu_image_destroy(gpu, &t->now[i]);
-        gpu_image_destroy(gpu, &t->change[i]);
-        gpu_image_destroy(gpu, &t->light[i]);
-        gpu_image_destroy(gpu, &t->surface[i]);
-    }
-}
-
-uint64_t vct_temporal_memory(uint32_t width, uint32_t height)
-{
-    const int pixel = 2 * gpu_format_bytes(NOW_FORMAT) + gpu_format_bytes(LIGHT_FORMAT) +
-                      gpu_format_bytes(SURFACE_FORMAT);
-    return 2 * (uint64_t)width * height * (uint64_t)pixel;
-}
 
 void vct_temporal_invalidate(struct vct_temporal *t)
 {
@@ -184,12 +130,12 @@ gpu_image vct_temporal_now(const struct vct_temporal *t)
     return t->now[t->newest];
 }
 
-void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const struct frame_view *view,
-                         gpu_image result)
+void vct_temporal_record(struct vct_temporal *t, gpu_pipeline filter, struct gpu_cmd *cmd,
+                         const struct frame_view *view, gpu_image result)
 {
     const int newest = t->newest, previous = 1 - newest;
     gpu_scope_begin(cmd, "temporal");
-    gpu_dispatch(cmd, t->filter,
+    gpu_dispatch(cmd, filter,
                  GPU_BIND(view->constants_binding,
                           gpu_transient(cmd, "vct_history", &t->params, sizeof t->params),
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },

@@ -5,7 +5,6 @@
 #include "techniques/vct/cones/cones_shared.h"
 
 struct vct_temporal {
-    gpu_pipeline filter;
     // Ping-pong: of this frame and of the previous one.
     gpu_image now[2];           // RGBA16F: irradiance of the frame alone
     gpu_image change[2];        // RGBA16F: last known change of it
@@ -21,10 +20,6 @@ struct vct_temporal {
     struct vct_history_params params; // of the frame being recorded
 };
 
-bool vct_temporal_create(struct vct_temporal *t, struct gpu *gpu);
-bool vct_temporal_resize(struct vct_temporal *t, struct gpu *gpu, uint32_t width, uint32_t height);
-void vct_temporal_destroy(struct vct_temporal *t, struct gpu *gpu); // accepts any half-built state
-uint64_t vct_temporal_memory(uint32_t width, uint32_t height);
 void vct_temporal_invalidate(struct vct_temporal *t);
 
 // Once per frame, before its cones. most: maximum history weight while anything moves; settles: the
@@ -37,5 +32,5 @@ void vct_temporal_rotate_cones(const struct vct_temporal *t, struct vct_cone_par
 // The image of this frame's cones.
 gpu_image vct_temporal_now(const struct vct_temporal *t);
 // Blends it with the history; writes `result` and the new history.
-void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const struct frame_view *view,
-                         gpu_image result);
+void vct_temporal_record(struct vct_temporal *t, gpu_pipeline filter, struct gpu_cmd *cmd,
+                         const struct frame_view *view, gpu_image result);
