@@ -38,10 +38,10 @@ struct ag_renderer_desc {
     uint64_t reserved[7]; ///< 0; see ABI in types.h
 };
 AG_API void ag_renderer_desc_default(struct ag_renderer_desc *desc);
-/// Upper bound of the GPU memory of a renderer with these settings, in bytes, without the scene and
-/// further views (ag_view_estimate_memory). It counts each light as a sun or a point light,
-/// whichever takes more. At most a quarter above what is taken, beside that. desc NULL: the
-/// defaults.
+/// GPU memory of a renderer with these settings: bytes of buffers and texels, without the scene,
+/// further views (ag_view_estimate_memory) and what the driver pads. It counts each light as a sun
+/// or a point light, whichever takes more, and a material with a specular lobe of its own. Beside
+/// that, and what a bake brings, it is exact to 1 %. desc NULL: the defaults.
 AG_API enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
                                                   const struct ag_renderer_desc *desc,
                                                   int light_count, uint64_t *bytes);

@@ -28,8 +28,9 @@ struct ag_view_desc {
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 AG_API void ag_view_desc_default(struct ag_view_desc *desc);
-/// Upper bound of what a view adds to the GPU memory of a renderer, in bytes. Either description
-/// may be NULL: the defaults. Handles that are asked for later add their layers.
+/// What a view adds to the GPU memory of a renderer, in bytes, as ag_renderer_estimate_memory
+/// counts them. Either description may be NULL: the defaults. Handles that are asked for later add
+/// their layers.
 AG_API enum ag_result ag_view_estimate_memory(struct ag_context *context,
                                               const struct ag_renderer_desc *renderer,
                                               const struct ag_view_desc *desc, uint64_t *bytes);

@@ -261,12 +261,14 @@ enum frame_readback {
 };
 // pixels: width × height × channels floats. Channels: 3, but 1 for depth and visibility, 2 for ids.
 bool frame_read(struct frame *frame, enum frame_readback what, float *pixels, int channels);
-// Upper bounds of the bytes at this size, without the scene, for an input whose `want` members,
-// light_count and gbuffer (NULL or not) count, and frame_need bits.
+// Bytes of buffers and texels at this size, without the scene, for an input whose `want` members,
+// light_count and gbuffer (NULL or not) count, and frame_need bits. Each light is a sun or a point
+// light, whichever takes more, a single one has a sun's list; there are dielectrics of an own
+// specular.
 uint64_t frame_memory_estimate(const struct frame_options *options, const struct frame_input *input,
                                uint32_t needs, uint32_t width, uint32_t height);
 // What a further view adds. It shares layers of the first one if that is not smaller: `first`;
-// NULL: it is.
+// NULL: it is. more_pixels: than the largest view before.
 uint64_t frame_view_memory_estimate(const struct frame_input *input,
                                     const struct frame_input *first, uint32_t needs, uint32_t width,
-                                    uint32_t height);
+                                    uint32_t height, uint64_t more_pixels);

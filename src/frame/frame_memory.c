@@ -1,28 +1,25 @@
-// Estimates of the memory of a frame and of its views.
+// Estimates of the memory of a frame and of its views: bytes of buffers and texels, without what a
+// driver pads.
 #include "frame/frame_state.h"
 
 #include "core/ggx_albedo.h"
 
+#include "frame/composite/exposure_shared.h"
 #include "frame/shadow/shadow_shared.h"
 
 static const uint64_t GGX_ALBEDO_BYTES =
     sizeof(struct ggx_albedo_texel) * GGX_ALBEDO_SIZE * GGX_ALBEDO_SIZE;
 
-// Drivers pad images and buffers; exposure and reports of a frame take less than one page.
-static const uint64_t PAGE_BYTES = 64u << 10;
-
-static uint64_t padded(uint64_t bytes)
-{
-    return (bytes + PAGE_BYTES - 1) / PAGE_BYTES * PAGE_BYTES;
-}
+static const uint64_t EXPOSURE_BYTES =
+    sizeof(struct exposure_values) + sizeof(struct exposure_counts);
 
 static uint64_t layer_bytes(uint32_t layers, uint32_t width, uint32_t height)
 {
     uint64_t bytes = 0;
     for (int l = 0; l < FRAME_LAYER_COUNT; l++)
         if (layers >> l & 1u)
-            bytes += padded((uint64_t)width * height *
-                            (uint64_t)gpu_format_bytes(frame_layer_format((enum frame_layer)l)));
+            bytes += (uint64_t)width * height *
+                     (uint64_t)gpu_format_bytes(frame_layer_format((enum frame_layer)l));
     return bytes;
 }
 
@@ -47,7 +44,7 @@ static uint64_t light_bytes(const struct frame_options *options, uint32_t needs)
     const int texel =
         gpu_format_bytes(GPU_D32F) + gpu_format_bytes(GPU_RG16F) + gpu_format_bytes(GPU_RGBA8_SRGB);
     const uint64_t rsm = needs & FRAME_NEEDS_RSM ? 6 * rsm_size * rsm_size * (uint64_t)texel : 0;
-    return padded(sun > local ? sun : local) + padded(rsm);
+    return (sun > local ? sun : local) + rsm;
 }
 
 uint64_t frame_memory_estimate(const struct frame_options *options, const struct frame_input *input,
@@ -56,17 +53,16 @@ uint64_t frame_memory_estimate(const struct frame_options *options, const struct
     const uint64_t lights = input->light_count > 0 ? (uint64_t)input->light_count : 0;
     // The list of the pixels that direct light of a single sun leaves undecided.
     const uint64_t list = lights == 1 ? (uint64_t)width * height * sizeof(uint32_t) : 0;
-    return 2 * PAGE_BYTES + padded(GGX_ALBEDO_BYTES) + padded(list) +
+    return EXPOSURE_BYTES + GGX_ALBEDO_BYTES + list +
            layer_bytes(layers_of(input, needs), width, height) +
            lights * light_bytes(options, needs);
 }
 
 uint64_t frame_view_memory_estimate(const struct frame_input *input,
                                     const struct frame_input *first, uint32_t needs, uint32_t width,
-                                    uint32_t height)
+                                    uint32_t height, uint64_t more_pixels)
 {
     const uint32_t shared = first ? layers_of(first, needs) & ~frame_kept_layers(input) : 0;
-    const uint64_t list = first ? 0 : (uint64_t)width * height * sizeof(uint32_t);
-    return PAGE_BYTES + padded(list) +
+    return EXPOSURE_BYTES + more_pixels * sizeof(uint32_t) +
            layer_bytes(layers_of(input, needs) & ~shared, width, height);
 }
