@@ -107,7 +107,7 @@ struct mrt_gpu_clutter_sample {
 
 // A texel of the light map of clutter, and whose light it has.
 struct mrt_gpu_clutter_place {
-    uint32_t x, y;
+    uint32_t place;        // light_map_place_word
     uint32_t light, texel; // of mrt_clutter_light, of the clutter's texels
 };
 
@@ -167,7 +167,7 @@ _Static_assert(sizeof(struct mrt_gpu_outdoor_probe) == 148, "layout is shared wi
 _Static_assert(sizeof(struct mrt_gpu_opening) == 28, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_face) == 40, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_group) == 8, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_gpu_clutter_place) == 16, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_clutter_place) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_sample) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_apply_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_clutter_fill_push) == 20, "layout is shared with GLSL");

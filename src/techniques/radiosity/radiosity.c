@@ -35,7 +35,6 @@ static bool create(void *state, const struct technique_create *how)
                     radiosity_followed_init(&s->followed, s->host, how->pose, &statics) &&
                     radiosity_map_init(&s->map, s->host, &statics.pose, &s->options);
     scene_statics_finish(&statics);
-    s->sides = s->map.texel_count > s->map.charts.texel_count ? 2 : 1;
     return ok;
 }
 
@@ -72,7 +71,8 @@ static bool make_light_maps(struct radiosity *s)
                                          .format = GPU_RGBA16F,
                                          .width = s->map.charts.width,
                                          .height = s->map.charts.height,
-                                         .depth = RADIOSITY_LAYERS * s->sides,
+                                         .depth =
+                                             RADIOSITY_LAYERS * light_map_sides(&s->map.charts),
                                          .usage = GPU_SAMPLED | GPU_STORAGE };
     const struct gpu_sampler_desc linear = { .name = "light_map",
                                              .filter = GPU_LINEAR,
@@ -96,7 +96,8 @@ static bool make_lookups(struct radiosity *s)
         const struct gpu_constant constants[] = { { RADIOSITY_APPLY_WIDTH, p->apply_width },
                                                   { RADIOSITY_APPLY_HEIGHT, p->apply_height },
                                                   { RADIOSITY_APPLY_DIELECTRIC, dielectric },
-                                                  { LIGHT_MAP_HAS_BACKS, s->sides == 2 } };
+                                                  { LIGHT_MAP_HAS_BACKS,
+                                                    light_map_sides(&s->map.charts) == 2 } };
         if (!gpu_compute_pipeline_create(s->gpu, "apply",
                                          s->options.specular ? &shader_radiosity_apply_specular_comp
                                                              : &shader_radiosity_apply_diffuse_comp,

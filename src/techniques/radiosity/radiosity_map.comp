@@ -3,6 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#include "techniques/common/light_map/place.glsl"
 #include "techniques/radiosity/radiosity_table.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
@@ -20,7 +21,7 @@ void main()
     if (gl_GlobalInvocationID.x >= push.count) return;
     uint i = push.first + gl_GlobalInvocationID.x;
     uvec2 owner = texelFetch(radiosity_owners, radiosity_at(i), 0).xy;
-    uvec3 at = radiosity_place(owner.x);
+    uvec3 at = light_map_place(owner.x);
     for (int c = 0; c < 3; c++) {
         uvec2 words = imageLoad(radiosity_light, radiosity_at(c * push.texels + owner.y)).xy;
         imageStore(light_map, ivec3(at.xy, RADIOSITY_LAYERS * at.z + c),

@@ -1,13 +1,6 @@
 // Where light is shown: places of the light map and of triangles in it.
 #include "techniques/radiosity/radiosity_state.h"
 
-uint32_t radiosity_place_word(const struct radiosity *s, size_t place)
-{
-    const size_t width = s->map.charts.width, line = place / width;
-    const size_t side = line / s->map.charts.height, y = line % s->map.charts.height;
-    return (uint32_t)(side << 2 * LIGHT_MAP_PLACE_BITS | y << LIGHT_MAP_PLACE_BITS | place % width);
-}
-
 struct pair {
     uint32_t x, y;
 };
@@ -15,12 +8,13 @@ struct pair {
 // Places that show no texel are not in the table.
 bool radiosity_upload_owners(struct radiosity *s, const uint32_t *shown)
 {
-    const size_t places = (size_t)s->sides * s->map.charts.width * s->map.charts.height;
+    const size_t places = light_map_place_count(&s->map.charts);
     struct pair *owners = host_alloc(s->host, radiosity_table_room(places), sizeof *owners);
     for (size_t i = 0; owners && i < places; i++) {
         const uint32_t texel = chart_texel_of_place(&s->map.charts, i);
         if (texel == CHART_NONE) continue;
-        owners[s->owner_places++] = (struct pair){ radiosity_place_word(s, i), shown[texel] };
+        owners[s->owner_places++] =
+            (struct pair){ light_map_place_word(&s->map.charts, i), shown[texel] };
     }
     return radiosity_table_upload(s->host, s->gpu, "owners", GPU_RG32U, owners, s->owner_places,
                                   &s->tables.owners);

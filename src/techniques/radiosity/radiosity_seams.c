@@ -1,6 +1,7 @@
 #include "techniques/radiosity/radiosity_seams.h"
 
 #include "core/hash.h"
+#include "techniques/common/light_map/surface.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -188,8 +189,7 @@ static bool make_points(struct making *m)
 {
     struct radiosity_seams *out = m->out;
     const struct radiosity_map *map = m->map;
-    const size_t sides = map->texel_count > map->charts.texel_count ? 2 : 1;
-    const size_t size = sides * map->charts.width * map->charts.height;
+    const size_t size = light_map_place_count(&map->charts);
     add_seams(m);
     const size_t places = RADIOSITY_SEAM_PLACES * (size_t)out->point_count;
     out->points = host_alloc(out->host, out->point_count, sizeof *out->points);

@@ -4,6 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#include "techniques/common/light_map/place.glsl"
 #include "techniques/radiosity/radiosity_table.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
@@ -38,7 +39,7 @@ void main()
             light[c] += weight.y * light_of(pair.z, c);
         }
     }
-    uvec3 at = radiosity_place(texelFetch(radiosity_places, radiosity_at(i), 0).x);
+    uvec3 at = light_map_place(texelFetch(radiosity_places, radiosity_at(i), 0).x);
     for (int c = 0; c < 3; c++)
         imageStore(light_map, ivec3(at.xy, RADIOSITY_LAYERS * at.z + c),
                    clamp(light[c], -HALF_MAX, HALF_MAX));

@@ -75,7 +75,7 @@ struct radiosity {
     struct gpu *gpu;
     struct radiosity_options options;
     struct radiosity_map map; // without texels: an empty scene
-    uint32_t instances, sides;
+    uint32_t instances;
     uint32_t owner_places, seam_places; // of the light map
     uint32_t group_count;
     float spectral_radius; // of ρ F, at least
@@ -105,8 +105,6 @@ bool radiosity_buffer_upload(struct radiosity *state, const char *name, void *it
 // Where light is shown. shown: [texels] whose light each one shows.
 bool radiosity_upload_owners(struct radiosity *state, const uint32_t *shown);
 bool radiosity_upload_triangles(struct radiosity *state);
-// The word of a place of the light map, (side · height + y) · width + x, in a table.
-uint32_t radiosity_place_word(const struct radiosity *state, size_t place);
 
 // ---- radiosity_update.c
 

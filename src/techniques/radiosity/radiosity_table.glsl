@@ -11,14 +11,6 @@ ivec2 radiosity_at(uint entry)
     return ivec2(entry % RADIOSITY_TABLE_WIDTH, entry / RADIOSITY_TABLE_WIDTH);
 }
 
-// A place of the light map: texel and side.
-uvec3 radiosity_place(uint word)
-{
-    const uint mask = (1u << LIGHT_MAP_PLACE_BITS) - 1u;
-    return uvec3(word & mask, word >> LIGHT_MAP_PLACE_BITS & mask,
-                 word >> 2 * LIGHT_MAP_PLACE_BITS);
-}
-
 // A radiosity in two words: sign, exponent and 12 bits of the mantissa of each colour.
 uvec2 radiosity_pack(vec3 value)
 {

@@ -336,7 +336,7 @@ static bool upload_seams(struct radiosity *s, const struct content *c)
     const size_t count = c->seams.count;
     uint32_t *places = host_alloc(s->host, radiosity_table_room(count), sizeof *places);
     for (size_t i = 0; places && i < count; i++)
-        places[i] = radiosity_place_word(s, c->seams.places[i]);
+        places[i] = light_map_place_word(&s->map.charts, c->seams.places[i]);
     s->seam_places = (uint32_t)count;
     return radiosity_table_upload(s->host, s->gpu, "places", GPU_R32U, places, count,
                                   &s->tables.places) &&

@@ -51,7 +51,7 @@ static bool upload_labels(struct radiosity *s, const float *points)
 
 static bool upload_owners(struct radiosity *s, const uint32_t *shown)
 {
-    const size_t places = (size_t)s->sides * s->map.charts.width * s->map.charts.height;
+    const size_t places = light_map_place_count(&s->map.charts);
     uint32_t *owners = host_alloc(s->host, places, sizeof *owners);
     for (size_t i = 0; owners && i < places; i++) {
         const uint32_t texel = chart_texel_of_place(&s->map.charts, i);

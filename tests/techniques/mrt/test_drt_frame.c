@@ -274,3 +274,52 @@ TEST_GPU(drt_has_no_negative_light_before_the_pixel)
         fixture_finish(&s);
     }
 }
+
+// Irradiance of a sheet in the room, whose front faces +x or −x, seen from −x. Others are 0.
+static void sheet_irradiance(struct gpu *gpu, bool from_back, float out[FLOATS])
+{
+    const float x = 0.4f;
+    const vec3s low = vec3_of(x, 0.5f, -0.8f), high = vec3_of(x, 1.7f, 0.8f);
+    const vec3s across = vec3_of(x, low.y, high.z), up = vec3_of(x, high.y, low.z);
+    struct frame_fixture s;
+    struct gi_spec spec;
+    struct material m = material_default();
+    fixture_init(&s, gpu);
+    fixture_box(&s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true,
+                fixture_matte(&s, vec3_of(0.6f, 0.5f, 0.4f)));
+    m.double_sided = true;
+    m.base_color = vec4_of(vec3_of(0, 0, 0), 1); // both sides of a face have one radiosity
+    m.specular = 0;
+    const int sheet = fixture_quad(&s, low, from_back ? up : across, high, from_back ? across : up,
+                                   fixture_material(&s, &m));
+    fixture_look(&s, vec3_of(-1.5f, 1.5f, 0.5f), vec3_of(x, 1.1f, 0));
+    fixture_add_point(&s, vec3_of(-1.2f, 2.2f, -1), vec3_of(100, 60, 20));
+    fixture_open(&s);
+    CHECK(gi_spec_parse(&spec, test_host(), "drt" HOLLOW));
+    struct gi *gi = gi_fixture_create(s.gpu, &spec, &s.pose, SIZE, SIZE);
+    assert_non_null(gi);
+    s.indirect = gi_hook(gi);
+    s.input.want_id_layer = true;
+    gi_spec_finish(&spec);
+    fixture_render(&s);
+    float *e = fixture_read(&s, READ_IRRADIANCE), *id = fixture_read(&s, READ_ID);
+    for (int i = 0; i < FLOATS; i++) out[i] = (int)id[2 * (i / 3)] == sheet ? e[i] : 0.0f;
+    free(e);
+    free(id);
+    gi_destroy(gi);
+    fixture_finish(&s);
+}
+
+TEST_GPU(drt_lights_both_sides_of_a_double_sided_surface_alike)
+{
+    static float front[FLOATS], back[FLOATS];
+    double sum = 0.0, difference = 0.0;
+    sheet_irradiance(gpu, false, front);
+    sheet_irradiance(gpu, true, back);
+    for (int i = 0; i < FLOATS; i++) {
+        sum += (double)front[i];
+        difference += fabs((double)back[i] - (double)front[i]);
+    }
+    print_message("the back differs by %.4f from the same side as a front\n", difference / sum);
+    CHECK(sum > 0.0 && difference < 0.005 * sum);
+}

@@ -23,6 +23,22 @@ static inline struct light_map_instances light_map_instances(const struct light_
     return (struct light_map_instances){ s->count, s->moves ? s->count : 0 };
 }
 
+// Places of a light map, (side · height + y) · width + x; their word in tables.
+static inline uint32_t light_map_sides(const struct charts *charts)
+{
+    return charts->side_texel_count > charts->texel_count ? 2 : 1;
+}
+static inline size_t light_map_place_count(const struct charts *charts)
+{
+    return (size_t)light_map_sides(charts) * charts->width * charts->height;
+}
+static inline uint32_t light_map_place_word(const struct charts *charts, size_t place)
+{
+    const size_t line = place / charts->width, side = line / charts->height;
+    return (uint32_t)(side << 2 * LIGHT_MAP_PLACE_BITS |
+                      line % charts->height << LIGHT_MAP_PLACE_BITS | place % charts->width);
+}
+
 // Writes `count` triangles of the scene. chart_triangle: [count] in charts->triangles, CHART_NONE:
 // not in the map.
 void light_map_fill_triangles(const struct charts *charts, const uint32_t *chart_triangle,

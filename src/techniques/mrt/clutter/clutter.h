@@ -22,7 +22,7 @@ struct mrt_part {
 
 struct mrt_clutter_face {
     int block;
-    uint32_t first_texel, texel_count; // in mrt_clutter.texels
+    uint32_t first_texel, texel_count; // in mrt_clutter.texels, fronts
 };
 
 // The face that a chart is part of in a block.
@@ -38,7 +38,8 @@ struct mrt_clutter {
     struct charts charts;           // of `objects`
     struct mrt_clutter_face *faces; // in the order of their blocks
     int face_count;
-    uint32_t *texels;                   // of the charts, face after face
+    // Of both sides of the charts: of each block those of fronts, face after face, then its backs.
+    uint32_t *texels;
     struct mrt_chart_face *chart_faces; // chart after chart
     int *face_of_texel;                 // [charts.texel_count]
     uint32_t *first_chart_face;         // [charts.count + 1]

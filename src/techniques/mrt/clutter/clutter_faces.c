@@ -143,26 +143,47 @@ static int number_faces(const struct builder *s, int max_faces)
 
 // ---- faces
 
-static void fill_faces(const struct builder *s)
+// Of mrt_clutter.texels: the backs of a block are those of a face after all others.
+struct texel_order {
+    int block, face;
+    uint32_t texel;
+};
+
+static int compare_order(const void *a, const void *b)
+{
+    const struct texel_order *p = a, *q = b;
+    if (p->block != q->block) return p->block < q->block ? -1 : 1;
+    if (p->face != q->face) return p->face < q->face ? -1 : 1;
+    return p->texel < q->texel ? -1 : p->texel > q->texel;
+}
+
+static bool fill_faces(const struct builder *s)
 {
     struct mrt_clutter *clutter = s->clutter;
-    uint32_t first = 0;
+    const struct charts *charts = &clutter->charts;
+    const uint32_t count = charts->side_texel_count;
+    struct texel_order *order = host_alloc(clutter->host, count, sizeof *order);
+    if (!order) return false;
     for (uint32_t i = 0; i < s->piece_count; i++) {
         const struct piece *piece = &s->pieces[i];
         clutter->faces[piece->face].block = piece->block;
-        clutter->faces[piece->face].texel_count += piece->count;
         for (uint32_t t = 0; t < piece->count; t++)
             clutter->face_of_texel[s->places[piece->first + t].texel] = piece->face;
     }
-    for (int f = 0; f < clutter->face_count; f++) {
-        clutter->faces[f].first_texel = first;
-        first += clutter->faces[f].texel_count;
-        clutter->faces[f].texel_count = 0;
+    for (uint32_t t = 0; t < count; t++) {
+        const int face = clutter->face_of_texel[chart_front(charts, t)];
+        order[t] = (struct texel_order){ clutter->faces[face].block,
+                                         chart_is_back(charts, t) ? clutter->face_count : face, t };
     }
-    for (uint32_t t = 0; t < clutter->charts.texel_count; t++) {
-        struct mrt_clutter_face *face = &clutter->faces[clutter->face_of_texel[t]];
-        clutter->texels[face->first_texel + face->texel_count++] = t;
+    qsort(order, count, sizeof *order, compare_order);
+    for (uint32_t i = 0; i < count; i++) {
+        clutter->texels[i] = order[i].texel;
+        if (order[i].face == clutter->face_count) continue;
+        struct mrt_clutter_face *face = &clutter->faces[order[i].face];
+        if (face->texel_count++ == 0) face->first_texel = i;
     }
+    host_free(clutter->host, order);
+    return true;
 }
 
 static bool fill_chart_faces(const struct builder *s)
@@ -204,9 +225,8 @@ static bool make_faces(struct builder *s, int max_faces)
     clutter->face_count = number_faces(s, max_faces);
     clutter->faces = host_alloc(clutter->host, (size_t)clutter->face_count, sizeof *clutter->faces);
     if (!clutter->faces) return false;
-    fill_faces(s);
     index_triangles(clutter);
-    return fill_chart_faces(s);
+    return fill_faces(s) && fill_chart_faces(s);
 }
 
 bool mrt_make_clutter_faces(struct mrt_clutter *clutter, const struct mrt_block_map *map,
@@ -217,7 +237,7 @@ bool mrt_make_clutter_faces(struct mrt_clutter *clutter, const struct mrt_block_
     struct builder s = { .clutter = clutter, .map = map };
     s.places = host_alloc(host, texels, sizeof *s.places);
     s.pieces = host_alloc(host, texels, sizeof *s.pieces);
-    clutter->texels = host_alloc(host, texels, sizeof *clutter->texels);
+    clutter->texels = host_alloc(host, clutter->charts.side_texel_count, sizeof *clutter->texels);
     clutter->face_of_texel = host_alloc(host, texels, sizeof *clutter->face_of_texel);
     const bool ok = s.places && s.pieces && clutter->texels && clutter->face_of_texel &&
                     make_faces(&s, max_faces);

@@ -8,7 +8,7 @@ static void look_at(const struct trace_scene *objects, const struct mrt_clutter 
                     uint32_t texel, struct mrt_geometry_texel *out)
 {
     const vec3s normal = chart_texel_normal(&clutter->charts, texel);
-    const vec3s position = clutter->charts.texels[texel].position;
+    const vec3s position = chart_texel_of(&clutter->charts, texel)->position;
     struct trace_hit hit;
     *out = (struct mrt_geometry_texel){ .position = position, .normal = normal, .found = true };
     if (!trace_closest(objects, glms_vec3_muladds(normal, AWAY, position), glms_vec3_negate(normal),
@@ -22,7 +22,7 @@ static bool look(struct mrt_scene_images *images, const struct mrt_clutter *clut
 {
     struct trace_scene *objects = trace_scene_create(images->host, &clutter->objects.pose);
     if (!objects) return false;
-    for (uint32_t i = 0; i < clutter->charts.texel_count; i++)
+    for (uint32_t i = 0; i < clutter->charts.side_texel_count; i++)
         look_at(objects, clutter, clutter->texels[i], &images->geometry[i]);
     trace_scene_destroy(objects);
     return true;
@@ -31,7 +31,7 @@ static bool look(struct mrt_scene_images *images, const struct mrt_clutter *clut
 struct mrt_clutter_texel *mrt_clutter_light_create(struct host *host, const struct scene_pose *pose,
                                                    const struct mrt_clutter *clutter)
 {
-    const size_t count = clutter->charts.texel_count;
+    const size_t count = clutter->charts.side_texel_count;
     struct mrt_scene_images images = { .host = host };
     struct mrt_clutter_texel *out = host_alloc(host, count, sizeof *out);
     struct trace_scene *scene = trace_scene_create(host, pose);
@@ -39,9 +39,10 @@ struct mrt_clutter_texel *mrt_clutter_light_create(struct host *host, const stru
     const bool ok = out && scene && images.geometry && look(&images, clutter) &&
                     mrt_unbounced_texels(&images, pose, scene, count);
     for (size_t i = 0; ok && i < count; i++)
-        out[i] = (struct mrt_clutter_texel){ images.geometry[i],
-                                             clutter->charts.texels[clutter->texels[i]].area_m2,
-                                             images.emitted[i], images.sky[i] };
+        out[i] = (struct mrt_clutter_texel){
+            images.geometry[i], chart_texel_of(&clutter->charts, clutter->texels[i])->area_m2,
+            images.emitted[i], images.sky[i]
+        };
     mrt_scene_images_finish(&images);
     trace_scene_destroy(scene);
     if (ok) return out;

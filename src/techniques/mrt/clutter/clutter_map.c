@@ -70,7 +70,9 @@ static void add_face(struct texel_job *t, const float weight[VALUES], const stru
     const int column =
         mrt_face_of_hit(t->job->input->clutter, t->job->out->block, hit) - t->job->first_face;
     struct matrix_f32 *c = &t->job->out->c;
-    t->backs += !hit->front;
+    const struct scene *objects = &t->job->input->clutter->objects.scene;
+    const int material = scene_mesh_of(objects, hit->instance)->material;
+    t->backs += !hit->front && !objects->materials[material].double_sided;
     if (column < 0 || column >= (int)c->columns) return;
     for (int q = 0; q < VALUES; q++)
         c->at[(t->index * VALUES + (size_t)q) * c->stride + (size_t)column] += weight[q];
@@ -115,7 +117,7 @@ static void trace_texel(void *user, size_t i)
     const uint32_t texel = own_texel(job->input, job->out, i);
     if (mrt_is_stopped(job->input->stop)) return;
     const vec3s normal = chart_texel_normal(charts, texel);
-    const vec3s position = charts->texels[texel].position;
+    const vec3s position = chart_texel_of(charts, texel)->position;
     const float away = 1e-4f * (1.0f + glms_vec3_max(glms_vec3_abs(position)));
     struct texel_job t = { .job = job,
                            .index = i,
@@ -133,9 +135,16 @@ bool mrt_clutter_map_init(struct mrt_clutter_map *out, struct host *host,
     struct job job = { .input = input, .out = out };
     const int faces = mrt_faces_of_block(input->clutter, block, &job.first_face);
     *out = (struct mrt_clutter_map){ .host = host, .block = block };
-    if (faces > 0) out->first_texel = input->clutter->faces[job.first_face].first_texel;
-    for (int f = 0; f < faces; f++)
-        out->texel_count += input->clutter->faces[job.first_face + f].texel_count;
+    if (faces > 0) {
+        const struct mrt_clutter *clutter = input->clutter;
+        const struct mrt_clutter_face *first = &clutter->faces[job.first_face],
+                                      *end = first + faces;
+        out->first_texel = first->first_texel;
+        out->texel_count =
+            (end < clutter->faces + clutter->face_count ? end->first_texel
+                                                        : clutter->charts.side_texel_count) -
+            first->first_texel;
+    }
     out->inside = host_alloc(host, out->texel_count, sizeof *out->inside);
     bool ok = out->inside;
     for (int f = 0; f < CUBE_FACES; f++) {
@@ -230,8 +239,8 @@ static void respond(void *user, size_t i)
     int index[CORNERS];
     float weight[CORNERS];
     struct mrt_cell_ray at;
-    if (!mrt_cell_ray_enter(job->input->map, job->map->block, charts->texels[texel].position,
-                            frame.col[2], &at))
+    if (!mrt_cell_ray_enter(job->input->map, job->map->block,
+                            chart_texel_of(charts, texel)->position, frame.col[2], &at))
         return;
     probes_around(job->p, at.position, index, weight);
     for (size_t m = 0; m < job->out->columns; m++) {

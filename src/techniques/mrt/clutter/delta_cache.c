@@ -98,6 +98,7 @@ static struct hash128 add_material(struct hash128 key, const struct mrt_clutter 
     const struct material *m = &scene->materials[mesh->material];
     const float cutoff[2] = { m->base_color.w, m->alpha_cutoff };
     const int kind[3] = { (int)m->alpha_mode, mesh->material, scene->instances[instance].skin };
+    key = hash128_add(key, &m->double_sided, sizeof m->double_sided);
     if (m->alpha_mode == ALPHA_OPAQUE) return key;
     return hash128_add(hash128_add(key, cutoff, sizeof cutoff), kind, sizeof kind);
 }

@@ -60,8 +60,7 @@ struct mrt_clutter_rows_input {
 struct mrt_clutter_atlas_input {
     const struct mrt_clutter_rows_input *rows;
     int count;
-    uint32_t width, height;
-    const uint32_t *source; // [width × height] in mrt_clutter_input.texels; CHART_NONE: no surface
+    const uint32_t *source; // [places of the map] in mrt_clutter_input.texels; CHART_NONE: none
     const struct mrt_clutter *clutter; // charts, and triangles of the scene
 };
 

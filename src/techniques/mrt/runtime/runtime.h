@@ -65,7 +65,7 @@ struct mrt_runtime_clutter_map {
     struct light_map_surfaces surfaces;
     gpu_image image;
     gpu_pipeline fill, apply;
-    uint32_t tile_count, width, height;
+    uint32_t tile_count;
     bool is_clear;                          // the others, of the image
     struct mrt_clutter_fill_push fill_push; // of the newest direct light
 };

@@ -25,12 +25,12 @@ layout(push_constant, scalar) uniform push_block
 };
 layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D irradiance;
 
-vec3 map_irradiance(vec2 at, vec3 n)
+vec3 map_irradiance(vec3 place, vec3 n)
 {
-    vec2 uv = at / vec2(textureSize(clutter_map, 0).xy);
+    vec2 uv = place.xy / vec2(textureSize(clutter_map, 0).xy);
     vec3 sum;
     for (int c = 0; c < 3; c++)
-        sum[c] = sh4_dot(textureLod(clutter_map, vec3(uv, float(c)), 0.0), n);
+        sum[c] = sh4_dot(textureLod(clutter_map, vec3(uv, 3.0 * place.z + float(c)), 0.0), n);
     return max(sum, vec3(0.0));
 }
 
@@ -43,8 +43,8 @@ bool find_light(ivec2 pixel, out vec3 light)
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
     light_map_surface s = light_map_surface(position, n, frame.camera_position);
     vec3 place = light_map_place_of(texelFetch(id, pixel, 0).rg, push, s);
-    if (place.z != 0.0) return false; // the map has the light of the front
-    light = level.gain * map_irradiance(place.xy, s.normal);
+    if (place.z < 0.0) return false;
+    light = level.gain * map_irradiance(place, s.normal);
     return true;
 }
 

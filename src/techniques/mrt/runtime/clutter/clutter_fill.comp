@@ -1,12 +1,13 @@
 // The light map of clutter, in the atlas of its charts: the texels' own, and those of gutters and
 // of texels inside objects, which have others' light. Light of emissive surfaces and the sky is
-// added. A layer for each of red, green, blue.
+// added. A layer for each of red, green, blue of a side.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
 #include "core/half.glsl"
 #include "core/sh.glsl"
+#include "techniques/common/light_map/place.glsl"
 #include "techniques/mrt/mrt_shared.h"
 
 layout(local_size_x = MRT_LOCAL) in;
@@ -39,8 +40,9 @@ void main()
     vec3 values[4];
     for (uint v = 0u; v < 4u; v++) values[v] = light_table[place.light * 4u + v];
     values[0] += unbounced / SH_Y0;
+    uvec3 at = light_map_place(place.place);
     for (int c = 0; c < 3; c++) {
         vec4 texel = vec4(values[0][c], values[1][c], values[2][c], values[3][c]);
-        imageStore(clutter_map, ivec3(place.x, place.y, c), clamp(texel, -HALF_MAX, HALF_MAX));
+        imageStore(clutter_map, ivec3(at.xy, 3u * at.z + c), clamp(texel, -HALF_MAX, HALF_MAX));
     }
 }

@@ -475,7 +475,7 @@ static void finish_input(struct mrt_cluttered *out, struct mrt_turned *turned,
     out->input.openings = out->openings;
     out->input.pairs = out->pairs;
     out->clutter.texels = texels;
-    out->clutter.texel_count = (int)clutter->charts.texel_count;
+    out->clutter.texel_count = (int)clutter->charts.side_texel_count;
     out->clutter.faces = out->faces;
     out->clutter.openings = out->clutter_openings;
     out->clutter.pairs = out->face_pairs;

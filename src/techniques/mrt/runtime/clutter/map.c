@@ -82,12 +82,13 @@ static uint32_t light_of(const struct mrt_clutter_atlas_input *map, uint32_t tex
 }
 
 // A lookup reads the texels that the surface touches and the eight around each.
-static bool is_read(const struct charts *charts, uint32_t place)
+static bool is_read(const struct charts *charts, size_t place)
 {
-    const uint32_t owner = charts->owner[place];
+    const uint32_t owner = chart_texel_of_place(charts, place);
     if (owner == CHART_NONE) return false;
-    const int x = (int)(place % charts->width) - (int)charts->texels[owner].x;
-    const int y = (int)(place / charts->width) - (int)charts->texels[owner].y;
+    const struct chart_texel *of = chart_texel_of(charts, owner);
+    const int x = (int)(place % charts->width) - (int)of->x;
+    const int y = (int)(place / charts->width % charts->height) - (int)of->y;
     return abs(x) <= 1 && abs(y) <= 1;
 }
 
@@ -96,14 +97,15 @@ static uint32_t list_places(const struct mrt_clutter_atlas_input *map,
                             struct mrt_gpu_clutter_place *out)
 {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < map->width * map->height; i++) {
+    const struct charts *charts = &map->clutter->charts;
+    for (size_t i = 0; i < light_map_place_count(charts); i++) {
         const uint32_t texel = map->source[i];
-        const bool read = texel != CHART_NONE && is_read(&map->clutter->charts, i);
+        const bool read = texel != CHART_NONE && is_read(charts, i);
         const uint32_t light = read ? light_of(map, texel) : CHART_NONE;
         if (light == CHART_NONE) continue;
         if (out)
             out[count] =
-                (struct mrt_gpu_clutter_place){ i % map->width, i / map->width, light, texel };
+                (struct mrt_gpu_clutter_place){ light_map_place_word(charts, i), light, texel };
         count++;
     }
     return count;
@@ -134,15 +136,14 @@ static void fill_triangles(const struct mrt_runtime_input *input, void *items)
                              items);
 }
 
-static bool make_image(struct mrt_runtime *runtime)
+static bool make_image(struct mrt_runtime *runtime, const struct charts *charts)
 {
-    const struct mrt_runtime_clutter_map *map = &runtime->clutter.map;
     const struct gpu_image_desc desc = { .name = "clutter_map",
                                          .dimension = GPU_2D_ARRAY,
                                          .format = GPU_RGBA16F,
-                                         .width = map->width,
-                                         .height = map->height,
-                                         .depth = 3,
+                                         .width = charts->width,
+                                         .height = charts->height,
+                                         .depth = 3 * light_map_sides(charts),
                                          .usage = GPU_SAMPLED | GPU_STORAGE };
     return mrt_image_of(runtime, &desc, &runtime->clutter.map.image);
 }
@@ -152,11 +153,11 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
     const struct mrt_clutter_atlas_input *from = &input->clutter->map;
     struct mrt_runtime_clutter_map *map = &runtime->clutter.map;
     if (from->count == 0) return true;
+    const struct gpu_constant backs = { LIGHT_MAP_HAS_BACKS,
+                                        light_map_sides(&from->clutter->charts) == 2 };
     const size_t tiles = tiles_of(from),
                  instances = (size_t)from->clutter->walls.scene.instance_count;
     map->tile_count = (uint32_t)tiles;
-    map->width = from->width;
-    map->height = from->height;
     map->surfaces.count = (uint32_t)instances;
     map->fill_push.places = list_places(from, NULL);
     return mrt_table_upload(runtime, input, "clutter_tiles", tiles, sizeof(struct mrt_gpu_tile),
@@ -172,11 +173,11 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
                             &map->surfaces.triangles) &&
            mrt_buffer_of(runtime, "clutter_light", NULL, tiles * MRT_LOCAL * VALUES * VEC3_BYTES,
                          &map->light) &&
-           make_image(runtime) &&
+           make_image(runtime, &from->clutter->charts) &&
            mrt_pipeline_of(runtime, "clutter_fill", &shader_mrt_runtime_clutter_fill_comp, NULL, 0,
                            &map->fill) &&
-           mrt_pipeline_of(runtime, "clutter_apply", &shader_mrt_runtime_clutter_apply_comp, NULL,
-                           0, &map->apply);
+           mrt_pipeline_of(runtime, "clutter_apply", &shader_mrt_runtime_clutter_apply_comp, &backs,
+                           1, &map->apply);
 }
 
 void mrt_clutter_map_end(struct mrt_runtime *runtime)

@@ -1,5 +1,7 @@
 #include "techniques/mrt/runtime/clutter/mapped.h"
 
+#include "techniques/common/light_map/surface.h"
+
 #include <string.h>
 
 bool mrt_mapped_init(struct mrt_mapped *out, struct host *host, int blocks)
@@ -44,7 +46,8 @@ static bool add_openings(struct host *host, struct mrt_clutter_rows_input *rows,
 static bool keep_inside(struct mrt_mapped *out, const struct mrt_clutter_map *map,
                         const struct charts *charts)
 {
-    if (!out->inside) out->inside = host_alloc(out->host, charts->texel_count, sizeof *out->inside);
+    if (!out->inside)
+        out->inside = host_alloc(out->host, charts->side_texel_count, sizeof *out->inside);
     if (out->inside)
         memcpy(out->inside + map->first_texel, map->inside, map->texel_count * sizeof *map->inside);
     return out->inside;
@@ -72,13 +75,13 @@ static bool fill_sources(struct mrt_mapped *out, const struct mrt_clutter *clutt
                          uint32_t *place_of)
 {
     const struct charts *charts = &clutter->charts;
-    for (uint32_t i = 0; i < charts->texel_count; i++) {
+    for (uint32_t i = 0; i < charts->side_texel_count; i++) {
         place_of[clutter->texels[i]] = i;
         hidden[clutter->texels[i]] = out->inside[i];
     }
     uint32_t *shown = charts_fill(charts, hidden);
-    for (size_t i = 0; shown && i < (size_t)charts->width * charts->height; i++) {
-        const uint32_t texel = charts->owner[i];
+    for (size_t i = 0; shown && i < light_map_place_count(charts); i++) {
+        const uint32_t texel = chart_texel_of_place(charts, i);
         out->source[i] = texel == CHART_NONE ? CHART_NONE : place_of[shown[texel]];
     }
     const bool ok = shown;
@@ -91,15 +94,13 @@ bool mrt_mapped_place(struct mrt_mapped *out, const struct mrt_clutter *clutter)
     const struct charts *charts = &clutter->charts;
     struct host *host = out->host;
     bool *hidden = host_alloc(host, charts->side_texel_count, sizeof *hidden);
-    uint32_t *place_of = host_alloc(host, charts->texel_count, sizeof *place_of);
-    out->source = host_alloc(host, (size_t)charts->width * charts->height, sizeof *out->source);
+    uint32_t *place_of = host_alloc(host, charts->side_texel_count, sizeof *place_of);
+    out->source = host_alloc(host, light_map_place_count(charts), sizeof *out->source);
     const bool ok = hidden && place_of && out->source &&
                     (out->inside || charts->texel_count == 0) &&
                     fill_sources(out, clutter, hidden, place_of);
     if (ok) {
         out->input.source = out->source;
-        out->input.width = charts->width;
-        out->input.height = charts->height;
         out->input.clutter = clutter;
     }
     host_free(host, hidden);
