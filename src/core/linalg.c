@@ -84,15 +84,6 @@ bool matrix_f64_from_f32(struct host *host, const struct matrix_f32 *from, struc
     return true;
 }
 
-bool matrix_f32_from_f64(struct host *host, const struct matrix_f64 *from, struct matrix_f32 *out)
-{
-    if (!matrix_f32_init(host, out, from->rows, from->columns)) return false;
-    for (size_t r = 0; r < from->rows; r++)
-        for (size_t c = 0; c < from->columns; c++)
-            out->at[r * out->stride + c] = (float)from->at[r * from->stride + c];
-    return true;
-}
-
 struct matrix_f32 matrix_f32_block(const struct matrix_f32 *m, size_t first_row,
                                    size_t first_column, size_t rows, size_t columns)
 {

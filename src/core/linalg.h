@@ -28,9 +28,8 @@ bool matrix_f32_init(struct host *host, struct matrix_f32 *m, size_t rows, size_
 bool matrix_f64_init(struct host *host, struct matrix_f64 *m, size_t rows, size_t columns);
 void matrix_f32_finish(struct host *host, struct matrix_f32 *m);
 void matrix_f64_finish(struct host *host, struct matrix_f64 *m);
-// A contiguous copy; the second one rounds to nearest.
+// A contiguous copy.
 bool matrix_f64_from_f32(struct host *host, const struct matrix_f32 *from, struct matrix_f64 *out);
-bool matrix_f32_from_f64(struct host *host, const struct matrix_f64 *from, struct matrix_f32 *out);
 // The block of rows first_row… and columns first_column…, in the memory of m; never finish it.
 struct matrix_f32 matrix_f32_block(const struct matrix_f32 *m, size_t first_row,
                                    size_t first_column, size_t rows, size_t columns);

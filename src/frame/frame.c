@@ -631,13 +631,6 @@ void frame_record_view(struct frame *f, struct gpu_cmd *cmd, const struct frame_
     if (is_first) reports_record(f, cmd, input);
 }
 
-void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
-                  const struct frame_indirect *indirect)
-{
-    frame_record_light(f, cmd, input, indirect);
-    frame_record_view(f, cmd, input, indirect);
-}
-
 float frame_radiance_scale(const struct frame *f)
 {
     return f->index ? f->constants.radiance_scale : 1.0f;

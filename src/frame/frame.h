@@ -205,9 +205,6 @@ void frame_record_light(struct frame *frame, struct gpu_cmd *cmd, const struct f
 // What one view sees: the further views of the frame, then the first, whose layers last.
 void frame_record_view(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input,
                        const struct frame_indirect *indirect);
-// Both, of a frame with one view.
-void frame_record(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input,
-                  const struct frame_indirect *indirect);
 // Whether the layer has its value after the newest recorded frame.
 bool frame_keeps_layer(const struct frame *frame, enum frame_layer layer);
 // Keeps a layer, and creates it if there is a size, whether or not a technique writes it: without

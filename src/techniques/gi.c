@@ -72,13 +72,6 @@ void gi_destroy_state(const struct gi *gi, const struct technique *technique, co
     host_free(gi->host, state);
 }
 
-struct gi *gi_create(struct host *host, struct gpu *gpu, const struct gi_spec *spec,
-                     const struct scene_pose *pose, uint32_t width, uint32_t height)
-{
-    const struct gi_bakes none = { { NULL } };
-    return gi_create_baked(host, gpu, spec, &none, pose, width, height);
-}
-
 struct gi *gi_create_baked(struct host *host, struct gpu *gpu, const struct gi_spec *spec,
                            const struct gi_bakes *bakes, const struct scene_pose *pose,
                            uint32_t width, uint32_t height)

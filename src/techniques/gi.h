@@ -23,14 +23,11 @@ char *gi_spec_print(const struct gi_spec *spec);
 bool gi_spec_gathers_emission(const struct gi_spec *spec);
 
 struct gi;
-// Checks and creates each technique. The spec is copied.
-struct gi *gi_create(struct host *host, struct gpu *gpu, const struct gi_spec *spec,
-                     const struct scene_pose *pose, uint32_t width, uint32_t height);
 // Complete bakes of the spec's terms, needed during the call only; NULL: none.
 struct gi_bakes {
     const struct tensors *of_term[GI_MAX_TERMS];
 };
-// The same for specs of techniques that bake: each loads its own after its creation.
+// Checks and creates each technique, which loads its bake then. The spec is copied.
 struct gi *gi_create_baked(struct host *host, struct gpu *gpu, const struct gi_spec *spec,
                            const struct gi_bakes *bakes, const struct scene_pose *pose,
                            uint32_t width, uint32_t height);
@@ -49,7 +46,8 @@ bool gi_would_warn_of_movement(const struct gi *gi);
 // The animation has moved surfaces since the creation: such techniques warn once.
 void gi_warn_of_movement(struct gi *gi);
 // Applies another spec's options to the running stack. false, and nothing changed: it names other
-// techniques, or changes options that need gi_create (their effect is stronger than INVALIDATE).
+// techniques, or changes options that need another stack (their effect is stronger than
+// INVALIDATE).
 bool gi_set_options(struct gi *gi, const struct gi_spec *spec);
 // The running term that continues as this one of another spec, since set_options suffices; -1: the
 // technique is created again.

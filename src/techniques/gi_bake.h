@@ -18,14 +18,3 @@ bool gi_bake_resolve(struct host *host, const struct technique *technique,
 // outlives the bake. identity: its seed and texts; technique, version and options are set here.
 struct bake *gi_bake_create(struct host *host, const struct technique *technique,
                             const struct technique_bake *how, struct bake_identity identity);
-
-// The bakes of all terms, run in memory: for tests, and for programs without a cache.
-struct gi_baked {
-    struct gi_bakes bakes; // for gi_create_baked
-    struct bake *owned[GI_MAX_TERMS];
-    struct technique_bake how[GI_MAX_TERMS];
-};
-// Runs them on all cores. spec and pose outlive *out. Finish in any case.
-bool gi_bake_all(struct gi_baked *out, struct host *host, const struct gi_spec *spec,
-                 const struct scene_pose *pose);
-void gi_baked_finish(struct gi_baked *baked);

@@ -3,10 +3,7 @@
 
 #include "techniques/technique.h"
 
-extern const struct technique *const techniques[];        // ends with NULL
-const struct technique *technique_find(const char *name); // NULL: unknown
+extern const struct technique *const techniques[]; // ends with NULL
 // Accepts "view", "technique.view" (for a view that two techniques have) and old names. NULL: none.
 const struct technique_debug_view *technique_find_view(const struct technique *technique,
                                                        const char *name);
-// The required members are set and the name is [a-z0-9]+. Asserted for every registered technique.
-bool technique_is_sound(const struct technique *technique);

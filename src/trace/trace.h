@@ -32,7 +32,6 @@ struct trace_hit {
     vec3s albedo;    // base colour, 0…1
     float metallic, roughness;
     vec3s emission; // towards the ray origin, cd/m²
-    float reach_m;  // offset of trace_leave
 };
 
 // The nearest hit, front or back face. direction need not be unit. hit may be NULL.
@@ -40,9 +39,6 @@ bool trace_closest(const struct trace_scene *scene, vec3s origin, vec3s directio
                    float max_distance, struct trace_hit *hit);
 bool trace_occluded(const struct trace_scene *scene, vec3s origin, vec3s direction,
                     float max_distance);
-// The hit offset to the side of `direction`, so that a ray from there does not hit the same
-// surface.
-vec3s trace_leave(const struct trace_hit *hit, vec3s direction);
 
 // ---- Reference ----------------------------------------------------------------------------------
 

@@ -309,7 +309,6 @@ bool trace_closest(const struct trace_scene *scene, vec3s origin, vec3s directio
         .metallic = s.material.metallic,
         .roughness = s.material.roughness,
         .emission = s.emission,
-        .reach_m = s.reach,
     };
     return true;
 }
@@ -319,10 +318,4 @@ bool trace_occluded(const struct trace_scene *scene, vec3s origin, vec3s directi
 {
     struct ray ray = { origin, direction, 0.0f, max_distance };
     return embree_occluded(scene->embree, &ray);
-}
-
-vec3s trace_leave(const struct trace_hit *hit, vec3s direction)
-{
-    float side = glms_vec3_dot(hit->geometric, direction) < 0.0f ? -hit->reach_m : hit->reach_m;
-    return glms_vec3_muladds(hit->geometric, side, hit->position);
 }

@@ -48,7 +48,8 @@ void fixture_render(struct frame_fixture *s)
     assert_true(frame_prepare(s->frame, &s->input, indirect));
     struct gpu_cmd *cmd = gpu_frame_begin(s->gpu);
     assert_non_null(cmd);
-    frame_record(s->frame, cmd, &s->input, indirect);
+    frame_record_light(s->frame, cmd, &s->input, indirect);
+    frame_record_view(s->frame, cmd, &s->input, indirect);
     assert_true(gpu_frame_end(s->gpu, cmd));
     assert_true(gpu_wait(s->gpu));
 }

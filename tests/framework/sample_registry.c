@@ -118,18 +118,6 @@ static const struct technique sample = { .name = "sample",
 
 const struct technique *const techniques[] = { &technique_none, &sample, NULL };
 
-bool technique_is_sound(const struct technique *technique)
-{
-    return technique->create && technique->record;
-}
-
-const struct technique *technique_find(const char *name)
-{
-    for (size_t i = 0; techniques[i]; i++)
-        if (strcmp(techniques[i]->name, name) == 0) return techniques[i];
-    return NULL;
-}
-
 const struct technique_debug_view *technique_find_view(const struct technique *technique,
                                                        const char *name)
 {

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "frame/frame_fixture.h"
-#include "techniques/gi_bake.h"
-#include "techniques/gi_spec.h"
+#include "techniques/gi_baked.h"
 
 struct baked_fixture {
     struct gi_spec spec;

@@ -10,8 +10,7 @@
 #pragma once
 
 #include "frame/frame_fixture.h"
-#include "techniques/gi_bake.h"
-#include "techniques/gi_spec.h"
+#include "techniques/gi_baked.h"
 
 struct damage_fixture {
     struct frame_fixture s;

@@ -1,7 +1,7 @@
 // Emissive surfaces as lights, in the full frame, for every source that gathers emission.
 #include "frame/frame_fixture.h"
 #include "techniques/gi_fixture.h"
-#include "techniques/registry.h"
+#include "techniques/technique_rules.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,5 @@
 // Bakes of techniques: identity from the options, the plan, loading by a GI stack.
-#include "techniques/gi_bake.h"
-#include "techniques/gi_spec.h"
+#include "techniques/gi_baked.h"
 
 #include "bake/scene_key.h"
 #include "frame/frame_fixture.h"

@@ -2,7 +2,7 @@
 
 #include "core/file.h"
 #include "techniques/gi_spec.h"
-#include "techniques/registry.h"
+#include "techniques/technique_rules.h"
 
 #include <stdio.h>
 #include <string.h>

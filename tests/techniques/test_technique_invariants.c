@@ -1,7 +1,7 @@
 // Invariants of every source in the full frame: linearity, black without light, determinism.
 #include "frame/frame_fixture.h"
 #include "techniques/gi_fixture.h"
-#include "techniques/registry.h"
+#include "techniques/technique_rules.h"
 
 #include <math.h>
 #include <stdlib.h>

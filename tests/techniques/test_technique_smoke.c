@@ -1,5 +1,6 @@
 // Every technique in the full frame: creation to destruction, with every option at both ends.
 #include "frame/frame_fixture.h"
+#include "techniques/gi_baked.h"
 #include "techniques/gi_fixture.h"
 #include "techniques/registry.h"
 

@@ -1,5 +1,5 @@
 // Requirements on every screen-space technique of the role visibility.
-#include "techniques/gi.h"
+#include "techniques/gi_baked.h"
 
 #include "frame/frame_fixture.h"
 

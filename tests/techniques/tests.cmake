@@ -1,4 +1,4 @@
-add_library(ag_test_techniques STATIC techniques/baked_fixture.c techniques/damage_fixture.c techniques/gi_fixture.c techniques/geometry_fixture.c techniques/geometry_twin.c techniques/mesh_fixture.c
+add_library(ag_test_techniques STATIC techniques/baked_fixture.c techniques/damage_fixture.c techniques/gi_baked.c techniques/technique_rules.c techniques/gi_fixture.c techniques/geometry_fixture.c techniques/geometry_twin.c techniques/mesh_fixture.c
   techniques/rsm_fixture.c techniques/vo_fixture.c techniques/lpv/lpv_fixture.c techniques/lpv/lpv_twin.c techniques/lpv/lpv_twin_closed.c
   techniques/lpv/lpv_twin_product.c techniques/vct/svo_tree.c techniques/vct/vct_fixture.c techniques/vct/vct_twin.c
   techniques/vct/vct_voxel_count.c)

@@ -178,13 +178,6 @@ struct lpv_lobe_weights lpv_product_lobe(double focus)
     return (struct lpv_lobe_weights){ focus, band_2, band_2 };
 }
 
-double lpv_lobe_weight(const struct lpv_lobe_weights *weights, int coefficient)
-{
-    if (coefficient == 0) return 1.0;
-    if (coefficient < 4) return weights->along;
-    return coefficient == 6 || coefficient == 8 ? weights->square : weights->product;
-}
-
 static struct lpv_reprojection reprojection_of(struct lpv_face face, int p_axis, int q_axis,
                                                enum lpv_lobe lobe)
 {

@@ -59,7 +59,6 @@ struct lpv_lobe_weights lpv_lobe_weights_of(enum lpv_scheme scheme, enum lpv_lob
                                             double focus, double filter);
 // Of the moments after a step of lpv_product.glsl.
 struct lpv_lobe_weights lpv_product_lobe(double focus);
-double lpv_lobe_weight(const struct lpv_lobe_weights *weights, int coefficient);
 
 // Shader parameters of one step: one face of each class, and the lobes' weights.
 struct lpv_step {

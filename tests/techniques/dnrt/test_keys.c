@@ -1,7 +1,6 @@
 // Key frames of a mesh that an animation deforms.
 #include "frame/frame_fixture.h"
-#include "techniques/gi_bake.h"
-#include "techniques/gi_spec.h"
+#include "techniques/gi_baked.h"
 
 #include "techniques/dnrt/dnrt_keys.h"
 

@@ -45,6 +45,13 @@ void twin_finish(struct twin *twin)
 }
 
 // −1 outside.
+double lpv_lobe_weight(const struct lpv_lobe_weights *weights, int coefficient)
+{
+    if (coefficient == 0) return 1.0;
+    if (coefficient < 4) return weights->along;
+    return coefficient == 6 || coefficient == 8 ? weights->square : weights->product;
+}
+
 static int index_of(const struct twin *twin, const int cell[3])
 {
     const int32_t *cells = twin->grid.cells;

@@ -8,6 +8,9 @@
 
 struct geometry_twin;
 
+// Of one of nine coefficients.
+double lpv_lobe_weight(const struct lpv_lobe_weights *weights, int coefficient);
+
 struct twin {
     struct lpv_grid grid;
     int bands;

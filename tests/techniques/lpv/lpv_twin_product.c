@@ -1,6 +1,7 @@
 #include "techniques/lpv/lpv_twin_product.h"
 
 #include "techniques/lpv/lpv_math.h"
+#include "techniques/lpv/lpv_twin.h"
 
 #include <math.h>
 

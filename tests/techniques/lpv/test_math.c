@@ -4,6 +4,7 @@
 #include "core/sh.h"
 #include "techniques/lpv/lpv_grid.h"
 #include "techniques/lpv/lpv_math.h"
+#include "techniques/lpv/lpv_twin.h"
 
 #include <complex.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 // Light of the sky, which enters through the border of the grid.
 #include "frame/frame_fixture.h"
-#include "techniques/gi.h"
+#include "techniques/gi_baked.h"
 #include "techniques/lpv/lpv_fixture.h"
 
 #include <math.h>

@@ -5,6 +5,19 @@
 
 #include <stdio.h>
 
+#define OPTION(...) OPTION_ROW(struct mrt_dictionary_options, __VA_ARGS__)
+static const struct option_row rows[] = {
+#include "techniques/mrt/dictionary/dictionary_options.def"
+};
+#undef OPTION
+
+static const struct option_table table = OPTION_TABLE(struct mrt_dictionary_options, rows, NULL);
+
+const struct option_table *mrt_dictionary_option_table(void)
+{
+    return &table;
+}
+
 struct mrt_dictionary_options mrt_fixture_options(void)
 {
     struct mrt_dictionary_options options;

@@ -5,6 +5,8 @@
 
 #include "techniques/mrt/dictionary/dictionary.h"
 
+// All options with their defaults.
+const struct option_table *mrt_dictionary_option_table(void);
 // The defaults with a lightfield of a sixteenth of the samples; its errors are about the same.
 struct mrt_dictionary_options mrt_fixture_options(void);
 // A bake that has not run, of a bake version; mrt_fixture_bake has 1. Destroy it.

@@ -1,5 +1,6 @@
 // The padded light map of a level: seams, creases and walls.
 #include "framework/test.h"
+#include "techniques/mrt/atlas_twin.h"
 #include "techniques/mrt/mrt_map_fixture.h"
 
 #include "core/rng.h"

@@ -1,4 +1,5 @@
 // The run time of modular radiance transfer against its matrices, and laws of light.
+#include "techniques/mrt/atlas_twin.h"
 #include "techniques/mrt/mrt_map_fixture.h"
 #include "techniques/mrt/mrt_runtime_fixture.h"
 

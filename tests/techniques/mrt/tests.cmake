@@ -6,7 +6,7 @@ endforeach()
 # Files are untrusted input: `check` runs tests with this label under the sanitizers.
 set_tests_properties(techniques.mrt.bake_file PROPERTIES LABELS "techniques;bake")
 
-add_library(ag_test_mrt_map STATIC techniques/mrt/mrt_map_fixture.c techniques/mrt/mrt_operators_fixture.c)
+add_library(ag_test_mrt_map STATIC techniques/mrt/atlas_twin.c techniques/mrt/mrt_map_fixture.c techniques/mrt/mrt_operators_fixture.c)
 target_link_libraries(ag_test_mrt_map PUBLIC ag_test_framework ag_techniques PRIVATE afterglow_flags m)
 foreach(name atlas blocks geometry level maps options solver)
   ag_test(techniques/mrt/${name} USES techniques LIBRARIES ag_test_mrt_map)

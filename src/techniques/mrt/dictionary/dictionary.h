@@ -38,8 +38,6 @@ struct mrt_dictionary_options {
 #undef OPTION
 };
 
-const struct option_table *mrt_dictionary_option_table(void);
-
 // Without a level MRT_MAZE_AUTO is the plane.
 static inline enum mrt_maze mrt_dictionary_maze(const struct mrt_dictionary_options *options)
 {

@@ -138,22 +138,3 @@ bool mrt_block_map_is_tunnel(const struct mrt_block_map *map)
     }
     return map->count > 0;
 }
-
-static void close_opening(struct mrt_block *block, int face)
-{
-    block->open &= ~(1u << face);
-    block->neighbor[face] = (struct mrt_neighbor){ .block = -1 };
-}
-
-void mrt_block_map_make_plane(struct mrt_block_map *map)
-{
-    for (int b = 0; b < map->count; b++) {
-        for (int f = 0; f < CUBE_FACES; f++) {
-            struct mrt_block *block = &map->blocks[b];
-            const struct mrt_neighbor beyond = block->neighbor[f];
-            if (is_in_plane(block, f)) continue;
-            close_opening(block, f);
-            if (beyond.block >= 0) close_opening(&map->blocks[beyond.block], beyond.face);
-        }
-    }
-}

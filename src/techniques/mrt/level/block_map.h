@@ -42,8 +42,6 @@ bool mrt_block_map_check(const char *what, const struct mrt_block_map *map);
 // Whether a dictionary for two-dimensional mazes has all cubes: no opening at the bottom or top of
 // a cell, no neighbours that are tilted against each other.
 bool mrt_block_map_is_plane(const struct mrt_block_map *map);
-// Makes it so: such openings become walls on both sides, the others stay.
-void mrt_block_map_make_plane(struct mrt_block_map *map);
 
 // Whether a dictionary of tubes has all blocks: cylinders that are not tilted against each other.
 bool mrt_block_map_is_tunnel(const struct mrt_block_map *map);

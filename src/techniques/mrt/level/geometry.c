@@ -144,21 +144,3 @@ bool mrt_wall_of_surface(const struct mrt_block *block, vec3s position, vec3s no
     out->t = clamped(0.5f + glms_vec3_dot(frame.col[1], cell));
     return true;
 }
-
-int mrt_block_of_surface(const struct mrt_block_map *map, vec3s position, vec3s normal,
-                         float beyond, struct mrt_wall_point *out)
-{
-    int nearest = -1;
-    float least = beyond;
-    for (int b = 0; b < map->count; b++) {
-        struct mrt_wall_point point;
-        vec3s cell;
-        if (!mrt_warp_inverse(map->blocks[b].corner, position, &cell)) continue;
-        if (outside(cell) > least || (nearest >= 0 && outside(cell) == least)) continue;
-        if (!mrt_wall_of_surface(&map->blocks[b], position, normal, beyond, &point)) continue;
-        least = outside(cell);
-        nearest = b;
-        *out = point;
-    }
-    return nearest;
-}

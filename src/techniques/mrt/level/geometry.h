@@ -29,6 +29,3 @@ struct mrt_wall_point {
 // away from all walls.
 bool mrt_wall_of_surface(const struct mrt_block *block, vec3s position, vec3s normal, float beyond,
                          struct mrt_wall_point *out);
-// The same among all blocks: the wall of the block nearest to the point. −1: none.
-int mrt_block_of_surface(const struct mrt_block_map *map, vec3s position, vec3s normal,
-                         float beyond, struct mrt_wall_point *out);
