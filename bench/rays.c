@@ -173,7 +173,7 @@ static bool add_default_lighting(struct scene *scene)
     struct light sun = {
         .name = "sun", .type = LIGHT_SUN, .node = node, .intensity = lighting.sun_lux
     };
-    scene->sky = lighting.sky;
+    scene->environment.sky = lighting.sky;
     return node >= 0 && scene_add_light(scene, &sun) >= 0;
 }
 

@@ -93,8 +93,8 @@ enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
 void renderer_warn_of_darkness(const struct ag_renderer *r)
 {
     const struct scene *scene = r->scene->scene;
-    bool only_emitters =
-        scene->light_count == 0 && luminance(scene->sky) <= 0.0f && scene_has_emission(scene);
+    bool only_emitters = scene->light_count == 0 && luminance(scene->environment.sky) <= 0.0f &&
+                         scene_has_emission(scene);
     if (only_emitters && !gi_spec_gathers_emission(&r->spec))
         host_log(renderer_host(r), LOG_WARNING,
                  "%s: only emissive surfaces light the scene and --gi %s ignores their light; try "

@@ -325,7 +325,7 @@ enum ag_result ag_scene_get_info(struct ag_scene *scene, int animation, double t
         out->vertices += s->meshes[s->instances[i].mesh].vertex_count;
     api_store(out->bounds_min, pose->bounds.min);
     api_store(out->bounds_max, pose->bounds.max);
-    api_store(out->sky, s->sky);
+    api_store(out->sky, s->environment.sky);
     return AG_OK;
 }
 

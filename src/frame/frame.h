@@ -163,7 +163,7 @@ struct frame_input {
     struct world_camera camera;
     const struct world_light *lights; // physical units
     int light_count;                  // ≤ FRAME_MAX_LIGHTS
-    vec3s sky;                        // cd/m²
+    struct environment environment;   // of the scene
     bool auto_exposure;               // from the frame's radiance, see image/exposure.h
     float exposure_ev;                // used if auto_exposure is false
     bool camera_cut;                  // invalidate history

@@ -77,21 +77,21 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
     const struct scale_input light = {
         .lights = input->lights,
         .light_count = input->light_count,
-        .sky = input->sky,
+        .sky = environment_mean(&input->environment),
         .max_emissive = f->common->scene.max_emissive,
         .emitted_flux = f->common->emitters.flux,
         .bounds = input->pose->bounds,
     };
     c->radiance_scale = frame_scale(&light);
     c->unlit_white =
-        c->radiance_scale * unlit_white(input->lights, input->light_count, input->sky,
+        c->radiance_scale * unlit_white(input->lights, input->light_count, light.sky,
                                         luminance(f->common->emitters.flux), input->pose->bounds);
     f->fallback_luminance = frame_fallback_luminance(&light) * c->radiance_scale;
     // Where all that is seen is unlit, its white exposes to 1.
     if (f->common->scene.has_unlit) f->fallback_luminance = 0.18f * c->unlit_white;
     c->emissive_scale = emissive_scale(c, input);
     c->previous_scale_ratio = f->index == 0 ? 1.0f : c->radiance_scale / previous_scale;
-    c->sky = glms_vec3_scale(input->sky, c->radiance_scale);
+    c->sky = glms_vec3_scale(light.sky, c->radiance_scale);
     f->emitted_irradiance = glms_vec3_scale(
         emitters_irradiance(&f->common->emitters, input->pose->bounds), c->radiance_scale);
     c->width = f->width;

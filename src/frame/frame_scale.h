@@ -6,7 +6,7 @@
 struct scale_input {
     const struct world_light *lights;
     int light_count;
-    vec3s sky;          // cd/m²
+    vec3s sky;          // mean of the environment, cd/m²
     float max_emissive; // cd/m²
     vec3s emitted_flux; // of all emissive surfaces, lumen
     struct box3 bounds; // of the scene

@@ -24,7 +24,7 @@ struct frame_constants {
     mat4s view_from_world;
     vec3s camera_position; // world, m
     float near_m;
-    vec3s sky;                  // scaled radiance of the sky
+    vec3s sky;                  // scaled radiance of the sky: environment.glsl
     float radiance_scale;       // scaled = physical × radiance_scale
     float previous_scale_ratio; // radiance_scale / previous radiance_scale: a factor for history
     uint32_t width, height;

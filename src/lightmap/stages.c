@@ -64,7 +64,7 @@ static bool run(const struct bake_task *task)
 static struct hash128 key_of(const struct scene_pose *pose)
 {
     struct hash128 key = scene_key(pose, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS);
-    key = hash128_add(key, pose->scene->sky.raw, sizeof pose->scene->sky.raw);
+    key = hash128_add(key, &pose->scene->environment, sizeof pose->scene->environment);
     for (int i = 0; i < pose->scene->light_count; i++) {
         if (pose->scene->lights[i].off) continue;
         const struct world_light light = pose_light(pose, i);

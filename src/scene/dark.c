@@ -54,6 +54,6 @@ static bool emission_lights(const struct scene_pose *pose)
 bool pose_is_dark(const struct scene_pose *pose)
 {
     const struct scene *scene = pose->scene;
-    if (has_lights(scene) || luminance(scene->sky) > 0.0f) return false;
+    if (has_lights(scene) || luminance(scene->environment.sky) > 0.0f) return false;
     return !scene_has_emission(scene) || !emission_lights(pose);
 }

@@ -107,7 +107,7 @@ bool limits_pose(const struct scene_pose *pose)
 
 bool limits_scene(const struct scene *scene)
 {
-    if (!limits_light(scene->sky)) return too_bright(scene, "the", "sky");
+    if (!limits_light(scene->environment.sky)) return too_bright(scene, "the", "sky");
     for (int i = 0; i < scene->material_count; i++) {
         const struct material *material = &scene->materials[i];
         if (limits_light(material->emissive)) continue;

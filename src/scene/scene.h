@@ -6,6 +6,7 @@
 
 #include "core/arena.h"
 #include "core/vec.h"
+#include "scene/environment.h"
 
 #include <stdatomic.h>
 #include <stdint.h>
@@ -205,7 +206,7 @@ struct scene {
     int skin_count;
     struct animation *animations;
     int animation_count;
-    vec3s sky;             // uniform radiance from outside, cd/m²
+    struct environment environment;
     uint64_t content_hash; // of the file's bytes or of the built-in's name
     // A warning has said that unwraps are broken: light maps are planned several times. Shared with
     // copies of this struct.

@@ -209,6 +209,6 @@ void scene_remove_lights(struct scene *scene)
 
 void scene_set_sky(struct scene *scene, vec3s radiance)
 {
-    scene->sky = radiance;
+    scene->environment.sky = radiance;
     scene_changed(scene, &scene->revisions.lights);
 }

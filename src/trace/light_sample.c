@@ -139,14 +139,15 @@ static bool list_emitters(struct trace_scene *scene)
 bool light_table_init(struct trace_scene *scene, const struct scene_pose *pose)
 {
     struct light_table *t = &scene->lights;
-    t->sky = scene->scene->sky;
-    t->has_sky = t->sky.x > 0.0f || t->sky.y > 0.0f || t->sky.z > 0.0f;
+    t->environment = scene->scene->environment;
+    const vec3s sky = environment_mean(&t->environment);
+    t->has_sky = sky.x > 0.0f || sky.y > 0.0f || sky.z > 0.0f;
     int count = scene->scene->light_count;
     t->punctual = host_alloc(scene->host, (size_t)count, sizeof *t->punctual);
     if (!t->punctual) return false;
     for (int i = 0; i < count; i++) t->punctual[t->punctual_count++] = pose_light(pose, i);
     if (!list_emitters(scene)) return false;
-    t->unlit_white = unlit_white(t->punctual, t->punctual_count, t->sky, t->flux, pose->bounds);
+    t->unlit_white = unlit_white(t->punctual, t->punctual_count, sky, t->flux, pose->bounds);
     return true;
 }
 

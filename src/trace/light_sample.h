@@ -26,7 +26,7 @@ struct light_table {
     int punctual_count;
     struct emitter *emitters; // all triangles of emissive instances, mesh after mesh
     uint32_t emitter_count;
-    vec3s sky;
+    struct environment environment;
     bool has_sky, has_emitters; // has_emitters: of power above 0
     float flux;                 // of all emitters, lumen
     float unlit_white;          // scene/unlit.h, cd/m²

@@ -44,7 +44,8 @@ static bool first_surface(const struct path_settings *settings, struct ray ray,
 struct path_start path_begin(const struct path_settings *settings, const struct ray *ray,
                              const struct pixel_footprint *footprint, uint64_t *rays)
 {
-    struct path_start start = { .radiance = settings->scene->lights.sky };
+    const struct environment *environment = &settings->scene->lights.environment;
+    struct path_start start = { .radiance = environment_radiance(environment, ray->direction) };
     start.hit = first_surface(settings, *ray, footprint, &start.surface, rays);
     if (start.hit) {
         vec3s to_viewer = glms_vec3_normalize(glms_vec3_negate(ray->direction));
@@ -252,7 +253,8 @@ static void trace_step(struct path *p)
 static vec3s hit_radiance(const struct path *p)
 {
     const struct surface *end = &p->surface;
-    if (!p->has_hit) return p->settings->scene->lights.sky;
+    if (!p->has_hit)
+        return environment_radiance(&p->settings->scene->lights.environment, p->step.ray.direction);
     if (is_black(end->emission)) return end->emission;
     float cosine = -glms_vec3_dot(end->geometric, p->step.ray.direction);
     float other =

@@ -78,7 +78,7 @@ struct ag_scene *scene_copy_by_calls(struct ag_scene *from)
         ok(from, ag_scene_get_light(from, i, -1, 0.0, &info));
         ok(to, ag_scene_add_light(to, &info.light, NULL));
     }
-    const vec3s sky = from->scene->sky;
+    const vec3s sky = from->scene->environment.sky;
     ok(to, ag_scene_set_sky(to, sky.raw));
     return to;
 }

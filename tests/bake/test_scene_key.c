@@ -42,7 +42,7 @@ TEST(scene_key_does_not_depend_on_lights_sky_and_cameras)
 {
     struct scene *a = load("@atrium"), *b = load("@atrium");
     scene_remove_lights(b);
-    b->sky = vec3_of(1, 2, 3);
+    b->environment.sky = vec3_of(1, 2, 3);
     b->camera_count = 0;
     CHECK(same(key_at(a, 0, BOTH), key_at(b, 0, BOTH)));
     scene_destroy(a);

@@ -244,14 +244,15 @@ TEST_GPU(empty_scene_shows_the_sky)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
-    s.input.sky = vec3_of(1000, 2000, 4000);
+    s.input.environment.sky = vec3_of(1000, 2000, 4000);
     fixture_add_sun(&s, vec3_of(0, -1, 0), vec3_of(100, 100, 100));
     fixture_add_point(&s, vec3_of(0, 1, 0), vec3_of(100, 100, 100));
     fixture_open(&s);
     fixture_render(&s);
     float *color = fixture_read(&s, READ_COLOR);
     for (size_t i = 0; i < 32 * 32; i++)
-        for (size_t k = 0; k < 3; k++) CHECK_RELATIVE(color[3 * i + k], s.input.sky.raw[k], 1e-3);
+        for (size_t k = 0; k < 3; k++)
+            CHECK_RELATIVE(color[3 * i + k], s.input.environment.sky.raw[k], 1e-3);
     free(color);
     fixture_finish(&s);
 }

@@ -167,7 +167,7 @@ TEST_GPU(exposure_of_surfaces_in_shadow_follows_the_lights)
         begin(&s, gpu);
         s.input.light_count = 0;
         fixture_add_sun(&s, vec3_of(0, 1, 0), vec3_of(1000 * (i == 1 ? 2 : 1), 0, 0)); // from below
-        if (i == 2) s.input.sky = vec3_of(50, 50, 50);
+        if (i == 2) s.input.environment.sky = vec3_of(50, 50, 50);
         fixture_look(&s, vec3_of(0, 2, 0.5f), vec3_of(0, 0, 0));
         fixture_open(&s);
         fixture_render(&s);
@@ -301,7 +301,7 @@ TEST_GPU(the_hash_of_light_is_of_lights_sky_and_shadow_filter)
     fixture_open(&s);
     for (int i = 0; i < 5; i++) {
         if (i == 2) s.lights[1].position.x += 0.1f;
-        if (i == 3) s.input.sky.y = 1;
+        if (i == 3) s.input.environment.sky.y = 1;
         s.options.shadow_filter = i == 4 ? 1 : 0;
         assert_true(frame_set_options(s.frame, &s.options));
         fixture_look(&s, vec3_of((float)i, 2, 3), vec3_of(0, 0, 0)); // not of the camera

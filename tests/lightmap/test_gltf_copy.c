@@ -87,7 +87,7 @@ static void check_lights(const struct scene *a, const struct scene *b)
         CHECK_NEAR(glms_vec3_distance(p.position, q.position), 0, 1e-5);
         CHECK_NEAR(glms_vec3_dot(p.direction, q.direction), 1, 1e-5);
     }
-    CHECK(memcmp(&a->sky, &b->sky, sizeof a->sky) == 0);
+    CHECK(memcmp(&a->environment, &b->environment, sizeof a->environment) == 0);
     pose_finish(&x);
     pose_finish(&y);
 }

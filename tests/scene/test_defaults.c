@@ -257,7 +257,7 @@ TEST(a_scene_is_dark_without_lights_emission_and_sky)
     CHECK(lit && emissive && !is_dark(lit) && !is_dark(emissive));
     scene_remove_lights(lit);
     CHECK(is_dark(lit));
-    lit->sky = vec3_of(1, 1, 1);
+    lit->environment.sky = vec3_of(1, 1, 1);
     CHECK(!is_dark(lit));
     scene_destroy(lit);
     scene_destroy(emissive);

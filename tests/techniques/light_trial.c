@@ -62,7 +62,7 @@ static void add_to_scene(struct scene *scene, const struct world_light *light)
 struct trial_irradiance trial_reference(struct frame_fixture *s, int bounces, int samples)
 {
     for (int i = 0; i < s->input.light_count; i++) add_to_scene(s->scene, &s->lights[i]);
-    s->scene->sky = s->input.sky;
+    s->scene->environment.sky = s->input.environment.sky;
     assert_true(pose_init(&s->pose, s->scene, -1, 0));
     struct reference_options options = reference_options_default();
     options.bounces = bounces;

@@ -77,7 +77,7 @@ void trial_open_plane(struct frame_fixture *s, struct gpu *gpu, const struct tri
     if (plane->sun)
         fixture_add_sun(s, vec3_of(0.2f, -1, 0.3f), grey(1000));
     else
-        s->input.sky = grey(1);
+        s->input.environment.sky = grey(1);
     const vec3s beside = vec3_of(0, 0, 0.1f);
     fixture_look(s, glms_vec3_muladds(normal, 4, beside), vec3_of(0, 0, 0));
 }

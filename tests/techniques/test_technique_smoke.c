@@ -21,7 +21,7 @@ static void room(struct frame_fixture *s, struct gpu *gpu)
     fixture_add_sun(s, vec3_of(0.3f, -1, -0.4f), vec3_of(20000, 18000, 15000));
     fixture_add_point(s, vec3_of(1, 2, 1), vec3_of(50, 300, 100));
     fixture_look(s, vec3_of(1, 2, 4), vec3_of(0, 0.5f, 0));
-    s->input.sky = vec3_of(10, 20, 30);
+    s->input.environment.sky = vec3_of(10, 20, 30);
     fixture_open(s);
 }
 

@@ -24,7 +24,7 @@ static float *frame_layer_of(struct gpu *gpu, const char *name, change_scene *ch
     s.height = HEIGHT;
     fixture_open(&s);
     s.input.camera = pose_camera(&s.pose, 0);
-    s.input.sky = s.scene->sky;
+    s.input.environment.sky = s.scene->environment.sky;
     for (int i = 0; i < s.scene->light_count; i++)
         s.lights[s.input.light_count++] = pose_light(&s.pose, i);
     fixture_render(&s);

@@ -52,7 +52,7 @@ TEST(uniform_sky_gives_the_irradiance_pi_times_its_radiance)
 {
     struct trace_fixture s;
     fixture_init(&s);
-    s.scene->sky = vec3_of(2, 4, 8);
+    s.scene->environment.sky = vec3_of(2, 4, 8);
     fixture_quad(&s, vec3_of(-9, 0, 9), vec3_of(9, 0, 9), vec3_of(9, 0, -9), vec3_of(-9, 0, -9),
                  fixture_diffuse(&s, grey(0.5f), grey(0)));
     fixture_aim_camera(&s, vec3_of(0, 1, 0), vec3_of(0.01f, 0, 0), 0.5f);
@@ -86,7 +86,7 @@ TEST(white_materials_disappear_before_a_uniform_sky)
         fixture_init(&s);
         s.options.diffuse_only = false;
         s.samples = 256;
-        s.scene->sky = grey(1);
+        s.scene->environment.sky = grey(1);
         struct material m = material_default();
         m.metallic = (float)(i / 8);
         m.roughness = roughness[i / 2 % 4];

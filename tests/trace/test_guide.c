@@ -76,7 +76,7 @@ static void init_room(struct trace_fixture *s, float sun)
 {
     fixture_init(s);
     s->width = s->height = 160;
-    s->scene->sky = vec3_of(3, 4, 5);
+    s->scene->environment.sky = vec3_of(3, 4, 5);
     int white = fixture_diffuse(s, vec3_of(0.7f, 0.6f, 0.5f), vec3_of(0, 0, 0));
     static const float C[][4][3] = {
         // floor, ceiling, back, front, right; then the left wall around the window
@@ -204,7 +204,7 @@ TEST(guided_light_is_linear_to_the_bit)
     struct image images[2];
     for (int i = 0; i < 2; i++) {
         init_room(&s, 40.0f * (float)(i + 1));
-        s.scene->sky = glms_vec3_scale(s.scene->sky, (float)(i + 1));
+        s.scene->environment.sky = glms_vec3_scale(s.scene->environment.sky, (float)(i + 1));
         r[i] = fixture_reference(&s);
         assert_true(reference_render(r[i], 4, NULL, NULL));
         assert_true(reference_read(r[i], REFERENCE_COLOR, &images[i]));
@@ -235,7 +235,7 @@ TEST(an_open_plane_and_a_closed_box_are_not_guided)
     CHECK(info_of(&s, true).rays == info_of(&s, false).rays);
     fixture_finish(&s);
     fixture_init(&s);
-    s.scene->sky = vec3_of(1, 1, 1);
+    s.scene->environment.sky = vec3_of(1, 1, 1);
     fixture_quad(&s, vec3_of(-9, 0, 9), vec3_of(9, 0, 9), vec3_of(9, 0, -9), vec3_of(-9, 0, -9),
                  fixture_diffuse(&s, vec3_of(0.5f, 0.5f, 0.5f), vec3_of(0, 0, 0)));
     fixture_aim_camera(&s, vec3_of(0, 1, 0), vec3_of(0.01f, 0, 0), 0.5f);

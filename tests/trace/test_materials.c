@@ -111,7 +111,7 @@ TEST(unlit_surfaces_occlude)
     fixture_quad(&s, vec3_of(-1, 0, 1), vec3_of(1, 0, 1), vec3_of(1, 0, -1), vec3_of(-1, 0, -1),
                  fixture_diffuse(&s, grey(1), grey(0)));
     fixture_light(&s, LIGHT_SUN, vec3_of(0, 1, 0), vec3_of(0.1f, -1, 0), grey(1000));
-    s.scene->sky = grey(10);
+    s.scene->environment.sky = grey(10);
     fixture_aim_camera(&s, vec3_of(0, 1, 0.1f), vec3_of(0, 0, 0), 0.3f);
     CHECK_NEAR(fixture_mean(&s, REFERENCE_COLOR).mean[1], 0, 0);
     fixture_finish(&s);

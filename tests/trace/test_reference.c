@@ -89,7 +89,7 @@ TEST(doubled_lights_give_doubled_radiance_to_the_bit)
         for (int k = 0; k < 2; k++) {
             struct trace_fixture s;
             fixture_builtin(&s, names[i][k]);
-            s.scene->sky = vec3_of(10.0f * (float)(k + 1), 0, 3.0f * (float)(k + 1));
+            s.scene->environment.sky = vec3_of(10.0f * (float)(k + 1), 0, 3.0f * (float)(k + 1));
             images[k] = fixture_layer(&s, REFERENCE_COLOR);
             fixture_finish(&s);
         }
@@ -292,9 +292,9 @@ TEST(keys_differ_between_images)
     s.camera.eye.x += 0.001f;
     CHECK(key != key_of(&s));
     s.camera.eye.x -= 0.001f;
-    s.scene->sky.x = 1;
+    s.scene->environment.sky.x = 1;
     CHECK(key != key_of(&s));
-    s.scene->sky.x = 0;
+    s.scene->environment.sky.x = 0;
     s.scene->materials[0].roughness *= 0.5f;
     CHECK(key != key_of(&s));
     fixture_finish(&s);
@@ -325,7 +325,7 @@ TEST(an_empty_scene_shows_the_sky)
 {
     struct trace_fixture s;
     fixture_init(&s);
-    s.scene->sky = vec3_of(1, 2, 3);
+    s.scene->environment.sky = vec3_of(1, 2, 3);
     struct layer_mean m = fixture_mean(&s, REFERENCE_COLOR);
     CHECK_NEAR(m.mean[0], 1, 0);
     CHECK_NEAR(m.mean[2], 3, 0);

@@ -85,7 +85,7 @@ TEST(a_diffuse_surface_reflects_albedo_over_pi_times_the_irradiance)
     struct trace_fixture s;
     fixture_builtin(&s, "@cornell");
     s.options.diffuse_only = true;
-    s.scene->sky = vec3_of(3, 2, 1);
+    s.scene->environment.sky = vec3_of(3, 2, 1);
     struct layers l = render(&s);
     for (int i = 0; i < s.width * s.height * 3; i++) {
         double albedo = (double)l.image[REFERENCE_ALBEDO].pixels[i];
@@ -153,13 +153,14 @@ TEST(uniform_sky_gives_the_irradiance_pi_times_its_radiance)
         fixture_init(&s);
         s.samples = 1024;
         s.options.diffuse_only = i == 0;
-        s.scene->sky = vec3_of(2, 4, 8);
+        s.scene->environment.sky = vec3_of(2, 4, 8);
         add_floor(&s, floors[i][0], floors[i][1]);
         fixture_aim_camera(&s, vec3_of(0, 1, 0), vec3_of(0.01f, 0, 0), 0.5f);
         struct layer_mean m = fixture_mean(&s, REFERENCE_IRRADIANCE_EMITTERS_SKY);
         // Cosine sampling has no variance here; a metal also samples its specular lobe.
         for (int c = 0; c < 3; c++)
-            CHECK_RELATIVE(m.mean[c], PI * (double)s.scene->sky.raw[c], i == 0 ? 1e-5 : 0.005);
+            CHECK_RELATIVE(m.mean[c], PI * (double)s.scene->environment.sky.raw[c],
+                           i == 0 ? 1e-5 : 0.005);
         fixture_finish(&s);
     }
 }
@@ -177,7 +178,7 @@ TEST(restricted_light_is_missing_from_the_layers)
     finish(&l);
     fixture_finish(&s);
     fixture_init(&s);
-    s.scene->sky = grey(1);
+    s.scene->environment.sky = grey(1);
     l = render(&s);
     CHECK_NEAR(image_mean(&l.image[REFERENCE_COLOR], 0), 1, 0);
     CHECK_NEAR(image_mean(&l.image[REFERENCE_INDIRECT_EMITTERS_SKY], 0), 0, 0);

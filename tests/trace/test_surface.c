@@ -223,7 +223,7 @@ TEST(surfaces_far_from_the_origin_do_not_shadow_themselves)
         fixture_quad(&s, vec3_of(at - 9, at, at + 9), vec3_of(at + 9, at, at + 9),
                      vec3_of(at + 9, at, at - 9), vec3_of(at - 9, at, at - 9),
                      fixture_diffuse(&s, grey(1), grey(0)));
-        s.scene->sky = grey(1);
+        s.scene->environment.sky = grey(1);
         fixture_aim_camera(&s, vec3_of(at + 1, at + 0.3f, at), vec3_of(at, at, at), 1);
         struct image direct = fixture_layer(&s, REFERENCE_DIRECT);
         for (int p = 0; p < 16 * 16; p++) CHECK_NEAR(direct.pixels[3 * p], 1, 1e-4);

@@ -10,6 +10,7 @@
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/direct/direct_shared.h"
+#include "frame/environment.glsl"
 #include "frame/light.glsl"
 #include "frame/octahedral.glsl"
 #include "frame/shadow/shadow.glsl"
@@ -196,7 +197,7 @@ void main()
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
     float depth = texelFetch(depth_layer, pixel, 0).r;
-    vec3 radiance = frame.sky;
+    vec3 radiance = environment_radiance(frame_view_ray(frame_uv(uvec2(pixel))));
     float diffuse = 0.0;
     if (depth > 0.0) {
         radiance = HAS_EMISSION ? texelFetch(emissive_layer, pixel, 0).rgb * frame.emissive_scale

@@ -234,7 +234,7 @@ static bool build_doors(struct scene *scene, const int *materials)
 // at -z and the cloth there.
 static bool build_light(struct scene *scene, const struct atrium_options *options)
 {
-    scene->sky = vec3_of(1700, 2300, 3400);
+    scene->environment.sky = vec3_of(1700, 2300, 3400);
     float elevation = glm_rad(options->elevation), azimuth = glm_rad(options->azimuth);
     vec3s direction = vec3_of(cosf(elevation) * sinf(azimuth), -sinf(elevation),
                               -cosf(elevation) * cosf(azimuth));

@@ -93,7 +93,7 @@ static bool build_chart(struct scene *scene, const struct spheres_options *optio
             }
         }
     }
-    scene->sky = vec3_of(2500, 3000, 4000);
+    scene->environment.sky = vec3_of(2500, 3000, 4000);
     vec3s middle = vec3_of(0, 0.5f * height, 0);
     float distance = 1.5f * fmaxf(height + 1.0f, 0.65f * (width + 1.0f));
     return builtin_sun(scene, "sun", vec3_of(0, height + 5, 0), vec3_of(0.45f, -0.8f, -0.6f),

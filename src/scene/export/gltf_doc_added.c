@@ -59,7 +59,7 @@ static bool has_sky(json_t *sky, vec3s radiance)
 static void add_sky(const struct added *a)
 {
     static const char SKY[] = "afterglow_sky";
-    const vec3s sky = a->scene->sky;
+    const vec3s sky = a->scene->environment.sky;
     json_t *scenes = json_object_get(a->doc->root, "scenes");
     json_t *given = NULL;
     if (json_array_size(scenes) > 0)

@@ -76,9 +76,9 @@ static void add_hierarchy(struct scene_export *x)
         else
             gltf_doc_append(doc, node_at(doc, (size_t)parent), "children", (size_t)i);
     }
-    if (!is_vec3(x->scene->sky, 0.0f))
+    if (!is_vec3(x->scene->environment.sky, 0.0f))
         gltf_doc_set(doc, gltf_doc_child(doc, scene, "extras"), "afterglow_sky",
-                     gltf_doc_floats(x->scene->sky.raw, 3));
+                     gltf_doc_floats(x->scene->environment.sky.raw, 3));
     gltf_doc_add(doc, "scenes", scene);
     gltf_doc_set(doc, doc->root, "scene", json_integer(0));
 }

@@ -75,7 +75,8 @@ void lpv_diagnose(struct host *host, const char *technique, const struct lpv_opt
 {
     struct lpv_grid grid;
     const char *scene = pose->scene->name;
-    if (!lpv_grid_fit(pose->bounds, options->dim, lpv_margin(options, pose->scene->sky), &grid)) {
+    if (!lpv_grid_fit(pose->bounds, options->dim,
+                      lpv_margin(options, environment_mean(&pose->scene->environment)), &grid)) {
         host_log(host, LOG_WARNING,
                  "gi %s: %s has no extent for a grid: there is no indirect light", technique,
                  scene);

@@ -9,6 +9,7 @@
 #define SHADOW_SUN_MAPS_BINDING  12
 #define RADIOSITY_TEXELS_BINDING 4
 #define FRAME_CONSTANTS_COPIED
+#include "frame/environment.glsl"
 #include "frame/frame.glsl"
 #include "frame/light.glsl"
 #include "frame/shadow/shadow.glsl"
@@ -41,7 +42,7 @@ void main()
     if (place.w > 0.0) {
         float emitters = push.emitters * frame.radiance_scale;
         for (int c = 0; c < 3; c++)
-            irradiance[c] = radiosity_unbounced(i, push.texels, c, frame.sky, emitters).x;
+            irradiance[c] = radiosity_unbounced(i, push.texels, c, environment_mean(), emitters).x;
         // Shading normals n of mean cosine c to the surface's receive c of the light of a
         // direction, and E(n) = (E + n·V)/2 of light of all: (1 + c)/2.
         irradiance *= 0.5 + 0.5 * reflectance.w;

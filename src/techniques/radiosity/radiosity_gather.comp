@@ -6,7 +6,7 @@
 
 #define RADIOSITY_TEXELS_BINDING 1
 #include "core/basis.glsl"
-#include "frame/frame.glsl"
+#include "frame/environment.glsl"
 #include "techniques/radiosity/radiosity_row.glsl"
 #include "techniques/radiosity/radiosity_texels.glsl"
 
@@ -46,7 +46,7 @@ void store_light(uint texel, float emitters)
     for (int c = 0; c < 3; c++) {
         vec4 light = vec4(sum.irradiance[c], sum.irradiance[c] * basis[2] + sum.by_u[c] * basis[0] +
                                                  sum.by_v[c] * basis[1]) +
-                     radiosity_unbounced(texel, push.texels, c, frame.sky, emitters);
+                     radiosity_unbounced(texel, push.texels, c, environment_mean(), emitters);
         imageStore(radiosity_light, radiosity_at(c * push.texels + texel),
                    uvec4(radiosity_pack_light(light), 0u, 0u));
     }

@@ -95,7 +95,7 @@ static void change(struct run *run, const struct event *event)
     if (event->door != 0.0f) move(run, DOOR, event->door);
     run->s.input.light_count = event->sun > 0.0f ? 1 : 0;
     run->s.lights[0].intensity = vec3_of(event->sun, 0.9f * event->sun, 0.8f * event->sun);
-    run->s.input.sky = vec3_of(event->sky, event->sky, event->sky);
+    run->s.input.environment.sky = vec3_of(event->sky, event->sky, event->sky);
     run->camera.x += event->camera;
     fixture_look(&run->s, run->camera, vec3_of(run->camera.x, 0.5f, 0));
     set_options(run, event);

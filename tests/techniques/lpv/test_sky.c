@@ -103,7 +103,7 @@ static void floor_under_sky(struct gpu *gpu, const char *text, double *least, do
     fixture_init(&s, gpu);
     fixture_floor(&s, 3, fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
     fixture_look(&s, vec3_of(0, 2, 0.1f), vec3_of(0, 0, 0));
-    s.input.sky = SKY;
+    s.input.environment.sky = SKY;
     fixture_open(&s);
     CHECK(gi_spec_parse(&spec, test_host(), text));
     struct gi *gi = gi_create(test_host(), gpu, &spec, &s.pose, s.width, s.height);

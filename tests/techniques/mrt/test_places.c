@@ -48,7 +48,7 @@ static vec3s house(struct gpu *gpu, vec3s eye, vec3s target)
     fixture_floor(&s, 20, grey);
     fixture_box(&s, vec3_of(-2, 0.01f, -2), vec3_of(2, 3, 2), true, grey);
     fixture_box(&s, vec3_of(-2.2f, 0.01f, -2.2f), vec3_of(2.2f, 3.2f, 2.2f), false, grey);
-    s.input.sky = vec3_of(3, 2, 1);
+    s.input.environment.sky = vec3_of(3, 2, 1);
     fixture_look(&s, eye, target);
     write_map("{ \"name\": \"room\", \"box\": [[-2, 0.01, -2], [2, 3, 2]] }");
     return middle_of(&s);

@@ -53,7 +53,7 @@ static void make_closed_room(struct vct_fixture *fixture, struct gpu *gpu, bool 
     m.specular = 0; // reflects nothing
     fixture_box(&fixture->frame_fixture, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
                 fixture_material(&fixture->frame_fixture, &m));
-    if (!emissive) fixture->frame_fixture.input.sky = vec3_of(10, 10, 10);
+    if (!emissive) fixture->frame_fixture.input.environment.sky = vec3_of(10, 10, 10);
 }
 
 static const char *const level_options[] = { "resolution=48,levels=3", "resolution=32,levels=4",

@@ -47,7 +47,7 @@ TEST_GPU(an_empty_scene_has_no_indirect_light)
     struct vct_fixture fixture;
     vct_fixture_init(&fixture, gpu);
     fixture_add_point(&fixture.frame_fixture, vec3_of(0, 1, 0), vec3_of(100, 100, 100));
-    fixture.frame_fixture.input.sky = vec3_of(5, 5, 5);
+    fixture.frame_fixture.input.environment.sky = vec3_of(5, 5, 5);
     vct_fixture_open(&fixture, "resolution=32");
     CHECK(mean_irradiance(&fixture) == 0.0);
     vct_fixture_finish(&fixture);
@@ -176,7 +176,7 @@ static void stack(struct vct_fixture *fixture, int sheets)
     }
     fixture_add_sun(&fixture->frame_fixture, vec3_of(-0.2f, -1, -0.4f), vec3_of(1000, 1000, 1000));
     // The camera sees the uppermost sheet, which gets no light of its own.
-    fixture->frame_fixture.input.sky = vec3_of(1, 1, 1);
+    fixture->frame_fixture.input.environment.sky = vec3_of(1, 1, 1);
     fixture_look(&fixture->frame_fixture, vec3_of(14, 40, 40), vec3_of(14, 20, 14));
 }
 

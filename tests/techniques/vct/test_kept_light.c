@@ -20,7 +20,7 @@ static void change(struct vct_fixture *fixture, int box, const struct event *eve
     struct frame_input *input = &fixture->frame_fixture.input;
     input->auto_exposure = false;
     input->exposure_ev = event->ev;
-    input->sky = vec3_of(event->sky, event->sky, event->sky);
+    input->environment.sky = vec3_of(event->sky, event->sky, event->sky);
     input->light_count = event->light > 0 ? 1 : 0;
     fixture->frame_fixture.lights[0].intensity = vec3_of(900 * event->light, 800, 700);
     if (event->box != 0) vct_fixture_move_box(fixture, box, vec3_of(event->box, 0, event->box));

@@ -88,7 +88,7 @@ TEST_GPU(traced_cones_match_the_twin)
 {
     struct vct_fixture fixture;
     make_scene(&fixture, gpu);
-    fixture.frame_fixture.input.sky = vec3_of(3, 2, 1);
+    fixture.frame_fixture.input.environment.sky = vec3_of(3, 2, 1);
     vct_fixture_open(&fixture, "resolution=48,cones=5,interleave=1,step_size=0.5");
     fixture_render(&fixture.frame_fixture);
     const struct vct *vct = fixture.vct;
@@ -116,7 +116,7 @@ TEST_GPU(traced_cones_match_the_twin)
                     direction[a] = (cosine < 0.0 ? -1.0 : 1.0) * (double)lines[i].raw[a];
                 vct_twin_trace(&twin, at, normal, direction, wide, sum);
                 for (int k = 0; k < 3; k++) {
-                    const double sky = (double)fixture.frame_fixture.input.sky.raw[k];
+                    const double sky = (double)fixture.frame_fixture.input.environment.sky.raw[k];
                     expected[k] += fabs(cosine) * (sum[k] / scale + (1.0 - sum[3]) * sky);
                 }
                 cosines += fabs(cosine);
@@ -175,7 +175,7 @@ TEST_GPU(a_closed_room_occludes_the_sky)
     fixture_box(&fixture.frame_fixture, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
                 fixture_matte(&fixture.frame_fixture, vec3_of(0, 0, 0)));
     fixture_look(&fixture.frame_fixture, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
-    fixture.frame_fixture.input.sky = vec3_of(10, 10, 10);
+    fixture.frame_fixture.input.environment.sky = vec3_of(10, 10, 10);
     vct_fixture_open(&fixture, "resolution=48");
     fixture_render(&fixture.frame_fixture);
     float *e = fixture_read(&fixture.frame_fixture, READ_IRRADIANCE);

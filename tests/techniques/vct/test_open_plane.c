@@ -50,7 +50,7 @@ static struct trial_irradiance irradiance(struct gpu *gpu, const struct plane *p
     if (sun)
         fixture_add_sun(&s, vec3_of(0.1f, -1, 0.2f), grey(SUN_LUX));
     else
-        s.input.sky = grey(1);
+        s.input.environment.sky = grey(1);
     const struct trial_irradiance e = trial_technique(&s, gi);
     fixture_finish(&s);
     return e;

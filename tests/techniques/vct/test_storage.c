@@ -140,7 +140,7 @@ static double closed_box(struct gpu *gpu, const char *storage, bool emissive)
     m.specular = 0; // reflects nothing
     fixture_box(&fixture.frame_fixture, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
                 fixture_material(&fixture.frame_fixture, &m));
-    if (!emissive) fixture.frame_fixture.input.sky = vec3_of(10, 10, 10);
+    if (!emissive) fixture.frame_fixture.input.environment.sky = vec3_of(10, 10, 10);
     snprintf(options, sizeof options, "resolution=48,storage=%s", storage);
     vct_fixture_open(&fixture, options);
     const double e = mean_irradiance(&fixture, vec3_of(2, 3, 8), vec3_of(9, 3, 1));

@@ -431,7 +431,7 @@ TEST_GPU(occlusion_history_is_independent_of_exposure)
         for (int f = 0; f < 6; f++) {
             const float candela = brighter && f >= 3 ? 30000.0f : 300.0f;
             fixture.frame_fixture.lights[0].intensity = vec3_of(candela, candela, candela);
-            fixture.frame_fixture.input.sky = vec3_of(0.1f * candela, 0, 0);
+            fixture.frame_fixture.input.environment.sky = vec3_of(0.1f * candela, 0, 0);
             fixture_render(&fixture.frame_fixture);
         }
         v[brighter] = fixture_read(&fixture.frame_fixture, READ_VISIBILITY);

@@ -16,11 +16,11 @@ static bool load_sky(struct gltf *gltf)
     if (!json_object_get(extras, "afterglow_sky")) return !gltf->failed;
     struct gltf_object of = scene;
     of.json = extras;
-    vec3s sky = gltf->import->scene->sky;
+    vec3s sky = gltf->import->scene->environment.sky;
     if (!gltf_floats(of, "afterglow_sky", 3, sky.raw)) return false;
     for (int c = 0; c < 3; c++)
         if (!(sky.raw[c] >= 0.0f)) return gltf_wrong(of, "afterglow_sky is negative");
-    gltf->import->scene->sky = sky;
+    gltf->import->scene->environment.sky = sky;
     return true;
 }
 

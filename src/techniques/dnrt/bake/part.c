@@ -122,7 +122,7 @@ bool dnrt_part_init(struct dnrt_part *out, struct host *host, const struct scene
     struct scene *scene = &out->scene;
     scene->host = host;
     scene->light_count = scene->camera_count = scene->skin_count = scene->animation_count = 0;
-    scene->sky = vec3_of(0, 0, 0);
+    scene->environment = (struct environment){ 0 };
     scene->instances = NULL;
     scene->meshes = NULL;
     scene->nodes = NULL;

@@ -7,6 +7,7 @@
 
 #include "core/half.glsl"
 #include "core/sh.glsl"
+#include "frame/environment.glsl"
 #include "frame/frame.glsl"
 #include "frame/probes.glsl"
 #include "techniques/mrt/runtime/level.glsl"
@@ -51,7 +52,7 @@ void main()
     for (int k = 0; k < 9; k++) {
         vec3 unbounced =
             unbounced_table[probe].emitted[k] * (frame.radiance_scale * level.emitters) +
-            PI * unbounced_table[probe].sky[k] * frame.sky;
+            PI * unbounced_table[probe].sky[k] * environment_mean();
         coefficients[k] = clamp(turned(probe, source, k) + unbounced, -HALF_MAX, HALF_MAX);
     }
     ivec3 at = ivec3(block % level.brick_columns, block / level.brick_columns, 0) * int(edge) +

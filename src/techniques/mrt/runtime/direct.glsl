@@ -8,6 +8,7 @@
 #define SHADOW_SUN_MAPS_BINDING 12
 #define MRT_TEXELS_BINDING      4
 #include "frame/frame.glsl"
+#include "frame/environment.glsl"
 #include "frame/light.glsl"
 #include "frame/shadow/shadow.glsl"
 #include "techniques/common/texel_light.glsl"
@@ -21,7 +22,7 @@ layout(set = 0, binding = 5, scalar) readonly buffer frame_lights
 // Light of emissive surfaces and the sky.
 vec3 unbounced_of(vec3 emitted, vec3 sky)
 {
-    return emitted * (frame.radiance_scale * level.emitters) + PI * sky * frame.sky;
+    return emitted * (frame.radiance_scale * level.emitters) + PI * sky * environment_mean();
 }
 
 void add_lights(mrt_texel texel, inout vec3 irradiance)

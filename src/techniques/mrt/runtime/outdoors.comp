@@ -6,6 +6,7 @@
 
 #include "core/half.glsl"
 #include "core/sh.glsl"
+#include "frame/environment.glsl"
 #include "frame/frame.glsl"
 #include "frame/probes.glsl"
 #include "techniques/mrt/runtime/level.glsl"
@@ -27,7 +28,7 @@ void main()
     vec3 coefficients[9];
     for (int k = 0; k < 9; k++) {
         vec3 light = probe_table[i].light.emitted[k] * (frame.radiance_scale * level.emitters) +
-                     PI * probe_table[i].light.sky[k] * frame.sky;
+                     PI * probe_table[i].light.sky[k] * environment_mean();
         coefficients[k] = clamp(light, -HALF_MAX, HALF_MAX);
     }
     for (int s = 0; s < FRAME_PROBE_SLABS; s++) {

@@ -11,6 +11,7 @@
 
 #include "core/half.glsl"
 #include "core/sh.glsl"
+#include "frame/environment.glsl"
 #include "frame/frame.glsl"
 #include "frame/probes.glsl"
 #include "techniques/radiosity/radiosity_table.glsl"
@@ -73,7 +74,7 @@ void main()
     for (int c = 0; c < 9; c++) {
         vec3 emitted = vec3(probes[owner].emitted[3 * c], probes[owner].emitted[3 * c + 1],
                             probes[owner].emitted[3 * c + 2]);
-        coefficients[c] += probes[owner].sky[c] * frame.sky + emitters * emitted;
+        coefficients[c] += probes[owner].sky[c] * environment_mean() + emitters * emitted;
         coefficients[c] = clamp(coefficients[c], -HALF_MAX, HALF_MAX);
     }
     ivec3 count = ivec3(push.grid.count_x, push.grid.count_y, push.grid.count_z);

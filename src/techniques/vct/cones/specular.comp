@@ -19,6 +19,7 @@
 #define GGX_ALBEDO_BINDING      9
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
+#include "frame/environment.glsl"
 #include "frame/octahedral.glsl"
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
@@ -70,9 +71,11 @@ vec3 reflected_radiance(ivec2 pixel, float z)
     if (set.tan_half > 0.0) rough = 0.0;
     vec3 radiance = texelFetch(irradiance, pixel, 0).rgb / PI;
     if (rough < 1.0) {
-        vec4 traced = vct_cone(light, at, n, mirror_direction(to_viewer, n), set.offset, width,
-                               set.last_mip, vct_start_at(at));
-        radiance = mix(set.gain * (traced.rgb + (1.0 - traced.a) * frame.sky), radiance, rough);
+        vec3 direction = mirror_direction(to_viewer, n);
+        vec4 traced =
+            vct_cone(light, at, n, direction, set.offset, width, set.last_mip, vct_start_at(at));
+        vec3 seen = traced.rgb + (1.0 - traced.a) * environment_radiance(direction);
+        radiance = mix(set.gain * seen, radiance, rough);
     }
     vec4 lobe = BRDF_DEFAULT_DIELECTRIC;
     if (set.has_dielectric != 0u) lobe = texelFetch(dielectric, pixel, 0);

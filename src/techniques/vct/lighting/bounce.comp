@@ -9,6 +9,7 @@
 #define FRAME_CONSTANTS_BINDING 1
 #include "core/basis.glsl"
 #include "frame/frame.glsl"
+#include "frame/environment.glsl"
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_constants.h"
 #include "techniques/vct/vct_grid.glsl"
@@ -53,9 +54,9 @@ vec3 small_emitters_at(vec3 at, vec3 normal)
     return sum * (float(VCT_EMITTER_POINTS) / float(EMITTER_SAMPLES));
 }
 
-vec3 arriving(vec4 met)
+vec3 arriving(vec4 met, vec3 direction)
 {
-    return met.rgb * vct.light_scale + (1.0 - met.a) * frame.sky;
+    return met.rgb * vct.light_scale + (1.0 - met.a) * environment_radiance(direction);
 }
 
 #if !VCT_SVO
@@ -67,7 +68,8 @@ vec3 sum_of_rays(vec3 at, mat3 world_from_local, uint part_number)
         vec3 direction = world_from_local *
                          vct_cosine_direction(
                              vct_in_stratum(i, set.columns, set.cone_count / set.columns, jitter));
-        sum += arriving(vct_trace_ray(2.0 * at + VCT_RAY_LIFT * normal, normal, direction, 0.0));
+        sum += arriving(vct_trace_ray(2.0 * at + VCT_RAY_LIFT * normal, normal, direction, 0.0),
+                        direction);
     }
     return sum * (PI / float(set.cone_count));
 }
@@ -80,7 +82,8 @@ vec3 sum_of_cones(vec3 at, mat3 world_from_local)
         vec3 direction = world_from_local * set.cones[i].xyz;
         sum += set.cones[i].w *
                arriving(vct_cone(light, at, normal, direction, set.offset, set.width_per_m,
-                                 set.last_mip, vct_start(vct.level, 0.0)));
+                                 set.last_mip, vct_start(vct.level, 0.0)),
+                        direction);
     }
     return sum;
 }
