@@ -80,3 +80,26 @@ struct trial_irradiance trial_reference(struct frame_fixture *s, int bounces, in
     reference_destroy(reference);
     return result;
 }
+
+struct trial_irradiance trial_object_irradiance(struct frame_fixture *s, int first)
+{
+    struct trial_irradiance sum = { .least = HUGE_VAL };
+    s->input.want_id_layer = true;
+    fixture_render(s);
+    float *e = fixture_read(s, READ_IRRADIANCE), *id = fixture_read(s, READ_ID);
+    int seen = 0;
+    for (size_t p = 0; p < (size_t)s->width * s->height; p++) {
+        if ((int)id[2 * p] < first) continue;
+        for (int c = 0; c < 3; c++) {
+            sum.mean[c] += (double)e[3 * p + (size_t)c];
+            sum.least = fmin(sum.least, (double)e[3 * p + (size_t)c]);
+            sum.most = fmax(sum.most, (double)e[3 * p + (size_t)c]);
+        }
+        seen++;
+    }
+    CHECK(seen > 8);
+    for (int c = 0; c < 3; c++) sum.mean[c] /= seen;
+    free(e);
+    free(id);
+    return sum;
+}

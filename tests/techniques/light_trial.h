@@ -15,3 +15,5 @@ struct trial_irradiance trial_technique(struct frame_fixture *s, const char *gi)
 // Light of the same kinds as the technique's: without direct light of punctual lights, with that of
 // specular lobes in bounces. All bounces, or `bounces` of them; −1: all.
 struct trial_irradiance trial_reference(struct frame_fixture *s, int bounces, int samples);
+// Renders an open fixture: the pixels of this instance and later ones.
+struct trial_irradiance trial_object_irradiance(struct frame_fixture *s, int first);

@@ -185,3 +185,12 @@ void trial_wall_before_slab(struct frame_fixture *s, struct gpu *gpu, float gap)
     fixture_add_point(s, vec3_of(1, 1.5f, 0), grey(100));
     fixture_look(s, vec3_of(-1.4f, 2, 0), vec3_of(-1.4f, 0, -0.1f));
 }
+
+int trial_add_movable_box(struct frame_fixture *s, vec3s center, float size, int material)
+{
+    const vec3s half = vec3_of(0.5f * size, 0.5f * size, 0.5f * size);
+    fixture_box(s, glms_vec3_sub(center, half), glms_vec3_add(center, half), false, material);
+    const int first = s->scene->instance_count - 6;
+    for (int i = first; i < s->scene->instance_count; i++) s->scene->instances[i].movable = true;
+    return first;
+}

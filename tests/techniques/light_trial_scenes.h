@@ -33,3 +33,6 @@ void trial_panel(struct frame_fixture *s, struct gpu *gpu);
 // A room of 4 × 3 × 4 with a point light; its left wall is white, and green in front of it at a
 // distance of `gap`; 0: green alone. The camera sees the floor next to that wall.
 void trial_wall_before_slab(struct frame_fixture *s, struct gpu *gpu, float gap);
+
+// A cube in a scene that is not open. Its six faces are the last instances. Returns the first.
+int trial_add_movable_box(struct frame_fixture *s, vec3s center, float size, int material);

@@ -20,6 +20,8 @@ ag_test(techniques/kept USES techniques)
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
 ag_test(techniques/light_trials USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)
 ag_test(techniques/radiosity_corridor USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
+ag_test(techniques/probe_trials USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
+ag_shaders_for(test_techniques_probe_trials techniques_test_shaders.h ${CMAKE_CURRENT_LIST_DIR}/shaders)
 ag_test(techniques/radiosity_probes USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
 
 foreach(technique lpv vct mrt dnrt)

@@ -243,7 +243,8 @@ static bool mrt_probes(void *state, struct probe_volume *out)
     const struct mrt *mrt = state;
     if (!mrt->options.probes) return false;
     *out = (struct probe_volume){ .image = mrt->runtime.probes.volume,
-                                  .grid = mrt->runtime.probes.grid };
+                                  .grid = mrt->runtime.probes.grid,
+                                  .depth = mrt->probe_depth };
     return true;
 }
 
@@ -257,6 +258,8 @@ static void mrt_destroy(void *state)
     mrt_level_finish(&mrt->level);
     mrt_dictionary_finish(mrt->host, &mrt->dictionary);
     mrt_parts_finish(&mrt->parts);
+    mrt_published_finish(&mrt->published);
+    gpu_image_destroy(mrt->gpu, &mrt->probe_depth);
     mrt_atlas_finish(&mrt->atlas);
     mrt_block_map_finish(&mrt->map);
 }

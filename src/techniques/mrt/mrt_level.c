@@ -193,7 +193,9 @@ bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
     return mrt->map.count == 0 ||
            (find_clutter_and_open(mrt, pose) &&
             mrt_atlas_init(mrt->host, &mrt->map, resolution, &mrt->atlas) &&
-            light_clutter(&mrt->parts, pose) && make_images(&mrt->parts, mrt, pose, NULL));
+            light_clutter(&mrt->parts, pose) && make_images(&mrt->parts, mrt, pose, NULL) &&
+            (!mrt->options.probes || mrt_published_init(&mrt->published, mrt->host, pose, &mrt->map,
+                                                        mrt->options.block_probes)));
 }
 
 // ---- operators
@@ -246,11 +248,19 @@ bool mrt_make_runtime(const struct mrt *mrt, struct host *host, const struct mrt
     if (ok) {
         turned.input.atlas = &mrt->atlas;
         turned.input.images = &parts->images;
+        turned.input.published = &mrt->published;
         ok = parts->clutter.triangles > 0 ? make_cluttered(mrt, host, parts, &turned, how, out)
                                           : finish_runtime(mrt, host, &turned.input, how, out);
     }
     mrt_turned_finish(&turned);
     return ok;
+}
+
+static bool make_depths(struct mrt *mrt)
+{
+    return !mrt->options.probes ||
+           probe_depth_create(mrt->host, mrt->gpu, probe_grid_count(mrt->published.grid),
+                              mrt->published.depth[0][0], &mrt->probe_depth);
 }
 
 static bool start_runtime(struct mrt *mrt)
@@ -269,7 +279,7 @@ bool mrt_make_level(struct mrt *mrt)
     if (mrt->map.count == 0)
         return mrt_runtime_init_empty(&mrt->runtime, mrt->host, mrt->gpu, &runtime);
     return mrt_level_init(mrt->host, &mrt->map, &mrt->dictionary, &options, &mrt->level) &&
-           start_runtime(mrt) &&
+           start_runtime(mrt) && make_depths(mrt) &&
            (mrt->options.solver == MRT_SOLVER_GPU ||
             mrt_host_solver_init(&mrt->host_solver, mrt->host, mrt->gpu, &mrt->level,
                                  mrt->parts.images.geometry));

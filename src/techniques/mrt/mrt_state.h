@@ -47,6 +47,8 @@ struct mrt {
     struct mrt_block_map map; // no blocks: an empty scene
     struct mrt_atlas atlas;
     struct mrt_parts parts;
+    struct mrt_published published; // with `probes`
+    gpu_image probe_depth;
     struct mrt_update update; // drt
     // The dictionary and what follows from both.
     struct mrt_dictionary dictionary;

@@ -348,7 +348,7 @@ TEST_GPU(mrt_publishes_the_irradiance_of_a_furnace)
     const size_t layer = (size_t)(count[0] * count[1]);
     const struct gpu_image_desc *size = gpu_image_info(gpu, volume.image);
     CHECK((int)size->width == count[0] && (int)size->height == count[1]);
-    CHECK((int)size->depth == FRAME_PROBE_SLABS * volume.grid.slab);
+    CHECK((int)size->depth == (FRAME_PROBE_SLABS + 1) * volume.grid.slab && volume.depth.id);
     float *texels = malloc(4 * layer * size->depth * sizeof *texels);
     CHECK(gpu_image_download_float(gpu, volume.image, 0, 0, texels, 4, 4 * layer * size->depth));
     // The constant coefficient of π L / (1 − ρ); linear ones are coefficient 3 and on.
@@ -357,6 +357,7 @@ TEST_GPU(mrt_publishes_the_irradiance_of_a_furnace)
     for (size_t i = 0; i < layer * (size_t)count[2]; i++) {
         CHECK_NEAR((double)texels[4 * i] / expected, 1.0, 0.05);
         CHECK(fabs((double)texels[4 * i + 3]) < 0.05 * expected);
+        CHECK(texels[4 * (i + FRAME_PROBE_SLABS * layer * (size_t)volume.grid.slab) + 3] == 1);
     }
     free(texels);
     free(room_end(&room, 1));

@@ -7,6 +7,7 @@
 #include "techniques/mrt/level/atlas.h"
 #include "techniques/mrt/clutter/clutter_light.h"
 #include "techniques/mrt/level/probes.h"
+#include "techniques/mrt/level/published.h"
 #include "techniques/mrt/level/unbounced.h"
 #include "techniques/mrt/level/wall.h"
 
@@ -102,4 +103,5 @@ struct mrt_runtime_input {
     // the voxels. NULL: none has any.
     const uint32_t *sight;
     size_t sight_count;
+    const struct mrt_published *published; // NULL: none
 };

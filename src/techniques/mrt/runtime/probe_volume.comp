@@ -1,4 +1,5 @@
-// The published probe volume: the bricks of the blocks, sampled on a grid of the world.
+// The published probe volume (frame/probes.glsl and common/probes/lookup.glsl): the bricks of the
+// blocks, sampled at the places of a grid of the world.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -19,19 +20,25 @@ layout(local_size_x = MRT_LOCAL) in;
 
 layout(set = 0, binding = 6, rgba16f) writeonly uniform image3D volume;
 
+layout(set = 0, binding = 8) readonly buffer mrt_probe_places
+{
+    vec4 place_table[]; // offset from the grid, in spacings; 1: valid
+};
+
 layout(push_constant, scalar) uniform push_block
 {
     frame_probes grid;
 };
 
-// Points outside of all blocks are dark.
+// Points outside of all blocks are dark, and not valid.
 void main()
 {
     ivec3 count = ivec3(grid.count_x, grid.count_y, grid.count_z);
     int i = int(gl_GlobalInvocationID.x);
     ivec3 at = ivec3(i % count.x, i / count.x % count.y, i / (count.x * count.y));
     if (at.z >= count.z) return;
-    mrt_place place = locate(grid.first_m + grid.spacing_m * vec3(at));
+    vec4 offset = place_table[i];
+    mrt_place place = locate(grid.first_m + grid.spacing_m * (vec3(at) + offset.xyz));
     mrt_seen seen;
     seen.lookups = 0;
     if (place.block >= 0) seen = seen_from(place, vec3(0.0));
@@ -46,4 +53,6 @@ void main()
         imageStore(volume, at + ivec3(0, 0, s * grid.slab),
                    clamp(level.gain * values, -HALF_MAX, HALF_MAX));
     }
+    if (place.block < 0) offset.w = 0.0;
+    imageStore(volume, at + ivec3(0, 0, FRAME_PROBE_SLABS * grid.slab), offset);
 }

@@ -6,6 +6,7 @@
 
 #include "core/sh.h"
 
+#include "techniques/common/probes/volume.h"
 #include "techniques/mrt/clutter/probe_sight.h"
 #include "techniques/mrt/runtime/objects.h"
 #include "techniques/mrt/runtime/operators.h"
@@ -16,7 +17,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { VALUES = MRT_PROBE_VALUES, MAX_VOLUME = 32 };
+enum { VALUES = MRT_PROBE_VALUES };
 
 static size_t rows_of_block(const struct mrt_runtime_input *input)
 {
@@ -133,29 +134,6 @@ uint32_t mrt_sight_voxels(const struct mrt_runtime_input *input)
     return input->sight ? (uint32_t)mrt_sight_edge(input->probes) : 0;
 }
 
-// Points at most MAX_VOLUME along the longest side, not denser than the probes of a cube.
-static struct frame_probes grid_of(const struct mrt_runtime_input *input)
-{
-    struct box3 box = box3_empty();
-    float volume = 0.0f;
-    for (int b = 0; b < input->map->count; b++) {
-        const struct mrt_block *block = &input->map->blocks[b];
-        for (int c = 0; c < MRT_CORNERS; c++) box = box3_add_point(box, block->corner[c]);
-        volume += glms_mat3_det(mrt_warp_jacobian(block->corner, vec3_of(0, 0, 0)));
-    }
-    vec3s size = box3_size(box);
-    float edge = cbrtf(volume / (float)input->map->count);
-    float spacing = fmaxf(edge / (float)input->probes, glms_vec3_max(size) / MAX_VOLUME);
-    struct frame_probes grid = { .first_m = box.min, .spacing_m = spacing };
-    int32_t *const counts[3] = { &grid.count_x, &grid.count_y, &grid.count_z };
-    for (int a = 0; a < 3; a++) {
-        *counts[a] = (int32_t)fmaxf(ceilf(size.raw[a] / spacing - 1e-3f), 1.0f);
-        grid.first_m.raw[a] += 0.5f * (size.raw[a] - spacing * (float)(*counts[a] - 1));
-    }
-    grid.slab = grid.count_z;
-    return grid;
-}
-
 static bool make_volume(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_probes *p = &runtime->probes;
@@ -164,9 +142,12 @@ static bool make_volume(struct mrt_runtime *runtime, const struct mrt_runtime_in
         { MRT_CONSTANT_SIGHT, mrt_sight_voxels(input) },
     };
     if (!runtime->options.publish) return true;
-    p->grid = grid_of(input);
-    return make_image(runtime, "probe_volume", (uint32_t)p->grid.count_x, (uint32_t)p->grid.count_y,
-                      FRAME_PROBE_SLABS * (uint32_t)p->grid.slab, &p->volume) &&
+    p->grid = input->published->grid;
+    const struct gpu_image_desc desc =
+        probe_volume_desc("probe_volume", p->grid, FRAME_PROBE_SLABS + 1);
+    return mrt_image_of(runtime, &desc, &p->volume) &&
+           mrt_buffer_of(runtime, "probe_places", input->published->place,
+                         probe_grid_count(p->grid) * sizeof(vec4s), &p->places) &&
            mrt_pipeline_of(runtime, "probe_volume", &shader_mrt_runtime_probe_volume_comp,
                            constants, 2, &p->publish);
 }
@@ -190,11 +171,10 @@ bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inp
 bool mrt_probes_make_empty(struct mrt_runtime *runtime)
 {
     struct mrt_runtime_probes *p = &runtime->probes;
-    p->grid = (struct frame_probes){
-        .spacing_m = 1.0f, .count_x = 1, .count_y = 1, .count_z = 1, .slab = 1
-    };
-    return !runtime->options.publish ||
-           make_image(runtime, "probe_volume", 1, 1, FRAME_PROBE_SLABS, &p->volume);
+    p->grid = probe_grid_of_one();
+    const struct gpu_image_desc desc =
+        probe_volume_desc("probe_volume", p->grid, FRAME_PROBE_SLABS);
+    return !runtime->options.publish || mrt_image_of(runtime, &desc, &p->volume);
 }
 
 void mrt_probes_finish(struct mrt_runtime *runtime)
@@ -202,7 +182,7 @@ void mrt_probes_finish(struct mrt_runtime *runtime)
     struct mrt_runtime_probes *p = &runtime->probes;
     gpu_buffer *const buffers[] = { &p->tiles,     &p->openings, &p->sources, &p->turns,
                                     &p->unbounced, &p->u_b,      &p->u_r,     &p->light,
-                                    &p->radiosity, &p->sight };
+                                    &p->radiosity, &p->sight,    &p->places };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(runtime->gpu, buffers[i]);
     gpu_image_destroy(runtime->gpu, &p->bricks);

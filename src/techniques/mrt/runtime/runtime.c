@@ -1,6 +1,7 @@
 // Buffers, images and pipelines of a level.
 #include "runtime.h"
 
+#include "techniques/common/probes/volume.h"
 #include "techniques/mrt/clutter/probe_sight.h"
 #include "techniques/mrt/runtime/clutter/clutter.h"
 #include "techniques/mrt/runtime/objects.h"
@@ -220,8 +221,9 @@ static uint64_t bytes_of_probes(const struct mrt_runtime_size *size)
     const uint64_t rows = MRT_PROBE_VALUES * probes, number = size->options.half ? 2 : 4;
     const uint64_t texels = (uint64_t)mrt_brick_texels(size->probes);
     const uint64_t k_b = 4 * mrt_quads(size->k_b), k_r = 4 * mrt_quads(size->k_r);
-    // A grid of the block, and its slabs.
-    const uint64_t published = size->options.publish ? 8 * FRAME_PROBE_SLABS * probes : 0;
+    // A grid of the block: places, slabs and depths.
+    const uint64_t published =
+        size->options.publish ? (sizeof(vec4s) + PROBE_VOLUME_BYTES) * probes : 0;
     if (!size->options.probes) return 8;
     const uint64_t wall_texels = walls_of(size) * (uint64_t)(size->resolution * size->resolution);
     return rows * number * (k_b + CUBE_FACES * k_r) + (rows + wall_texels) * VEC3_BYTES +

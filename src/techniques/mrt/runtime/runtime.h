@@ -46,6 +46,7 @@ struct mrt_runtime_probes {
     gpu_image bricks;
     gpu_pipeline fill;
     struct frame_probes grid; // published
+    gpu_buffer places;        // of the grid's probes
     gpu_image volume;
     gpu_pipeline publish;
 };

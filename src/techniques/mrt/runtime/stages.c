@@ -175,7 +175,7 @@ static void record_volume(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
     const struct mrt_runtime_buffers *b = &runtime->buffers;
     const struct mrt_runtime_probes *p = &runtime->probes;
-    const uint32_t count = (uint32_t)(p->grid.count_x * p->grid.count_y * p->grid.count_z);
+    const uint32_t count = probe_grid_count(p->grid);
     gpu_dispatch(cmd, p->publish,
                  GPU_BIND(level_binding(runtime, cmd),
                           { .name = "mrt_blocks", .buffer = b->blocks },
@@ -183,6 +183,7 @@ static void record_volume(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
                           { .name = "mrt_candidates", .buffer = b->candidates },
                           { .name = "bricks", .image = p->bricks, .sampler = runtime->linear },
                           { .name = "mrt_probe_sight", .buffer = p->sight },
+                          { .name = "mrt_probe_places", .buffer = p->places },
                           { .name = "volume", .image = p->volume }),
                  &p->grid, sizeof p->grid, gpu_groups(count, MRT_LOCAL), 1, 1);
 }

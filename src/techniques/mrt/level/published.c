@@ -1,0 +1,82 @@
+#include "techniques/mrt/level/published.h"
+
+#include "core/parallel.h"
+#include "scene/statics.h"
+#include "trace/trace.h"
+
+#include "techniques/mrt/level/wall.h"
+
+#include <math.h>
+
+enum { MAX_ALONG_AXIS = 32, RAYS = 576 };
+
+// Not denser than the probes of a block of the mean volume.
+static struct frame_probes grid_of(const struct mrt_block_map *map, int p)
+{
+    struct box3 box = box3_empty();
+    float volume = 0.0f;
+    for (int b = 0; b < map->count; b++) {
+        const struct mrt_block *block = &map->blocks[b];
+        for (int c = 0; c < MRT_CORNERS; c++) box = box3_add_point(box, block->corner[c]);
+        volume += glms_mat3_det(mrt_warp_jacobian(block->corner, vec3_of(0, 0, 0)));
+    }
+    const float edge = cbrtf(volume / (float)map->count);
+    return probe_grid_over(box,
+                           fmaxf(edge / (float)p, glms_vec3_max(box3_size(box)) / MAX_ALONG_AXIS));
+}
+
+struct job {
+    struct mrt_published *out;
+    const struct scene *scene;
+    struct trace_scene *trace;
+    struct probe_sphere sphere;
+};
+
+static float look(void *user, const struct probe_ray *ray, bool *inside)
+{
+    const struct job *job = user;
+    struct trace_hit hit;
+    *inside = false;
+    if (!trace_closest(job->trace, ray->from, ray->direction, INFINITY, &hit)) return INFINITY;
+    const int material = scene_mesh_of(job->scene, hit.instance)->material;
+    *inside = !hit.front && !job->scene->materials[material].double_sided;
+    return hit.distance;
+}
+
+static void trace_probe(void *user, size_t i)
+{
+    const struct job *job = user;
+    const struct frame_probes grid = job->out->grid;
+    const struct probe_tracer tracer = { look, user };
+    vec3s at;
+    const bool valid =
+        probe_find_place(&tracer, probe_grid_point(grid, (uint32_t)i), grid.spacing_m, &at);
+    job->out->place[i] = probe_offset(grid, (uint32_t)i, vec4_of(at, valid ? 1.0f : 0.0f));
+    probe_trace_depths(&job->sphere, &tracer, at, grid.spacing_m, job->out->depth[i]);
+}
+
+bool mrt_published_init(struct mrt_published *out, struct host *host, const struct scene_pose *pose,
+                        const struct mrt_block_map *map, int p)
+{
+    *out = (struct mrt_published){ .host = host, .grid = grid_of(map, p) };
+    const size_t count = probe_grid_count(out->grid);
+    struct scene_statics statics = { 0 };
+    struct job job = { .out = out, .sphere = probe_sphere_of(RAYS) };
+    out->place = host_alloc(host, count, sizeof *out->place);
+    out->depth = host_alloc(host, count, sizeof *out->depth);
+    const bool ok = out->place && out->depth && scene_statics_init(&statics, host, pose) &&
+                    (job.trace = trace_scene_create(host, &statics.pose));
+    job.scene = &statics.scene;
+    if (ok) parallel_for(count, 8, trace_probe, &job);
+    trace_scene_destroy(job.trace);
+    scene_statics_finish(&statics);
+    return ok;
+}
+
+void mrt_published_finish(struct mrt_published *published)
+{
+    if (!published->host) return;
+    host_free(published->host, published->place);
+    host_free(published->host, published->depth);
+    *published = (struct mrt_published){ 0 };
+}
