@@ -37,6 +37,13 @@ vec3 probes_irradiance(sampler3D volume, frame_probes grid, vec3 position, vec3 
     return probes_irradiance_at(volume, grid.slab, texel, normal);
 }
 
+// Probe i of a grid, as its host code counts them; beyond the last one z is count_z or more.
+ivec3 probes_cell(frame_probes grid, int i)
+{
+    int row = grid.count_x, layer = row * grid.count_y;
+    return ivec3(i % row, i / row % grid.count_y, i / layer);
+}
+
 // Texel of a probe in slab s of FRAME_PROBE_SLABS, at probe + (0, 0, s × grid.slab).
 vec4 probes_slab(vec3 coefficients[9], int s)
 {

@@ -43,6 +43,28 @@ float probe_visibility(sampler2D depth, int probe, vec3 to)
     return bound * bound * bound;
 }
 
+// One of the eight probes around a place.
+struct probe_corner {
+    ivec3 cell;
+    vec3 to;      // from the probe to the place, in spacings
+    float linear; // share of the interpolation
+    float seen;   // 0: it has no light of its own, or is behind a wall
+};
+
+// at: in spacings of the grid, at most half of one outside.
+probe_corner probe_corner_of(sampler3D volume, sampler2D depth, frame_probes grid, vec3 at, int i)
+{
+    ivec3 last = ivec3(grid.count_x, grid.count_y, grid.count_z) - 1;
+    ivec3 base = ivec3(floor(at)), step = ivec3(i & 1, i >> 1 & 1, i >> 2);
+    ivec3 cell = clamp(base + step, ivec3(0), last);
+    vec3 linear = mix(1.0 - (at - vec3(base)), at - vec3(base), equal(step, ivec3(1)));
+    vec4 place = texelFetch(volume, cell + ivec3(0, 0, FRAME_PROBE_SLABS * grid.slab), 0);
+    vec3 to = at - vec3(cell) - place.xyz;
+    int probe = (cell.z * grid.count_y + cell.y) * grid.count_x + cell.x;
+    return probe_corner(cell, to, linear.x * linear.y * linear.z,
+                        place.w * probe_visibility(depth, probe, to));
+}
+
 vec3 probe_irradiance(sampler3D volume, int slab, ivec3 cell, float basis[9])
 {
     vec4 values;
@@ -59,26 +81,18 @@ vec3 probe_irradiance(sampler3D volume, int slab, ivec3 cell, float basis[9])
 vec3 probes_seen_irradiance(sampler3D volume, sampler2D depth, frame_probes grid, vec3 position,
                             vec3 normal, vec3 direction)
 {
-    ivec3 last = ivec3(grid.count_x, grid.count_y, grid.count_z) - 1;
     vec3 at = (position - grid.first_m) / grid.spacing_m + PROBE_BIAS * normal;
-    at = clamp(at, vec3(-0.5), vec3(last) + 0.5);
-    ivec3 base = ivec3(floor(at));
+    at = clamp(at, vec3(-0.5), vec3(grid.count_x, grid.count_y, grid.count_z) - 0.5);
     float basis[9];
     sh9_eval(direction, basis);
     vec3 sum = vec3(0.0);
     float weights = 0.0;
-    for (int corner = 0; corner < 8; corner++) {
-        ivec3 step = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
-        ivec3 cell = clamp(base + step, ivec3(0), last);
-        vec3 linear = mix(1.0 - (at - vec3(base)), at - vec3(base), equal(step, ivec3(1)));
-        vec4 place = texelFetch(volume, cell + ivec3(0, 0, FRAME_PROBE_SLABS * grid.slab), 0);
-        vec3 to = at - vec3(cell) - place.xyz;
-        int probe = (cell.z * grid.count_y + cell.y) * grid.count_x + cell.x;
+    for (int i = 0; i < 8; i++) {
+        probe_corner corner = probe_corner_of(volume, depth, grid, at, i);
         // Probes in front of the surface count more than those behind it.
-        float facing = 0.5 - 0.5 * dot(normal, to) / max(length(to), 1e-4);
-        float seen = place.w * probe_visibility(depth, probe, to) * (facing * facing + 0.2);
-        float weight = linear.x * linear.y * linear.z * (seen + PROBE_UNSEEN);
-        sum += weight * probe_irradiance(volume, grid.slab, cell, basis);
+        float facing = 0.5 - 0.5 * dot(normal, corner.to) / max(length(corner.to), 1e-4);
+        float weight = corner.linear * (corner.seen * (facing * facing + 0.2) + PROBE_UNSEEN);
+        sum += weight * probe_irradiance(volume, grid.slab, corner.cell, basis);
         weights += weight;
     }
     return sum / weights;
@@ -88,23 +102,17 @@ vec3 probes_seen_irradiance(sampler3D volume, sampler2D depth, frame_probes grid
 void probes_seen_coefficients(sampler3D volume, sampler2D depth, frame_probes grid, vec3 position,
                               out vec3 c[9])
 {
-    ivec3 last = ivec3(grid.count_x, grid.count_y, grid.count_z) - 1;
-    vec3 at = clamp((position - grid.first_m) / grid.spacing_m, vec3(0.0), vec3(last));
-    ivec3 base = ivec3(floor(at));
+    vec3 last = vec3(grid.count_x, grid.count_y, grid.count_z) - 1.0;
+    vec3 at = clamp((position - grid.first_m) / grid.spacing_m, vec3(0.0), last);
     float weights = 0.0;
     for (int j = 0; j < 9; j++) c[j] = vec3(0.0);
-    for (int corner = 0; corner < 8; corner++) {
-        ivec3 step = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
-        ivec3 cell = min(base + step, last);
-        vec3 linear = mix(1.0 - (at - vec3(base)), at - vec3(base), equal(step, ivec3(1)));
-        vec4 place = texelFetch(volume, cell + ivec3(0, 0, FRAME_PROBE_SLABS * grid.slab), 0);
-        vec3 to = at - vec3(cell) - place.xyz;
-        int probe = (cell.z * grid.count_y + cell.y) * grid.count_x + cell.x;
-        float weight = linear.x * linear.y * linear.z *
-                       (place.w * probe_visibility(depth, probe, to) + PROBE_UNSEEN);
+    for (int k = 0; k < 8; k++) {
+        probe_corner corner = probe_corner_of(volume, depth, grid, at, k);
+        float weight = corner.linear * (corner.seen + PROBE_UNSEEN);
         vec4 values;
         for (int i = 0; i < 27; i++) {
-            if (i % 4 == 0) values = texelFetch(volume, cell + ivec3(0, 0, i / 4 * grid.slab), 0);
+            if (i % 4 == 0)
+                values = texelFetch(volume, corner.cell + ivec3(0, 0, i / 4 * grid.slab), 0);
             c[i / 3][i % 3] += weight * values[i % 4];
         }
         weights += weight;

@@ -33,10 +33,9 @@ layout(push_constant, scalar) uniform push_block
 // Points outside of all blocks are dark, and not valid.
 void main()
 {
-    ivec3 count = ivec3(grid.count_x, grid.count_y, grid.count_z);
     int i = int(gl_GlobalInvocationID.x);
-    ivec3 at = ivec3(i % count.x, i / count.x % count.y, i / (count.x * count.y));
-    if (at.z >= count.z) return;
+    ivec3 at = probes_cell(grid, i);
+    if (at.z >= grid.count_z) return;
     vec4 offset = place_table[i];
     mrt_place place = locate(grid.first_m + grid.spacing_m * (vec3(at) + offset.xyz));
     mrt_seen seen;

@@ -77,8 +77,7 @@ void main()
         coefficients[c] += probes[owner].sky[c] * environment_mean() + emitters * emitted;
         coefficients[c] = clamp(coefficients[c], -HALF_MAX, HALF_MAX);
     }
-    ivec3 count = ivec3(push.grid.count_x, push.grid.count_y, push.grid.count_z);
-    ivec3 at = ivec3(int(i) % count.x, int(i) / count.x % count.y, int(i) / (count.x * count.y));
+    ivec3 at = probes_cell(push.grid, int(i));
     for (int s = 0; s < FRAME_PROBE_SLABS; s++)
         imageStore(volume, at + ivec3(0, 0, s * push.grid.slab), probes_slab(coefficients, s));
     imageStore(volume, at + ivec3(0, 0, FRAME_PROBE_SLABS * push.grid.slab), probes[i].place);
