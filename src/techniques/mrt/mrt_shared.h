@@ -4,6 +4,7 @@
 #define AG_MRT_SHARED_H
 
 #include "core/shared.h"
+#include "frame/frame_shared.h"
 
 #define MRT_LOCAL         64  // workgroup size over texels
 #define MRT_LOCAL_2D      8   // workgroup size over pixels, in x and y
@@ -140,9 +141,7 @@ struct mrt_level_params {
     float gain;            // artistic factor on the result
     uint32_t probes;       // along an edge of a block
     uint32_t brick_columns;
-    vec3s outdoors_m; // first point of the outdoor grid, world
-    float outdoors_spacing_m;
-    int32_t outdoors_x, outdoors_y, outdoors_z; // points; 0: all places are enclosed
+    AG_STRUCT(frame_probes) outdoors; // no probes: all places are enclosed
 };
 
 struct mrt_view_push {
@@ -172,7 +171,7 @@ _Static_assert(sizeof(struct mrt_gpu_clutter_sample) == 8, "layout is shared wit
 _Static_assert(sizeof(struct mrt_apply_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_clutter_fill_push) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_level_params) == 112, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_level_params) == 116, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_view_push) == 4, "layout is shared with GLSL");
 #endif
 

@@ -2,6 +2,7 @@
 // that belong to no room take it.
 #pragma once
 
+#include "techniques/common/probes/grid.h"
 #include "techniques/mrt/level/block_map.h"
 #include "techniques/mrt/level/probes.h"
 
@@ -12,17 +13,10 @@ struct mrt_outdoor_probe {
     float open;
 };
 
-struct mrt_outdoor_grid {
-    vec3s first_m;   // of point (0, 0, 0), world
-    float spacing_m; // between neighbouring points, along each axis of the world
-    int count[3];
-};
-
 struct mrt_outdoors {
     struct host *host;
-    struct mrt_outdoor_grid grid;
-    struct mrt_outdoor_probe
-        *probes; // [count[2]][count[1]][count[0]]; NULL: all places are enclosed
+    struct frame_probes grid;
+    struct mrt_outdoor_probe *probes; // [z][y][x]; NULL: all places are enclosed
 };
 
 struct trace_scene;

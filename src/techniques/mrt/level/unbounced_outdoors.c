@@ -12,23 +12,19 @@ static const float OUTSIDE = 0.4f;
 
 static const float IN_CELL = 0.5f + 1e-3f; // points on a wall are the room's
 
-static struct mrt_outdoor_grid grid_of(struct box3 bounds)
+// Points at both ends of the longest side.
+static struct frame_probes grid_of(struct box3 bounds)
 {
     const vec3s size = box3_size(bounds);
     const float spacing = glms_vec3_max(size) / (float)(MAX_POINTS - 1);
-    struct mrt_outdoor_grid grid = { .first_m = bounds.min, .spacing_m = spacing };
+    struct frame_probes grid = { .first_m = bounds.min, .spacing_m = spacing };
+    int32_t *const counts[3] = { &grid.count_x, &grid.count_y, &grid.count_z };
     for (int a = 0; a < 3; a++) {
-        grid.count[a] = (int)ceilf(size.raw[a] / spacing - 1e-3f) + 1;
-        grid.first_m.raw[a] += 0.5f * (size.raw[a] - spacing * (float)(grid.count[a] - 1));
+        *counts[a] = (int32_t)ceilf(size.raw[a] / spacing - 1e-3f) + 1;
+        grid.first_m.raw[a] += 0.5f * (size.raw[a] - spacing * (float)(*counts[a] - 1));
     }
+    grid.slab = grid.count_z;
     return grid;
-}
-
-static vec3s point_of(const struct mrt_outdoor_grid *grid, int i)
-{
-    const int x = grid->count[0], y = grid->count[1];
-    const vec3s at = vec3_of((float)(i % x), (float)(i / x % y), (float)(i / (x * y)));
-    return glms_vec3_muladds(at, grid->spacing_m, grid->first_m);
 }
 
 static bool is_in_block(const struct mrt_block_map *map, vec3s point)
@@ -83,10 +79,10 @@ static void points_finish(struct points *points, struct host *host)
 }
 
 static void find_points(struct points *points, const struct mrt_block_map *map,
-                        const struct mrt_outdoor_grid *grid, int count)
+                        struct frame_probes grid, int count)
 {
     for (int i = 0; i < count; i++) {
-        const vec3s position = point_of(grid, i);
+        const vec3s position = probe_grid_point(grid, (uint32_t)i);
         if (is_in_block(map, position)) continue;
         points->index[points->count] = i;
         points->position[points->count++] = position;
@@ -112,11 +108,11 @@ bool mrt_outdoors_init(struct host *host, const struct mrt_block_map *map, struc
 {
     struct points points = { 0 };
     *out = (struct mrt_outdoors){ .host = host, .grid = grid_of(bounds) };
-    const int count = out->grid.count[0] * out->grid.count[1] * out->grid.count[2];
+    const int count = (int)probe_grid_count(out->grid);
     out->probes = host_alloc(host, (size_t)count, sizeof *out->probes);
     bool ok = out->probes && points_alloc(&points, host, (size_t)count);
     if (ok) {
-        find_points(&points, map, &out->grid, count);
+        find_points(&points, map, out->grid, count);
         ok = mrt_unbounced_points(host, scene, RAYS,
                                   &(struct mrt_unbounced_points){ (size_t)points.count,
                                                                   points.position, points.light,

@@ -21,10 +21,9 @@ layout(set = 0, binding = 3, rgba16f) writeonly uniform image3D outdoors;
 
 void main()
 {
-    ivec3 count = ivec3(level.outdoors_x, level.outdoors_y, level.outdoors_z);
     int i = int(gl_GlobalInvocationID.x);
-    ivec3 at = ivec3(i % count.x, i / count.x % count.y, i / (count.x * count.y));
-    if (at.z >= count.z) return;
+    ivec3 at = probes_cell(level.outdoors, i);
+    if (at.z >= level.outdoors.count_z) return;
     vec3 coefficients[9];
     for (int k = 0; k < 9; k++) {
         vec3 light = probe_table[i].light.emitted[k] * (frame.radiance_scale * level.emitters) +
@@ -34,6 +33,6 @@ void main()
     for (int s = 0; s < FRAME_PROBE_SLABS; s++) {
         vec4 slab = probes_slab(coefficients, s);
         if (s == FRAME_PROBE_SLABS - 1) slab.w = probe_table[i].open;
-        imageStore(outdoors, at + ivec3(0, 0, s * count.z), slab);
+        imageStore(outdoors, at + ivec3(0, 0, s * level.outdoors.slab), slab);
     }
 }

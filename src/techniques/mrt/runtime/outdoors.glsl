@@ -14,13 +14,14 @@ const float MRT_OUTDOORS_OPEN = 0.5; // share of open probes around a place that
 vec4 outdoor_irradiance(vec3 position, vec3 normal)
 {
     if (!OUTDOORS) return vec4(0.0);
-    vec3 last = vec3(level.outdoors_x, level.outdoors_y, level.outdoors_z) - 1.0;
-    vec3 at = (position - level.outdoors_m) / level.outdoors_spacing_m + normal;
+    frame_probes grid = level.outdoors;
+    vec3 last = vec3(grid.count_x, grid.count_y, grid.count_z) - 1.0;
+    vec3 at = (position - grid.first_m) / grid.spacing_m + normal;
     vec3 texel = clamp(at, vec3(0.0), last) + 0.5, size = vec3(textureSize(outdoors, 0));
-    float slab = float((FRAME_PROBE_SLABS - 1) * level.outdoors_z);
+    float slab = float((FRAME_PROBE_SLABS - 1) * grid.slab);
     float open = textureLod(outdoors, (texel + vec3(0.0, 0.0, slab)) / size, 0.0).a;
     if (open <= 0.0) return vec4(0.0);
-    vec3 light = probes_irradiance_at(outdoors, level.outdoors_z, texel, normal) / open;
+    vec3 light = probes_irradiance_at(outdoors, grid.slab, texel, normal) / open;
     return vec4(light, smoothstep(0.0, MRT_OUTDOORS_OPEN, open));
 }
 

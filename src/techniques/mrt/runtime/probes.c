@@ -15,7 +15,6 @@
 #include "technique_shaders.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { VALUES = MRT_PROBE_VALUES };
 
@@ -73,14 +72,8 @@ static void fill_turns(const struct mrt_runtime_input *input, void *items)
         fill_turn(mrt_block_rotation(&input->map->blocks[b]), turns + VALUES * VALUES * b);
 }
 
-static void fill_unbounced(const struct mrt_runtime_input *input, void *items)
-{
-    struct mrt_gpu_probe *probes = items;
-    for (int i = 0; i < input->map->count * mrt_probes_of_block(input->probes); i++) {
-        memcpy(probes[i].emitted, input->images->unbounced[i].emitted, sizeof probes[i].emitted);
-        memcpy(probes[i].sky, input->images->unbounced[i].sky, sizeof probes[i].sky);
-    }
-}
+_Static_assert(sizeof(struct mrt_unbounced_probe) == sizeof(struct mrt_gpu_probe),
+               "shaders read what the level has");
 
 static bool upload_tables(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
@@ -96,8 +89,8 @@ static bool upload_tables(struct mrt_runtime *runtime, const struct mrt_runtime_
                             &p->sources) &&
            mrt_table_upload(runtime, input, "probe_turns", blocks, VALUES * VALUES * sizeof(float),
                             fill_turns, &p->turns) &&
-           mrt_table_upload(runtime, input, "probe_unbounced", probes, sizeof(struct mrt_gpu_probe),
-                            fill_unbounced, &p->unbounced);
+           mrt_buffer_of(runtime, "probe_unbounced", input->images->unbounced,
+                         probes * sizeof(struct mrt_gpu_probe), &p->unbounced);
 }
 
 // ---- images

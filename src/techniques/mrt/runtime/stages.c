@@ -203,8 +203,7 @@ void mrt_record_probes(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 void mrt_record_outdoors(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                          const struct frame_view *view)
 {
-    const struct mrt_level_params *level = &runtime->level;
-    const uint32_t count = (uint32_t)(level->outdoors_x * level->outdoors_y * level->outdoors_z);
+    const uint32_t count = probe_grid_count(runtime->level.outdoors);
     if (count == 0) return;
     gpu_scope_begin(cmd, "outdoors");
     gpu_dispatch(cmd, runtime->outdoors.fill,
