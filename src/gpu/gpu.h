@@ -327,8 +327,9 @@ void gpu_objects_add(struct gpu_objects *table, size_t base, const struct gpu_ob
     gpu_objects_add(table, base, (const struct gpu_object[]){ __VA_ARGS__ },                       \
                     sizeof((const struct gpu_object[]){ __VA_ARGS__ }) /                           \
                         sizeof(struct gpu_object))
-// false: gpu_objects_destroy frees what was created; it accepts any half-built state.
-bool gpu_objects_create(struct gpu *gpu, const struct gpu_objects *table, void *state);
+// Those from the row `first` on. false: gpu_objects_destroy frees what was created; it accepts any
+// half-built state.
+bool gpu_objects_create(struct gpu *gpu, const struct gpu_objects *table, int first, void *state);
 void gpu_objects_destroy(struct gpu *gpu, const struct gpu_objects *table, void *state);
 // Bytes of buffers and texels, without what a driver pads.
 uint64_t gpu_objects_bytes(const struct gpu_objects *table);

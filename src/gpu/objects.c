@@ -70,9 +70,9 @@ static bool create(struct gpu *gpu, const struct gpu_objects *table, const struc
     }
 }
 
-bool gpu_objects_create(struct gpu *gpu, const struct gpu_objects *table, void *state)
+bool gpu_objects_create(struct gpu *gpu, const struct gpu_objects *table, int first, void *state)
 {
-    for (int i = 0; i < table->count; i++)
+    for (int i = first; i < table->count; i++)
         if (!create(gpu, table, &table->at[i], (char *)state + table->at[i].member)) return false;
     return true;
 }

@@ -23,7 +23,7 @@ bool technique_create(const struct technique *technique, void *state,
 {
     struct gpu_objects table;
     list(technique, how->options, 0, how->width, how->height, &table);
-    return gpu_objects_create(how->gpu, &table, state) && technique->create(state, how);
+    return gpu_objects_create(how->gpu, &table, 0, state) && technique->create(state, how);
 }
 
 bool technique_resize(const struct technique *technique, struct gpu *gpu, void *state,
@@ -33,7 +33,7 @@ bool technique_resize(const struct technique *technique, struct gpu *gpu, void *
     list(technique, options, view, width, height, &table);
     keep_view(&table, false);
     gpu_objects_destroy(gpu, &table, state);
-    return gpu_objects_create(gpu, &table, state) &&
+    return gpu_objects_create(gpu, &table, 0, state) &&
            (!technique->resize || technique->resize(state, view, width, height));
 }
 

@@ -112,9 +112,8 @@ static void join(struct mrt *mrt)
     check_walls(mrt);
     u->next.gpu = mrt->gpu;
     u->next.host = mrt->host;
-    u->next.linear = mrt->runtime.linear;
     if (!light_map_places_init(&u->next_places, &u->host, &u->snapshot.pose) ||
-        !mrt_plan_create(&u->plan, &u->next)) {
+        !gpu_objects_create(mrt->gpu, &u->next.objects, 0, &u->next)) {
         fail(mrt, "out of memory");
         return;
     }

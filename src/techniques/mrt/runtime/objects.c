@@ -3,52 +3,31 @@
 #include <assert.h>
 #include <string.h>
 
-// ---- planning
-
-static struct mrt_plan_item *new_item(struct mrt_runtime *runtime, const void *handle)
+// The object of a member of the run time.
+static bool add(struct mrt_runtime *runtime, struct gpu_object row, const void *member)
 {
-    struct mrt_plan *plan = runtime->plan;
-    if (plan->count == plan->capacity) {
-        const size_t capacity = plan->capacity ? 2 * plan->capacity : 64;
-        struct mrt_plan_item *items =
-            host_realloc(plan->host, plan->items, capacity, sizeof *items);
-        if (!items) return NULL;
-        plan->items = items;
-        plan->capacity = capacity;
-    }
-    struct mrt_plan_item *item = &plan->items[plan->count++];
-    *item = (struct mrt_plan_item){ 0 };
-    item->handle = (size_t)((const char *)handle - (const char *)runtime);
-    assert(item->handle < sizeof *runtime);
-    return item;
+    struct gpu_objects *table = &runtime->objects;
+    row.member = (size_t)((const char *)member - (const char *)runtime);
+    assert(row.member < sizeof *runtime);
+    gpu_objects_add(table, 0, &row, 1);
+    return runtime->plan || gpu_objects_create(runtime->gpu, table, table->count - 1, runtime);
 }
 
-static bool plan_buffer(struct mrt_runtime *runtime, const char *name, const void *data,
-                        size_t bytes, gpu_buffer *out)
+static bool keep(struct mrt_plan *plan, int row, const void *data, size_t bytes)
 {
-    struct mrt_plan_item *item = new_item(runtime, out);
-    if (!item) return false;
-    item->kind = MRT_PLAN_BUFFER;
-    item->name = name;
-    item->bytes = bytes;
-    if (!data || bytes == 0) return true;
-    item->data = host_alloc(runtime->plan->host, bytes, 1);
-    if (item->data) memcpy(item->data, data, bytes);
-    return item->data;
-}
-
-static bool create_buffer(struct gpu *gpu, const char *name, size_t bytes, gpu_buffer *out)
-{
-    const struct gpu_buffer_desc desc = { name, bytes ? bytes : 16, GPU_BUFFER_STORAGE };
-    return gpu_buffer_create(gpu, &desc, out);
+    plan->data[row] = host_alloc(plan->host, bytes, 1);
+    if (plan->data[row]) memcpy(plan->data[row], data, bytes);
+    return plan->data[row];
 }
 
 bool mrt_buffer_of(struct mrt_runtime *runtime, const char *name, const void *data, size_t bytes,
                    gpu_buffer *out)
 {
-    if (runtime->plan) return plan_buffer(runtime, name, data, bytes, out);
-    return create_buffer(runtime->gpu, name, bytes, out) &&
-           (!data || bytes == 0 || gpu_buffer_upload(runtime->gpu, *out, 0, data, bytes));
+    const struct gpu_object row = { GPU_BUFFER, name, .bytes = bytes ? bytes : 16 };
+    if (!add(runtime, row, out)) return false;
+    if (!data || bytes == 0) return true;
+    return runtime->plan ? keep(runtime->plan, runtime->objects.count - 1, data, bytes)
+                         : gpu_buffer_upload(runtime->gpu, *out, 0, data, bytes);
 }
 
 bool mrt_table_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
@@ -66,61 +45,34 @@ bool mrt_table_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inpu
 
 bool mrt_image_of(struct mrt_runtime *runtime, const struct gpu_image_desc *desc, gpu_image *out)
 {
-    if (!runtime->plan) return gpu_image_create(runtime->gpu, desc, out);
-    struct mrt_plan_item *item = new_item(runtime, out);
-    if (!item) return false;
-    item->kind = MRT_PLAN_IMAGE;
-    item->image = *desc;
-    return true;
+    return add(runtime, (struct gpu_object){ GPU_IMAGE, desc->name, .image = *desc }, out);
+}
+
+bool mrt_sampler_of(struct mrt_runtime *runtime, const char *name, gpu_sampler *out)
+{
+    return add(runtime, (struct gpu_object){ .kind = GPU_SAMPLER, .name = name }, out);
 }
 
 bool mrt_pipeline_of(struct mrt_runtime *runtime, const char *name, const struct gpu_shader *shader,
-                     const struct gpu_constant *constants, int count, gpu_pipeline *out)
+                     uint32_t constants, gpu_pipeline *out)
 {
-    if (!runtime->plan)
-        return gpu_compute_pipeline_create(runtime->gpu, name, shader, constants, count, out);
-    struct mrt_plan_item *item = new_item(runtime, out);
-    if (!item) return false;
-    assert(count <= MRT_PLAN_CONSTANTS);
-    item->kind = MRT_PLAN_PIPELINE;
-    item->name = name;
-    item->shader = shader;
-    item->constant_count = count;
-    if (count > 0) memcpy(item->constants, constants, (size_t)count * sizeof *constants);
-    return true;
-}
-
-// ---- creation
-
-static bool create(const struct mrt_plan_item *item, struct mrt_runtime *runtime)
-{
-    void *handle = (char *)runtime + item->handle;
-    if (item->kind == MRT_PLAN_BUFFER)
-        return create_buffer(runtime->gpu, item->name, item->bytes, handle);
-    if (item->kind == MRT_PLAN_IMAGE) return gpu_image_create(runtime->gpu, &item->image, handle);
-    return gpu_compute_pipeline_create(runtime->gpu, item->name, item->shader, item->constants,
-                                       item->constant_count, handle);
-}
-
-bool mrt_plan_create(const struct mrt_plan *plan, struct mrt_runtime *runtime)
-{
-    for (size_t i = 0; i < plan->count; i++)
-        if (!create(&plan->items[i], runtime)) return false;
-    return true;
+    const struct gpu_object row = { GPU_PIPELINE, name, .shader = shader, .consts = constants };
+    return add(runtime, row, out);
 }
 
 bool mrt_plan_record(struct mrt_plan *plan, const struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                      size_t most)
 {
-    while (plan->item < plan->count) {
-        const struct mrt_plan_item *item = &plan->items[plan->item];
-        const size_t left = item->data ? item->bytes - plan->offset : 0;
+    while (plan->item < runtime->objects.count) {
+        const struct gpu_object *item = &runtime->objects.at[plan->item];
+        const char *data = plan->data[plan->item];
+        const size_t left = data ? item->bytes - plan->offset : 0;
         const size_t bytes = left < most ? left : most;
         if (bytes > 0) {
             const gpu_buffer *to =
-                (const gpu_buffer *)(const void *)((const char *)runtime + item->handle);
+                (const gpu_buffer *)(const void *)((const char *)runtime + item->member);
             const struct gpu_binding from =
-                gpu_transient(cmd, item->name, (const char *)item->data + plan->offset, bytes);
+                gpu_transient(cmd, item->name, data + plan->offset, bytes);
             gpu_copy_buffer(cmd, *to, plan->offset, from.buffer, from.offset, bytes);
         }
         plan->offset += bytes;
@@ -134,7 +86,6 @@ bool mrt_plan_record(struct mrt_plan *plan, const struct mrt_runtime *runtime, s
 
 void mrt_plan_finish(struct mrt_plan *plan)
 {
-    for (size_t i = 0; i < plan->count; i++) host_free(plan->host, plan->items[i].data);
-    if (plan->host) host_free(plan->host, plan->items);
+    for (int i = 0; plan->host && i < GPU_MAX_OBJECTS; i++) host_free(plan->host, plan->data[i]);
     *plan = (struct mrt_plan){ 0 };
 }

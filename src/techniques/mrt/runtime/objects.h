@@ -4,8 +4,9 @@
 
 #include "techniques/mrt/runtime/runtime.h"
 
-// With runtime->plan the object is planned: `out` is a member of the run time, and gets its handle
-// from mrt_plan_create. `desc`, `name` and `shader` are constant.
+// `out` is a member of the run time, and the object gets a row of runtime->objects. With
+// runtime->plan it is planned: it is created with the others of the table. `desc`, `name` and
+// `shader` are constant.
 //
 // A storage buffer with this content; zeros where data is NULL, 16 of them where bytes is 0.
 bool mrt_buffer_of(struct mrt_runtime *runtime, const char *name, const void *data, size_t bytes,
@@ -16,33 +17,20 @@ bool mrt_table_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inpu
                       void (*fill)(const struct mrt_runtime_input *input, void *items),
                       gpu_buffer *out);
 bool mrt_image_of(struct mrt_runtime *runtime, const struct gpu_image_desc *desc, gpu_image *out);
+bool mrt_sampler_of(struct mrt_runtime *runtime, const char *name, gpu_sampler *out);
+// Rows of runtime->objects.constants: those of MRT_CONSTANT_…, and these.
+enum { MRT_CONSTANT_ROW_VECTOR = MRT_CONSTANT_OUTDOORS + 1, MRT_CONSTANT_ROW_BACKS };
+// constants: bits of these rows.
 bool mrt_pipeline_of(struct mrt_runtime *runtime, const char *name, const struct gpu_shader *shader,
-                     const struct gpu_constant *constants, int count, gpu_pipeline *out);
-
-enum { MRT_PLAN_CONSTANTS = 8 };
-
-struct mrt_plan_item {
-    enum { MRT_PLAN_BUFFER, MRT_PLAN_IMAGE, MRT_PLAN_PIPELINE } kind;
-    size_t handle; // offset in struct mrt_runtime
-    const char *name;
-    size_t bytes; // of a buffer
-    void *data;   // its content, NULL: zeros
-    struct gpu_image_desc image;
-    const struct gpu_shader *shader;
-    struct gpu_constant constants[MRT_PLAN_CONSTANTS];
-    int constant_count;
-};
+                     uint32_t constants, gpu_pipeline *out);
 
 struct mrt_plan {
     struct host *host;
-    struct mrt_plan_item *items;
-    size_t count, capacity;
-    size_t item, offset; // the next byte that mrt_plan_record copies
+    char *data[GPU_MAX_OBJECTS]; // content of runtime->objects; NULL: zeros
+    int item;                    // the next byte that mrt_plan_record copies
+    size_t offset;
 };
 
-// Creates all objects of a planned run time, whose gpu is set. The objects of a failure are
-// destroyed with the run time.
-bool mrt_plan_create(const struct mrt_plan *plan, struct mrt_runtime *runtime);
 // Copies the next bytes of the content, at most `most`. Returns whether that was the rest.
 bool mrt_plan_record(struct mrt_plan *plan, const struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                      size_t most);

@@ -20,13 +20,6 @@ bool mrt_outdoors_upload(struct mrt_runtime *runtime, const struct mrt_runtime_i
     return mrt_buffer_of(runtime, "outdoor_probes", from->probes,
                          probe_grid_count(grid) * sizeof *from->probes,
                          &runtime->outdoors.probes) &&
-           mrt_pipeline_of(runtime, "outdoors", &shader_mrt_runtime_outdoors_comp, NULL, 0,
+           mrt_pipeline_of(runtime, "outdoors", &shader_mrt_runtime_outdoors_comp, 0,
                            &runtime->outdoors.fill);
-}
-
-void mrt_outdoors_end(struct mrt_runtime *runtime)
-{
-    gpu_buffer_destroy(runtime->gpu, &runtime->outdoors.probes);
-    gpu_image_destroy(runtime->gpu, &runtime->outdoors.image);
-    gpu_pipeline_destroy(runtime->gpu, &runtime->outdoors.fill);
 }

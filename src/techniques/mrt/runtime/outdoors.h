@@ -4,4 +4,3 @@
 #include "techniques/mrt/runtime/runtime.h"
 
 bool mrt_outdoors_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
-void mrt_outdoors_end(struct mrt_runtime *runtime); // accepts zero and half-built

@@ -130,10 +130,6 @@ uint32_t mrt_sight_voxels(const struct mrt_runtime_input *input)
 static bool make_volume(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_probes *p = &runtime->probes;
-    const struct gpu_constant constants[] = {
-        { MRT_CONSTANT_TUBES, mrt_block_is_tube(&input->map->blocks[0]) },
-        { MRT_CONSTANT_SIGHT, mrt_sight_voxels(input) },
-    };
     if (!runtime->options.publish) return true;
     p->grid = input->published->grid;
     const struct gpu_image_desc desc =
@@ -142,7 +138,7 @@ static bool make_volume(struct mrt_runtime *runtime, const struct mrt_runtime_in
            mrt_buffer_of(runtime, "probe_places", input->published->place,
                          probe_grid_count(p->grid) * sizeof(vec4s), &p->places) &&
            mrt_pipeline_of(runtime, "probe_volume", &shader_mrt_runtime_probe_volume_comp,
-                           constants, 2, &p->publish);
+                           1u << MRT_CONSTANT_TUBES | 1u << MRT_CONSTANT_SIGHT, &p->publish);
 }
 
 bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
@@ -158,7 +154,7 @@ bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inp
            mrt_buffer_of(runtime, "probe_light", NULL, rows * triple, &p->light) &&
            mrt_buffer_of(runtime, "radiosity", NULL, texels * triple, &p->radiosity) &&
            make_bricks(runtime, input) && make_volume(runtime, input) &&
-           mrt_pipeline_of(runtime, "bricks", &shader_mrt_runtime_bricks_comp, NULL, 0, &p->fill);
+           mrt_pipeline_of(runtime, "bricks", &shader_mrt_runtime_bricks_comp, 0, &p->fill);
 }
 
 bool mrt_probes_make_empty(struct mrt_runtime *runtime)
@@ -168,18 +164,4 @@ bool mrt_probes_make_empty(struct mrt_runtime *runtime)
     const struct gpu_image_desc desc =
         probe_volume_desc("probe_volume", p->grid, FRAME_PROBE_SLABS);
     return !runtime->options.publish || mrt_image_of(runtime, &desc, &p->volume);
-}
-
-void mrt_probes_finish(struct mrt_runtime *runtime)
-{
-    struct mrt_runtime_probes *p = &runtime->probes;
-    gpu_buffer *const buffers[] = { &p->tiles,     &p->openings, &p->sources, &p->turns,
-                                    &p->unbounced, &p->u_b,      &p->u_r,     &p->light,
-                                    &p->radiosity, &p->sight,    &p->places };
-    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
-        gpu_buffer_destroy(runtime->gpu, buffers[i]);
-    gpu_image_destroy(runtime->gpu, &p->bricks);
-    gpu_image_destroy(runtime->gpu, &p->volume);
-    gpu_pipeline_destroy(runtime->gpu, &p->fill);
-    gpu_pipeline_destroy(runtime->gpu, &p->publish);
 }

@@ -6,6 +6,5 @@
 bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
 // One dark point to publish.
 bool mrt_probes_make_empty(struct mrt_runtime *runtime);
-void mrt_probes_finish(struct mrt_runtime *runtime); // accepts zero and half-built
 // MRT_CONSTANT_SIGHT.
 uint32_t mrt_sight_voxels(const struct mrt_runtime_input *input);

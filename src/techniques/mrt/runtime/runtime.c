@@ -12,7 +12,7 @@
 
 #include "technique_shaders.h"
 
-enum { VEC3_BYTES = 12, MAX_CONSTANTS = 10, VECTOR_VALUES = 4 };
+enum { VEC3_BYTES = 12, VECTOR_VALUES = 4 };
 
 static bool make_buffers(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
@@ -49,26 +49,12 @@ static bool make_images(struct mrt_runtime *runtime)
 {
     const struct mrt_level_params *level = &runtime->level;
     const bool vector = runtime->options.vector;
-    const struct gpu_sampler_desc linear = { .name = "linear",
-                                             .filter = GPU_LINEAR,
-                                             .wrap_u = GPU_CLAMP,
-                                             .wrap_v = GPU_CLAMP,
-                                             .wrap_w = GPU_CLAMP };
-    // Equal samplers are shared: a planned run time gets that of the one whose place it takes.
-    return (runtime->plan || gpu_sampler_get(runtime->gpu, &linear, &runtime->linear)) &&
+    return mrt_sampler_of(runtime, "linear", &runtime->linear) &&
            make_image(runtime, "light_map", level->map_width, level->map_height, 1,
                       &runtime->buffers.light_map) &&
            make_image(runtime, "vector_map", vector ? level->map_width : 1,
                       vector ? level->map_height : 1, 3, &runtime->buffers.vector_map);
 }
-
-struct pipeline {
-    gpu_pipeline *out;
-    const char *name;
-    const struct gpu_shader *shader;
-    uint32_t constants; // bit i: specialization constant i
-    uint32_t values;    // of MRT_CONSTANT_VALUES
-};
 
 static bool is_affine(const struct mrt_block_map *map)
 {
@@ -77,14 +63,14 @@ static bool is_affine(const struct mrt_block_map *map)
     return true;
 }
 
-static bool make_pipeline(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                          const struct pipeline *pipeline)
+// VECTOR is another value of VALUES.
+static void fill_constants(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
-    const uint32_t values[MAX_CONSTANTS] = {
+    const uint32_t values[] = {
         [MRT_CONSTANT_HALF] = runtime->options.half,
         [MRT_CONSTANT_QUADS_B] = mrt_quads(input->k_b),
         [MRT_CONSTANT_QUADS_R] = mrt_quads(input->k_r),
-        [MRT_CONSTANT_VALUES] = pipeline->values,
+        [MRT_CONSTANT_VALUES] = 1,
         [MRT_CONSTANT_PROBES] = runtime->options.clutter,
         [MRT_CONSTANT_AFFINE] = is_affine(input->map),
         [MRT_CONSTANT_TUBES] = mrt_block_is_tube(&input->map->blocks[0]),
@@ -92,13 +78,11 @@ static bool make_pipeline(struct mrt_runtime *runtime, const struct mrt_runtime_
         [MRT_CONSTANT_SIGHT] = mrt_sight_voxels(input),
         [MRT_CONSTANT_OUTDOORS] = input->images->outdoors.probes != NULL,
     };
-    struct gpu_constant constants[MAX_CONSTANTS];
-    int count = 0;
-    for (uint32_t i = 0; i < MAX_CONSTANTS; i++)
-        if (pipeline->constants >> i & 1u)
-            constants[count++] = (struct gpu_constant){ i, values[i] };
-    return mrt_pipeline_of(runtime, pipeline->name, pipeline->shader, constants, count,
-                           pipeline->out);
+    struct gpu_constant *constants = runtime->objects.constants;
+    for (uint32_t i = 0; i < MRT_CONSTANT_ROW_VECTOR; i++)
+        constants[i] = (struct gpu_constant){ i, values[i] };
+    constants[MRT_CONSTANT_ROW_VECTOR] =
+        (struct gpu_constant){ MRT_CONSTANT_VALUES, VECTOR_VALUES };
 }
 
 enum {
@@ -112,42 +96,46 @@ enum {
     CLUTTER = 1 << MRT_CONSTANT_CLUTTER,
     SIGHT = 1 << MRT_CONSTANT_SIGHT,
     OUTDOORS = 1 << MRT_CONSTANT_OUTDOORS,
-    ALL = HALF | QUADS_B | QUADS_R | VALUES | CLUTTER,
+    VECTOR = 1 << MRT_CONSTANT_ROW_VECTOR,
+    ALL = HALF | QUADS_B | QUADS_R | CLUTTER,
 };
 
-static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+static bool make_pipelines(struct mrt_runtime *runtime)
 {
     struct mrt_runtime_pipelines *p = &runtime->pipelines;
-    const uint32_t values = runtime->options.vector ? VECTOR_VALUES : 1;
-    const struct pipeline all[] = {
-        { &p->direct, "direct", &shader_mrt_runtime_direct_comp, 0, 0 },
-        { &p->project, "project", &shader_mrt_runtime_project_comp, HALF | QUADS_B, 0 },
-        { &p->bounce, "bounce", &shader_mrt_runtime_bounce_comp, QUADS_B | QUADS_R, 0 },
-        { &p->couple, "couple", &shader_mrt_runtime_couple_comp, HALF | QUADS_B | QUADS_R, 0 },
-        { &p->reconstruct, "reconstruct", &shader_mrt_runtime_reconstruct_comp, ALL, 1 },
-        { &p->fill, "fill", &shader_mrt_runtime_fill_comp, VALUES, 1 },
+    const bool vector = runtime->options.vector;
+    const struct {
+        gpu_pipeline *out;
+        const char *name;
+        const struct gpu_shader *shader;
+        uint32_t constants;
+    } all[] = {
+        { &p->direct, "direct", &shader_mrt_runtime_direct_comp, 0 },
+        { &p->project, "project", &shader_mrt_runtime_project_comp, HALF | QUADS_B },
+        { &p->bounce, "bounce", &shader_mrt_runtime_bounce_comp, QUADS_B | QUADS_R },
+        { &p->couple, "couple", &shader_mrt_runtime_couple_comp, HALF | QUADS_B | QUADS_R },
+        { &p->reconstruct, "reconstruct", &shader_mrt_runtime_reconstruct_comp, ALL | VALUES },
+        { &p->fill, "fill", &shader_mrt_runtime_fill_comp, VALUES },
         { &p->apply, "apply", &shader_mrt_runtime_apply_comp,
-          VALUES | PROBES | AFFINE | TUBES | SIGHT | OUTDOORS, values },
-        { &p->debug, "debug", &shader_mrt_runtime_debug_comp, AFFINE | TUBES, 0 },
-    };
-    const struct pipeline vector[] = {
-        { &p->reconstruct_vector, "reconstruct_vector", &shader_mrt_runtime_reconstruct_comp, ALL,
-          VECTOR_VALUES },
-        { &p->fill_vector, "fill_vector", &shader_mrt_runtime_fill_comp, VALUES, VECTOR_VALUES },
+          (vector ? VECTOR : VALUES) | PROBES | AFFINE | TUBES | SIGHT | OUTDOORS },
+        { &p->debug, "debug", &shader_mrt_runtime_debug_comp, AFFINE | TUBES },
+        { &p->reconstruct_vector, "reconstruct_vector",
+          vector ? &shader_mrt_runtime_reconstruct_comp : NULL, ALL | VECTOR },
+        { &p->fill_vector, "fill_vector", vector ? &shader_mrt_runtime_fill_comp : NULL, VECTOR },
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        if (!make_pipeline(runtime, input, &all[i])) return false;
-    for (size_t i = 0; runtime->options.vector && i < sizeof vector / sizeof *vector; i++)
-        if (!make_pipeline(runtime, input, &vector[i])) return false;
+        if (!mrt_pipeline_of(runtime, all[i].name, all[i].shader, all[i].constants, all[i].out))
+            return false;
     return true;
 }
 
 static bool make_all(struct mrt_runtime *out, const struct mrt_runtime_input *input)
 {
+    fill_constants(out, input);
     return mrt_tables_upload(out, input) && mrt_lookup_grid_upload(out, input->map) &&
            mrt_probes_upload(out, input) && mrt_outdoors_upload(out, input) &&
            mrt_operators_upload(out, input) && make_buffers(out, input) && make_images(out) &&
-           make_pipelines(out, input) && mrt_clutter_upload(out, input);
+           make_pipelines(out) && mrt_clutter_upload(out, input);
 }
 
 bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
@@ -175,38 +163,10 @@ bool mrt_runtime_init_empty(struct mrt_runtime *out, struct host *host, struct g
     return mrt_probes_make_empty(out);
 }
 
-static void destroy_buffers(struct mrt_runtime *runtime)
-{
-    struct mrt_runtime_buffers *b = &runtime->buffers;
-    gpu_buffer *const buffers[] = {
-        &b->texels,     &b->tiles,      &b->blocks,     &b->openings, &b->borders,  &b->sources,
-        &b->cells,      &b->candidates, &b->t_db,       &b->u_b,      &b->u_r,      &b->t_br,
-        &b->u_b_vector, &b->u_r_vector, &b->unbounced,  &b->direct,   &b->b_direct, &b->reflection,
-        &b->b,          &b->r,          &b->irradiance, &b->vector,
-    };
-    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
-        gpu_buffer_destroy(runtime->gpu, buffers[i]);
-    gpu_image_destroy(runtime->gpu, &b->light_map);
-    gpu_image_destroy(runtime->gpu, &b->vector_map);
-}
-
 void mrt_runtime_finish(struct mrt_runtime *runtime)
 {
-    struct mrt_runtime_pipelines *p = &runtime->pipelines;
-    gpu_pipeline *const pipelines[] = { &p->direct, &p->project,     &p->bounce,
-                                        &p->couple, &p->reconstruct, &p->reconstruct_vector,
-                                        &p->fill,   &p->fill_vector, &p->apply,
-                                        &p->debug };
-    _Static_assert(sizeof pipelines / sizeof *pipelines == sizeof *p / sizeof p->direct,
-                   "each member is listed");
     if (!runtime->gpu) return;
-    destroy_buffers(runtime);
-    mrt_probes_finish(runtime);
-    mrt_outdoors_end(runtime);
-    mrt_clutter_end(runtime);
-    for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
-        gpu_pipeline_destroy(runtime->gpu, pipelines[i]);
-
+    gpu_objects_destroy(runtime->gpu, &runtime->objects, runtime);
     *runtime = (struct mrt_runtime){ 0 };
 }
 

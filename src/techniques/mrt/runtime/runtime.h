@@ -98,6 +98,7 @@ struct mrt_runtime {
     struct mrt_runtime_outdoors outdoors;
     struct mrt_runtime_clutter clutter;
     gpu_sampler linear;
+    struct gpu_objects objects; // all of these
 };
 
 // The input may end with the call, but for map and atlas.

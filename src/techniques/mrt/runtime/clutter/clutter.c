@@ -52,17 +52,6 @@ static bool upload_senders(struct mrt_runtime *runtime, const struct mrt_runtime
     return ok;
 }
 
-static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
-{
-    const struct gpu_constant constants[] = {
-        { MRT_CONSTANT_QUADS_R, mrt_quads(input->k_r) },
-        { MRT_CONSTANT_QUADS_B, mrt_quads(input->k_b) },
-        { MRT_CONSTANT_HALF, runtime->options.half },
-    };
-    return mrt_pipeline_of(runtime, "clutter_couple", &shader_mrt_runtime_clutter_couple_comp,
-                           constants, 3, &runtime->clutter.couple);
-}
-
 bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_clutter *c = &runtime->clutter;
@@ -78,20 +67,11 @@ bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_in
                             &c->reflected[0]) &&
            mrt_table_upload(runtime, input, "clutter_reflected", openings, coefficients, NULL,
                             &c->reflected[1]) &&
-           make_pipelines(runtime, input) && mrt_clutter_map_upload(runtime, input);
-}
-
-void mrt_clutter_end(struct mrt_runtime *runtime)
-{
-    struct mrt_runtime_clutter *c = &runtime->clutter;
-    gpu_buffer *const buffers[] = { &c->texels,       &c->groups,      &c->faces,   &c->samples,
-                                    &c->albedo,       &c->coupling,    &c->senders, &c->direct,
-                                    &c->reflected[0], &c->reflected[1] };
-    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
-        gpu_buffer_destroy(runtime->gpu, buffers[i]);
-    gpu_pipeline_destroy(runtime->gpu, &c->light);
-    gpu_pipeline_destroy(runtime->gpu, &c->couple);
-    mrt_clutter_map_end(runtime);
+           mrt_pipeline_of(runtime, "clutter_couple", &shader_mrt_runtime_clutter_couple_comp,
+                           1u << MRT_CONSTANT_QUADS_R | 1u << MRT_CONSTANT_QUADS_B |
+                               1u << MRT_CONSTANT_HALF,
+                           &c->couple) &&
+           mrt_clutter_map_upload(runtime, input);
 }
 
 // ---- pass

@@ -3,16 +3,14 @@
 
 #include "techniques/mrt/runtime/runtime.h"
 
-// Without clutter of the input nothing is created. mrt_clutter_end accepts zero.
+// Without clutter of the input nothing is created.
 bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
-void mrt_clutter_end(struct mrt_runtime *runtime);
 // ---- direct.c: direct light of its faces
 // Which of the openings that are clutter.
 uint32_t mrt_clutter_of_opening(const struct mrt_clutter_input *clutter, int opening);
 bool mrt_clutter_direct_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
 // ---- map.c: its light map
 bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
-void mrt_clutter_map_end(struct mrt_runtime *runtime);
 
 // Radiosity of direct light of the faces; runtime->level has the parameters of direct light.
 void mrt_record_clutter_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,

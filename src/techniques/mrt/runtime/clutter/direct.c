@@ -132,8 +132,7 @@ static void fill_samples(const struct mrt_runtime_input *input, void *items)
 bool mrt_clutter_direct_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_clutter *c = &runtime->clutter;
-    const struct gpu_constant quads = { MRT_CONSTANT_QUADS_R, mrt_quads(input->k_r) };
-    const size_t coefficients = 12 * (size_t)quads.value * sizeof(float);
+    const size_t coefficients = 12 * (size_t)mrt_quads(input->k_r) * sizeof(float);
     c->group_count = groups_of(input->clutter);
     return mrt_table_upload(runtime, input, "clutter_texels", (size_t)input->clutter->texel_count,
                             sizeof(struct mrt_texel), fill_texels, &c->texels) &&
@@ -147,7 +146,7 @@ bool mrt_clutter_direct_upload(struct mrt_runtime *runtime, const struct mrt_run
            mrt_table_upload(runtime, input, "clutter_direct", (size_t)input->clutter->opening_count,
                             coefficients, NULL, &c->direct) &&
            mrt_pipeline_of(runtime, "clutter_direct", &shader_mrt_runtime_clutter_direct_comp,
-                           &quads, 1, &c->light);
+                           1u << MRT_CONSTANT_QUADS_R, &c->light);
 }
 
 // ---- pass

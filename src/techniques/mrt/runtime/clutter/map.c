@@ -153,10 +153,10 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
     const struct mrt_clutter_atlas_input *from = &input->clutter->map;
     struct mrt_runtime_clutter_map *map = &runtime->clutter.map;
     if (from->count == 0) return true;
-    const struct gpu_constant backs = { LIGHT_MAP_HAS_BACKS,
-                                        light_map_sides(&from->clutter->charts) == 2 };
     const size_t tiles = tiles_of(from),
                  instances = (size_t)from->clutter->walls.scene.instance_count;
+    runtime->objects.constants[MRT_CONSTANT_ROW_BACKS] =
+        (struct gpu_constant){ LIGHT_MAP_HAS_BACKS, light_map_sides(&from->clutter->charts) == 2 };
     map->tile_count = (uint32_t)tiles;
     map->surfaces.count = (uint32_t)instances;
     map->fill_push.places = list_places(from, NULL);
@@ -174,24 +174,10 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
            mrt_buffer_of(runtime, "clutter_light", NULL, tiles * MRT_LOCAL * VALUES * VEC3_BYTES,
                          &map->light) &&
            make_image(runtime, &from->clutter->charts) &&
-           mrt_pipeline_of(runtime, "clutter_fill", &shader_mrt_runtime_clutter_fill_comp, NULL, 0,
+           mrt_pipeline_of(runtime, "clutter_fill", &shader_mrt_runtime_clutter_fill_comp, 0,
                            &map->fill) &&
-           mrt_pipeline_of(runtime, "clutter_apply", &shader_mrt_runtime_clutter_apply_comp, &backs,
-                           1, &map->apply);
-}
-
-void mrt_clutter_map_end(struct mrt_runtime *runtime)
-{
-    struct mrt_runtime_clutter_map *m = &runtime->clutter.map;
-    gpu_buffer *const buffers[] = {
-        &m->tiles,          &m->openings,          &m->u_b, &m->u_r, &m->light, &m->places,
-        &m->surfaces.first, &m->surfaces.triangles
-    };
-    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
-        gpu_buffer_destroy(runtime->gpu, buffers[i]);
-    gpu_image_destroy(runtime->gpu, &m->image);
-    gpu_pipeline_destroy(runtime->gpu, &m->fill);
-    gpu_pipeline_destroy(runtime->gpu, &m->apply);
+           mrt_pipeline_of(runtime, "clutter_apply", &shader_mrt_runtime_clutter_apply_comp,
+                           1u << MRT_CONSTANT_ROW_BACKS, &map->apply);
 }
 
 // ---- passes
