@@ -12,6 +12,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #define OPTION(...) OPTION_ROW(struct dnrt_options, __VA_ARGS__)
 static const struct option_row option_rows[] = {
@@ -66,48 +67,50 @@ static bool create(void *state, const struct technique_create *how)
            dnrt_find_objects(s, how->pose);
 }
 
-static bool make_apply_pipelines(struct dnrt *s, const struct gpu_constant constants[2])
-{
-    const struct gpu_shader *const shaders[2][2] = {
-        { &shader_dnrt_apply_plain_comp, &shader_dnrt_apply_plain_maps_comp },
-        { &shader_dnrt_apply_id_comp, &shader_dnrt_apply_id_maps_comp },
-    };
-    const int maps = s->options.intrusion == DNRT_INTRUSION_SHADOW;
-    for (int id = 0; id < 2; id++)
-        if (!gpu_compute_pipeline_create(s->gpu, "apply", shaders[id][maps], constants, 2,
-                                         &s->apply_pipeline[id][maps]))
-            return false;
-    return !maps || shadow_casters_init(&s->casters, s->gpu);
-}
+#define MEMBER(thing) offsetof(struct dnrt, thing)
 
-static bool make_pipelines(struct dnrt *s)
+static void objects(const void *options, int view, uint32_t width, uint32_t height,
+                    struct gpu_objects *out)
 {
+    const struct dnrt_options *o = options;
+    const bool maps = o->intrusion == DNRT_INTRUSION_SHADOW;
     const struct gpu_constant constants[] = {
-        { 0, s->options.grid == DNRT_GRID_QUADRATIC },   { 1, (uint32_t)dnrt_normals(&s->options) },
-        { 2, (uint32_t)dnrt_coefficients(&s->options) }, { 3, s->options.bits == DNRT_BITS_8 },
-        { 4, (uint32_t)dnrt_planes(&s->options) },
+        { 0, o->grid == DNRT_GRID_QUADRATIC }, { 1, (uint32_t)dnrt_normals(o) },
+        { 2, (uint32_t)dnrt_coefficients(o) }, { 3, o->bits == DNRT_BITS_8 },
+        { 4, (uint32_t)dnrt_planes(o) },
     };
-    const struct gpu_constant of_self[] = { constants[2], constants[4] };
-    return gpu_compute_pipeline_create(s->gpu, "light", &shader_dnrt_light_grid_comp, NULL, 0,
-                                       &s->light_pipeline[0]) &&
-           gpu_compute_pipeline_create(s->gpu, "light", &shader_dnrt_light_seen_comp, NULL, 0,
-                                       &s->light_pipeline[1]) &&
-           gpu_compute_pipeline_create(s->gpu, "bounce", &shader_dnrt_bounce_comp, constants, 5,
-                                       &s->bounce_pipeline) &&
-           gpu_compute_pipeline_create(s->gpu, "volumes", &shader_dnrt_volumes_comp, constants + 1,
-                                       4, &s->volumes_pipeline) &&
-           (!s->options.direct ||
-            gpu_compute_pipeline_create(s->gpu, "lamps", &shader_dnrt_lamps_comp, NULL, 0,
-                                        &s->lamps_pipeline)) &&
-           (!s->options.self || gpu_compute_pipeline_create(s->gpu, "self", &shader_dnrt_self_comp,
-                                                            of_self, 2, &s->self_pipeline)) &&
-           make_apply_pipelines(s, constants);
+    (void)view, (void)width, (void)height;
+    memcpy(out->constants, constants, sizeof constants);
+#define PIPELINE(name, thing, when, shader_, bits)                                                 \
+    { GPU_PIPELINE, name, MEMBER(thing), .consts = (bits),                                         \
+      .shader = (when) ? &shader_dnrt_##shader_##_comp : NULL }
+    GPU_ADD(out, 0, PIPELINE("light", light_pipeline[0], true, light_grid, 0),
+            PIPELINE("light", light_pipeline[1], true, light_seen, 0),
+            PIPELINE("bounce", bounce_pipeline, true, bounce, 31),
+            PIPELINE("volumes", volumes_pipeline, true, volumes, 30),
+            PIPELINE("lamps", lamps_pipeline, o->direct, lamps, 0),
+            PIPELINE("self", self_pipeline, o->self, self, 1u << 2 | 1u << 4),
+            PIPELINE("apply", apply_pipeline[0][0], !maps, apply_plain, 3),
+            PIPELINE("apply", apply_pipeline[0][1], maps, apply_plain_maps, 3),
+            PIPELINE("apply", apply_pipeline[1][0], !maps, apply_id, 3),
+            PIPELINE("apply", apply_pipeline[1][1], maps, apply_id_maps, 3),
+            { GPU_SAMPLER, "volumes", .member = MEMBER(linear) },
+            { GPU_BUFFER, "changed", MEMBER(changed), .bytes = sizeof(struct dnrt_changed),
+              .usage = GPU_BUFFER_INDIRECT });
+    // Their sizes are those of the bake and of the scene.
+    GPU_ADD(out, 0, { GPU_BUFFER, .member = MEMBER(shapes) },
+            { GPU_BUFFER, .member = MEMBER(samples) },
+            { GPU_BUFFER, .member = MEMBER(patch_buffer) },
+            { GPU_BUFFER, .member = MEMBER(point_buffer) }, { GPU_BUFFER, .member = MEMBER(light) },
+            { GPU_IMAGE, .member = MEMBER(image) }, { GPU_IMAGE, .member = MEMBER(map_image) });
 }
 
 static bool load(void *state, const struct tensors *bake)
 {
     struct dnrt *s = state;
-    return s->baked.count == 0 || (dnrt_upload(s, bake) && make_pipelines(s));
+    return s->baked.count == 0 ||
+           (dnrt_upload(s, bake) && (s->options.intrusion != DNRT_INTRUSION_SHADOW ||
+                                     shadow_casters_init(&s->casters, s->gpu)));
 }
 
 static void set_options(void *state, const void *options)
@@ -340,19 +343,6 @@ static void destroy(void *state)
 {
     struct dnrt *s = state;
     if (!s->host) return;
-    gpu_pipeline *const pipelines[] = { &s->light_pipeline[0],    &s->light_pipeline[1],
-                                        &s->bounce_pipeline,      &s->volumes_pipeline,
-                                        &s->lamps_pipeline,       &s->self_pipeline,
-                                        &s->apply_pipeline[0][0], &s->apply_pipeline[0][1],
-                                        &s->apply_pipeline[1][0], &s->apply_pipeline[1][1] };
-    gpu_buffer *const buffers[] = { &s->shapes,  &s->samples,      &s->light,
-                                    &s->changed, &s->patch_buffer, &s->point_buffer };
-    for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
-        gpu_pipeline_destroy(s->gpu, pipelines[i]);
-    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
-        gpu_buffer_destroy(s->gpu, buffers[i]);
-    gpu_image_destroy(s->gpu, &s->image);
-    gpu_image_destroy(s->gpu, &s->map_image);
     shadow_casters_finish(&s->casters);
     host_free(s->host, s->maps);
     host_free(s->host, s->patches);
@@ -390,6 +380,7 @@ const struct technique technique_dnrt = {
     .presets = presets,
     .state_size = sizeof(struct dnrt),
     .bake = dnrt_bake,
+    .objects = objects,
     .create = create,
     .load = load,
     .resize = resize,

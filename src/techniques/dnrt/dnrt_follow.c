@@ -26,12 +26,6 @@ static bool make_image(struct dnrt *s)
                                          .height = size * (uint32_t)n[1],
                                          .depth = size * (uint32_t)n[2],
                                          .usage = GPU_SAMPLED | GPU_STORAGE };
-    const struct gpu_sampler_desc linear = { .name = "volumes",
-                                             .filter = GPU_LINEAR,
-                                             .mip_filter = GPU_NEAREST,
-                                             .wrap_u = GPU_CLAMP,
-                                             .wrap_v = GPU_CLAMP,
-                                             .wrap_w = GPU_CLAMP };
     const size_t entries = (size_t)(n[0] * n[1] * n[2]) * DNRT_COEFFICIENTS * DNRT_LIGHT_PARTS;
     const struct gpu_buffer_desc light = { "light", entries * sizeof(vec3s), GPU_BUFFER_STORAGE };
     s->stale = true;
@@ -40,7 +34,6 @@ static bool make_image(struct dnrt *s)
     gpu_buffer_destroy(s->gpu, &s->light);
     for (int i = 0; i < 3; i++) s->slots[i] = n[i];
     return gpu_image_create(s->gpu, &desc, &s->image) &&
-           gpu_sampler_get(s->gpu, &linear, &s->linear) &&
            gpu_buffer_create(s->gpu, &light, &s->light);
 }
 

@@ -109,17 +109,14 @@ static bool fits(struct dnrt *s, size_t bytes)
 }
 
 // The number of workgroups for each object does not change.
-static bool make_changed(struct dnrt *s)
+static bool upload_changed(struct dnrt *s)
 {
     enum { SAMPLES = 4 }; // of an invocation
     const uint32_t n = (uint32_t)dnrt_size(&s->options);
     const struct dnrt_changed changed = { .groups_x = gpu_groups(n * n * n / SAMPLES, DNRT_LOCAL),
                                           .groups_z = 1 };
-    const struct gpu_buffer_desc desc = { "changed", sizeof changed,
-                                          GPU_BUFFER_STORAGE | GPU_BUFFER_INDIRECT };
     s->stale = true;
-    return gpu_buffer_create(s->gpu, &desc, &s->changed) &&
-           gpu_buffer_upload(s->gpu, s->changed, 0, &changed, sizeof changed);
+    return gpu_buffer_upload(s->gpu, s->changed, 0, &changed, sizeof changed);
 }
 
 bool dnrt_upload(struct dnrt *s, const struct tensors *bake)
@@ -131,7 +128,7 @@ bool dnrt_upload(struct dnrt *s, const struct tensors *bake)
     if (!fits(s, count * content.shape_bytes)) return false;
     content.shapes = host_alloc(s->host, count, sizeof *content.shapes);
     content.samples = host_alloc(s->host, count, content.shape_bytes);
-    const bool ok = take_shapes(s, bake, &content) && make_changed(s) &&
+    const bool ok = take_shapes(s, bake, &content) && upload_changed(s) &&
                     (!s->options.self || dnrt_upload_self(s, bake));
     host_free(s->host, content.shapes);
     host_free(s->host, content.samples);
