@@ -1,6 +1,6 @@
 // The probe volume (frame/probes.glsl and common/probes/lookup.glsl): irradiance from the clusters,
-// the sky and emissive surfaces, bands 0 to 2. Cells without a probe outside of geometry show the
-// light of another one.
+// the sky and emissive surfaces, bands 0 to 2. Cells without a probe outside of geometry have the
+// tables of another one.
 //
 // A row's entry has a share w of the sphere and the mean m of its directions. Its light w B/π · 4π
 // has Y(m) in band 1; band 2, of second degree, falls with |m|³ where |m| is that of band 1, as in
@@ -23,21 +23,17 @@ layout(push_constant, scalar) uniform push_block
 {
     radiosity_probe_gather_push push;
 };
-layout(set = 0, binding = 1, scalar) readonly buffer probe_owners
-{
-    uint owner_table[]; // the probe whose light each one shows
-};
-layout(set = 0, binding = 2, scalar) readonly buffer probe_table
+layout(set = 0, binding = 1, scalar) readonly buffer probe_table
 {
     radiosity_gpu_probe probes[];
 };
 // [entry][probe]: node; share of the sphere and x, y and z of the mean direction (halves).
-layout(set = 0, binding = 3, scalar) readonly buffer probe_factors
+layout(set = 0, binding = 2, scalar) readonly buffer probe_factors
 {
     uvec3 factor_table[];
 };
-layout(set = 0, binding = 4) uniform usampler2D radiosity_sent;
-layout(set = 0, binding = 5, rgba16f) uniform writeonly image3D volume;
+layout(set = 0, binding = 3) uniform usampler2D radiosity_sent;
+layout(set = 0, binding = 4, rgba16f) uniform writeonly image3D volume;
 
 vec3 coefficients[9];
 
@@ -62,19 +58,18 @@ void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.probes) return;
-    uint owner = owner_table[i];
     float emitters = push.emitters * frame.radiance_scale;
     for (int c = 0; c < 9; c++) coefficients[c] = vec3(0.0);
     for (uint k = 0; k < push.entries; k++) {
-        uvec3 word = factor_table[k * push.probes + owner];
+        uvec3 word = factor_table[k * push.probes + i];
         if ((word.y & 0xffffu) == 0u) break; // rows end with zeros
         add_entry(word);
     }
     for (int c = 0; c < 9; c++) coefficients[c] *= sh9_cosine_weight(c);
     for (int c = 0; c < 9; c++) {
-        vec3 emitted = vec3(probes[owner].emitted[3 * c], probes[owner].emitted[3 * c + 1],
-                            probes[owner].emitted[3 * c + 2]);
-        coefficients[c] += probes[owner].sky[c] * environment_mean() + emitters * emitted;
+        vec3 emitted = vec3(probes[i].emitted[3 * c], probes[i].emitted[3 * c + 1],
+                            probes[i].emitted[3 * c + 2]);
+        coefficients[c] += probes[i].sky[c] * environment_mean() + emitters * emitted;
         coefficients[c] = clamp(coefficients[c], -HALF_MAX, HALF_MAX);
     }
     ivec3 at = probes_cell(push.grid, int(i));

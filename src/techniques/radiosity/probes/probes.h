@@ -6,8 +6,8 @@
 
 struct radiosity_probes {
     struct probe_volume volume;
-    uint32_t count, entries;           // entries: of a row
-    gpu_buffer owners, table, factors; // of probes
+    uint32_t count, entries;   // entries: of a row
+    gpu_buffer table, factors; // of probes
     gpu_pipeline gather, apply_some, apply_all;
     gpu_sampler linear;
     bool fresh; // the volume has the light of the newest update

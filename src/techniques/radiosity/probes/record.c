@@ -12,8 +12,7 @@ void radiosity_probes_record_gather(struct radiosity_probes *p, struct gpu_cmd *
                                                       emitters ? 1.0f : 0.0f };
     gpu_scope_begin(cmd, "probes");
     gpu_dispatch(cmd, p->gather,
-                 GPU_BIND(view->constants_binding, { .name = "probe_owners", .buffer = p->owners },
-                          { .name = "probe_table", .buffer = p->table },
+                 GPU_BIND(view->constants_binding, { .name = "probe_table", .buffer = p->table },
                           { .name = "probe_factors", .buffer = p->factors },
                           { .name = "radiosity_sent", .image = radiosity },
                           { .name = "volume", .image = p->volume.image }),

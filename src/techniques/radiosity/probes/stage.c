@@ -1,13 +1,136 @@
 #include "techniques/radiosity/probes/stage.h"
 
 #include "core/half.h"
-#include "techniques/radiosity/probes/bake.h"
+#include "core/rng.h"
+#include "core/sh.h"
+#include "techniques/common/probes/rays.h"
 #include "techniques/radiosity/radiosity_tensors.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { PROBES_PER_TASK = 32 };
 enum { OUT_SOURCE, OUT_FACTOR, OUT_PLACE, OUT_SKY, OUT_EMITTED, OUT_DEPTH, OUT_COUNT };
+
+enum { RADIOSITY_SH = 9 };
+
+struct probe {
+    vec3s position;                 // moved out of geometry, within its cell
+    float valid;                    // 1; 0: all of the cell is inside of something
+    float sky[RADIOSITY_SH];        // irradiance of a sky of radiance 1, Σ c_i Y_i
+    float emitted[RADIOSITY_SH][3]; // of emissive surfaces, lux
+    uint16_t depth[PROBE_DEPTHS][2];
+};
+
+static void add_sh(vec3s direction, float weight, float *sum, int stride)
+{
+    float basis[RADIOSITY_SH];
+    sh_eval(3, direction, basis);
+    for (int i = 0; i < RADIOSITY_SH; i++) sum[i * stride] += weight * basis[i];
+}
+
+// From radiance to irradiance.
+static void finish_sh(float *sh, int stride)
+{
+    float radiance[RADIOSITY_SH], irradiance[RADIOSITY_SH];
+    for (int i = 0; i < RADIOSITY_SH; i++) radiance[i] = sh[i * stride];
+    sh_irradiance(3, radiance, irradiance);
+    for (int i = 0; i < RADIOSITY_SH; i++) sh[i * stride] = irradiance[i];
+}
+
+static void add_emission(struct probe *out, vec3s direction, vec3s radiance, float density)
+{
+    for (int c = 0; c < 3; c++)
+        add_sh(direction, radiance.raw[c] / density, &out->emitted[0][c], 3);
+}
+
+static void add_cluster(struct radiosity_gather *gather, uint32_t cluster, vec3s direction,
+                        float share)
+{
+    struct radiosity_factor *factor = &gather->factor[cluster];
+    if (factor->weight == 0.0f) gather->met[gather->met_count++] = cluster;
+    factor->weight += share;
+    for (int a = 0; a < 3; a++) factor->along[a] += share * direction.raw[a];
+}
+
+// Light that reaches a probe, by rays in equal squares of the octahedral map, each with its solid
+// angle: `gather` has the share of the sphere in which a cluster is seen, and its directions.
+struct job {
+    const struct radiosity_scene *scene;
+    struct probe_sphere sphere;
+    uint32_t light_samples; // 0: no emissive surfaces
+    uint32_t seed;
+    struct radiosity_gather *gather; // NULL: what rays meet does not count
+    struct probe *out;
+};
+
+static void add_seen(const struct job *job, const struct probe_ray *ray,
+                     const struct texel_seen *seen, uint32_t cluster)
+{
+    if (glms_vec3_max(seen->emission) > 0.0f)
+        add_emission(job->out, ray->direction, seen->emission,
+                     1.0f / ray->solid_angle + (float)job->light_samples * seen->pdf);
+    if (cluster != CHART_NONE)
+        add_cluster(job->gather, cluster, ray->direction, ray->solid_angle / (4.0f * GLM_PIf));
+}
+
+static float trace_ray(void *user, const struct probe_ray *from, bool *inside)
+{
+    const struct job *job = user;
+    const struct ray ray = { from->from, from->direction, 0.0f, INFINITY };
+    struct ray_hit hit;
+    *inside = false;
+    if (!embree_closest(job->scene->trace->embree, &ray, NULL, false, &hit)) {
+        if (job->gather) add_sh(ray.direction, from->solid_angle, job->out->sky, 1);
+        return INFINITY;
+    }
+    const struct texel_seen seen = texel_seen_at(job->scene->trace, &ray, &hit);
+    *inside = seen.inside;
+    if (job->gather) add_seen(job, from, &seen, radiosity_cluster_at(job->scene, &hit, &seen));
+    return hit.distance;
+}
+
+static void sample_emitters(const struct job *job)
+{
+    const float across = 2.0f / (float)job->sphere.side;
+    for (uint32_t k = 0; k < job->light_samples; k++) {
+        struct emitter_sample s;
+        if (!texel_sample_emitter(job->scene->trace, job->out->position, NULL, k,
+                                  job->light_samples, job->seed, &s))
+            continue;
+        const vec3s d = s.to_light;
+        const float norm = glms_vec3_norm_one(d);
+        const float solid_angle = job->sphere.scale * norm * norm * norm * across * across;
+        add_emission(job->out, d, s.radiance,
+                     1.0f / solid_angle + (float)job->light_samples * s.pdf);
+    }
+}
+
+static void gather_probe(const struct radiosity_scene *scene, struct frame_probes grid,
+                         uint32_t probe, uint64_t seed, struct radiosity_gather *gather,
+                         struct probe *out)
+{
+    const int rays = 2 * scene->options.rays;
+    struct job job = { .scene = scene,
+                       .sphere = probe_sphere_of(rays),
+                       .light_samples = (uint32_t)texel_light_samples(scene->trace, rays),
+                       .seed = (uint32_t)rng_mix(seed ^ (uint64_t)probe << 32),
+                       .out = out };
+    const struct probe_tracer tracer = { trace_ray, &job };
+    *out = (struct probe){ .valid = 1.0f };
+    radiosity_gather_clear(gather);
+    if (!probe_find_place(&tracer, probe_grid_point(grid, probe), grid.spacing_m, &out->position)) {
+        out->valid = 0.0f;
+        return;
+    }
+    job.gather = gather;
+    probe_trace_depths(&job.sphere, &tracer, out->position, grid.spacing_m, out->depth);
+    sample_emitters(&job);
+    finish_sh(out->sky, 1);
+    for (int c = 0; c < 3; c++) finish_sh(&out->emitted[0][c], 3);
+}
+
+// ---- the stage
 
 bool radiosity_probe_plan(struct bake_plan *plan, struct frame_probes grid,
                           const struct radiosity_options *options,
@@ -56,8 +179,7 @@ static void write_row(const struct bake_task *task, uint64_t i, uint64_t most,
     }
 }
 
-static void write_probe(const struct bake_task *task, uint64_t i,
-                        const struct radiosity_probe *probe)
+static void write_probe(const struct bake_task *task, uint64_t i, const struct probe *probe)
 {
     float *place = (float *)task->out[OUT_PLACE] + 4 * i;
     memcpy(place, probe->position.raw, sizeof probe->position.raw);
@@ -76,10 +198,9 @@ bool radiosity_probe_run(const struct bake_task *task, const struct radiosity_sc
     const uint64_t most = 2 * (uint64_t)scene->options.sources;
     uint64_t count, first = bake_task_rows(task, OUT_SOURCE, &count);
     for (uint64_t i = 0; i < count; i++) {
-        struct radiosity_probe probe;
+        struct probe probe;
         if (bake_task_cancelled(task)) return false;
-        radiosity_probe_gather(scene, grid, (uint32_t)(first + i), task->bake_seed, room->gather,
-                               &probe);
+        gather_probe(scene, grid, (uint32_t)(first + i), task->bake_seed, room->gather, &probe);
         const uint32_t entries = radiosity_make_row(room->rows, room->gather, (uint32_t)most,
                                                     task->bake_seed ^ (first + i) << 32, room->row);
         write_row(task, i, most, room->row, entries);

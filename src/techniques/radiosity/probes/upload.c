@@ -24,6 +24,7 @@ struct upload {
     struct host *host;
     struct gpu *gpu;
     struct content from;
+    uint32_t *owner; // of each probe: the one whose light it shows
 };
 
 static bool find_tensors(struct upload *u, const struct tensors *bake)
@@ -65,12 +66,6 @@ static bool upload(const struct upload *u, const char *name, void *items, size_t
 
 // ---- tables
 
-static bool upload_owners(const struct upload *u)
-{
-    uint32_t *owners = probe_owners(u->host, u->to->volume.grid, u->from.place);
-    return upload(u, "probe_owners", owners, u->to->count * sizeof *owners, &u->to->owners);
-}
-
 static bool upload_table(const struct upload *u)
 {
     const size_t count = u->to->count;
@@ -78,8 +73,9 @@ static bool upload_table(const struct upload *u)
     struct radiosity_gpu_probe *table = host_alloc(u->host, count, sizeof *table);
     for (uint32_t i = 0; table && i < count; i++) {
         table[i].place = probe_offset(grid, i, u->from.place[i]);
-        memcpy(table[i].sky, u->from.sky + SH * (size_t)i, sizeof table[i].sky);
-        memcpy(table[i].emitted, u->from.emitted + 3 * SH * (size_t)i, sizeof table[i].emitted);
+        memcpy(table[i].sky, u->from.sky + SH * (size_t)u->owner[i], sizeof table[i].sky);
+        memcpy(table[i].emitted, u->from.emitted + 3 * SH * (size_t)u->owner[i],
+               sizeof table[i].emitted);
     }
     return upload(u, "probe_table", table, count * sizeof *table, &u->to->table);
 }
@@ -91,9 +87,10 @@ static bool upload_factors(const struct upload *u)
     uint32_t(*words)[3] = host_alloc(u->host, count * entries, sizeof *words);
     for (size_t i = 0; words && i < count; i++)
         for (size_t k = 0; k < entries; k++) {
-            const uint16_t *factor = u->from.factor + 4 * (i * entries + k);
+            const size_t from = u->owner[i] * entries + k;
+            const uint16_t *factor = u->from.factor + 4 * from;
             uint32_t *word = words[k * count + i];
-            word[0] = u->from.source[i * entries + k];
+            word[0] = u->from.source[from];
             word[1] = factor[0] | (uint32_t)factor[1] << 16;
             word[2] = factor[2] | (uint32_t)factor[3] << 16;
         }
@@ -149,16 +146,19 @@ bool radiosity_probes_init(struct radiosity_probes *out, const struct radiosity_
     out->volume.grid = radiosity_probe_grid(how->map, how->options);
     out->count = probe_grid_count(out->volume.grid);
     struct upload u = { .to = out, .host = how->host, .gpu = how->gpu };
-    return find_tensors(&u, bake) && check_sources(&u, how->map->tree.count) && upload_owners(&u) &&
-           upload_table(&u) && upload_factors(&u) && make_images(&u) &&
-           make_pipelines(&u, how->options->specular);
+    const bool ok = find_tensors(&u, bake) && check_sources(&u, how->map->tree.count) &&
+                    (u.owner = probe_owners(u.host, out->volume.grid, u.from.place)) &&
+                    upload_table(&u) && upload_factors(&u) && make_images(&u) &&
+                    make_pipelines(&u, how->options->specular);
+    host_free(u.host, u.owner);
+    return ok;
 }
 
 void radiosity_probes_finish(struct radiosity_probes *p, struct gpu *gpu)
 {
-    gpu_buffer *const buffers[] = { &p->owners, &p->table, &p->factors };
+    gpu_buffer *const buffers[] = { &p->table, &p->factors };
     gpu_pipeline *const pipelines[] = { &p->gather, &p->apply_some, &p->apply_all };
-    for (int i = 0; i < 3; i++) gpu_buffer_destroy(gpu, buffers[i]);
+    for (int i = 0; i < 2; i++) gpu_buffer_destroy(gpu, buffers[i]);
     for (int i = 0; i < 3; i++) gpu_pipeline_destroy(gpu, pipelines[i]);
     gpu_image_destroy(gpu, &p->volume.image);
     gpu_image_destroy(gpu, &p->volume.depth);
@@ -167,6 +167,6 @@ void radiosity_probes_finish(struct radiosity_probes *p, struct gpu *gpu)
 uint64_t radiosity_probes_memory(const struct radiosity_options *options)
 {
     const uint64_t probes = radiosity_probes_most(options);
-    return probes * (sizeof(struct radiosity_gpu_probe) + 4 + 24 * (uint64_t)options->sources +
+    return probes * (sizeof(struct radiosity_gpu_probe) + 24 * (uint64_t)options->sources +
                      PROBE_VOLUME_BYTES);
 }
