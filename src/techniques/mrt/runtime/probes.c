@@ -95,27 +95,17 @@ static bool upload_tables(struct mrt_runtime *runtime, const struct mrt_runtime_
 
 // ---- images
 
-static bool make_image(struct mrt_runtime *runtime, const char *name, uint32_t width,
-                       uint32_t height, uint32_t depth, gpu_image *out)
-{
-    const struct gpu_image_desc desc = { .name = name,
-                                         .dimension = GPU_3D,
-                                         .format = GPU_RGBA16F,
-                                         .width = width,
-                                         .height = height,
-                                         .depth = depth,
-                                         .usage = GPU_SAMPLED | GPU_STORAGE };
-    return mrt_image_of(runtime, &desc, out);
-}
-
 static bool make_bricks(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
-    const uint32_t blocks = (uint32_t)input->map->count, edge = (uint32_t)input->probes + 2;
-    const uint32_t columns = (uint32_t)ceil(sqrt((double)blocks));
-    runtime->level.brick_columns = columns;
+    const int blocks = input->map->count, edge = input->probes + 2;
+    const int columns = (int)ceil(sqrt((double)blocks));
+    const struct frame_probes bricks = { .count_x = columns * edge,
+                                         .count_y = (blocks + columns - 1) / columns * edge,
+                                         .slab = edge };
+    const struct gpu_image_desc desc = probe_volume_desc("bricks", bricks, FRAME_PROBE_SLABS);
+    runtime->level.brick_columns = (uint32_t)columns;
     runtime->level.probes = (uint32_t)input->probes;
-    return make_image(runtime, "bricks", columns * edge, (blocks + columns - 1) / columns * edge,
-                      FRAME_PROBE_SLABS * edge, &runtime->probes.bricks);
+    return mrt_image_of(runtime, &desc, &runtime->probes.bricks);
 }
 
 _Static_assert(MRT_VOXEL_PROBES == MRT_SIGHT_PROBES && MRT_VOXEL_OPEN == MRT_SIGHT_OPEN &&
@@ -147,7 +137,8 @@ bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inp
     if (!mrt_buffer_of(runtime, "probe_sight", input->sight,
                        input->sight ? input->sight_count * sizeof *input->sight : 0, &p->sight))
         return false;
-    if (!runtime->options.probes) return make_image(runtime, "bricks", 1, 1, 1, &p->bricks);
+    const struct gpu_image_desc none = probe_volume_desc("bricks", probe_grid_of_one(), 1);
+    if (!runtime->options.probes) return mrt_image_of(runtime, &none, &p->bricks);
     const size_t rows = (size_t)input->map->count * rows_of_block(input);
     const size_t texels = (size_t)input->atlas->texels, triple = 3 * sizeof(float);
     return upload_tables(runtime, input) &&
