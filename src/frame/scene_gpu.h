@@ -25,8 +25,8 @@ struct scene_draw {
     bool mirrored;      // the transform reverses the winding order in this frame
     bool dynamic;       // expected to move (scene/statics.h), or has moved since the scene was set
     bool left;          // movable, and neither sends nor occludes a source's light: a delta does
-    bool moved;         // since the previous frame: its vertices, or its alpha test
-    bool recolored;     // its material, or `left`, changed since the previous frame
+    bool moved;         // since the previous frame: its vertices, its alpha test, or `left`
+    bool recolored;     // its material changed since the previous frame
     bool reshaped;      // its mesh has other vertices than in the previous frame
     bool movable;       // expected to move
     bool seen;          // in an earlier frame

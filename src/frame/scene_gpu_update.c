@@ -67,11 +67,10 @@ static void mark_changes(struct scene_gpu *s)
         struct scene_draw *draw = &s->draws[i];
         draw->moved = false;
         draw->reshaped = s->scene->meshes[draw->mesh].revision > s->uploaded;
+        draw->recolored = s->scene->materials[draw->material].revision > s->uploaded;
         const bool left = s->leaves_dynamic && draw->movable;
-        draw->recolored =
-            s->scene->materials[draw->material].revision > s->uploaded || left != draw->left;
+        if (draw->reshaped || left != draw->left) mark_moved(s, draw);
         draw->left = left;
-        if (draw->reshaped) mark_moved(s, draw);
         if (!draw->recolored) continue;
         s->recolored = true;
         s->static_set += !draw->dynamic;

@@ -291,6 +291,23 @@ TEST_GPU(changes_are_reported_once)
     fixture_finish(&s);
 }
 
+// A delta that takes over dynamic objects changes the light of the source without them.
+TEST_GPU(objects_that_a_delta_takes_over_have_moved)
+{
+    struct frame_fixture s;
+    begin(&s, gpu);
+    struct changes c;
+    s.scene->instances[1].movable = true;
+    s.indirect = (struct frame_indirect){ .record = store_changes, .user = &c, .needs = 0 };
+    fixture_open(&s);
+    for (int i = 0; i < 6; i++) {
+        s.indirect.needs = i / 2 % 2 ? FRAME_LEAVES_DYNAMIC : 0;
+        fixture_render(&s);
+        CHECK(c.moved == (i % 2 == 0) && c.lights == (i == 0));
+    }
+    fixture_finish(&s);
+}
+
 TEST_GPU(the_hash_of_light_is_of_lights_sky_and_shadow_filter)
 {
     struct frame_fixture s;
