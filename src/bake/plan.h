@@ -117,6 +117,8 @@ static inline uint64_t bake_rows(uint64_t total, size_t index, size_t count, uin
 }
 // The rows of output `output` that this task fills, and their number.
 uint64_t bake_task_rows(const struct bake_task *task, int output, uint64_t *rows);
+// Row `row` of those, from 0.
+void *bake_row(const struct bake_task *task, int output, uint64_t row);
 // A tensor of an earlier wave. NULL (host_fail) where no earlier wave makes it, or its `keep` has
 // passed.
 const struct tensor *bake_task_input(const struct bake_task *task, const char *name);

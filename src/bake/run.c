@@ -138,6 +138,14 @@ uint64_t bake_task_rows(const struct bake_task *task, int output, uint64_t *rows
     return bake_rows(output_rows(&task->outputs[output]), task->index, task->count, rows);
 }
 
+void *bake_row(const struct bake_task *task, int output, uint64_t row)
+{
+    const struct bake_output *of = &task->outputs[output];
+    size_t bytes = tensor_type_bytes(of->type);
+    for (int axis = 1; axis < of->rank; axis++) bytes *= (size_t)of->shape[axis];
+    return (uint8_t *)task->out[output] + row * bytes;
+}
+
 bool bake_task_cancelled(const struct bake_task *task)
 {
     return atomic_load(&task->run->stop);

@@ -39,8 +39,8 @@ static void gather(const struct bake_task *task, uint32_t texel, uint64_t row)
     if (points.count == 0) return;
     const vec3s punctual = gather_punctual(&job->scene, &points);
     const vec3s rest = gather_paths(&job->scene, &points, job->how.samples, task->bake_seed);
-    float *out = (float *)task->out[1] + 4 * row;
-    memcpy((float *)task->out[0] + 3 * row, punctual.raw, sizeof punctual.raw);
+    float *out = bake_row(task, 1, row);
+    memcpy(bake_row(task, 0, row), punctual.raw, sizeof punctual.raw);
     memcpy(out, rest.raw, sizeof rest.raw);
     out[3] = (float)points.count / GATHER_POINTS;
 }

@@ -97,7 +97,6 @@ static bool run_samples(const struct bake_task *task)
     const struct dnrt_shape_trace *shape = &job->volumes[volume];
     const struct dnrt_grid grid = grid_of(job, &shape->part);
     const struct dnrt_sampling how = dnrt_sampling_of(job, volume);
-    const size_t planes = planes_of(&job->options);
     uint64_t samples, first = bake_task_rows(task, OUT_TRANSFER, &samples);
     if (!(shape->part.radius > 0.0f)) return true;
     for (uint64_t i = 0; i < samples; i++) {
@@ -105,8 +104,8 @@ static bool run_samples(const struct bake_task *task)
         struct dnrt_transfer at;
         dnrt_transfer_at(&how, dnrt_grid_point(&grid, (int)(first + i)),
                          dnrt_seed_of(task, first + i), &at);
-        write_transfer(&job->options, &at, (float *)task->out[OUT_TRANSFER] + planes * i);
-        ((uint8_t *)task->out[OUT_INSIDE])[i] = is_inside(at.backs, how.rays);
+        write_transfer(&job->options, &at, bake_row(task, OUT_TRANSFER, i));
+        *(uint8_t *)bake_row(task, OUT_INSIDE, i) = is_inside(at.backs, how.rays);
     }
     return true;
 }

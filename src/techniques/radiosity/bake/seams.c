@@ -10,17 +10,17 @@ static bool run_seams(const struct bake_task *task)
 {
     const struct radiosity_closing *closing = task->argument;
     uint64_t count, first = bake_task_rows(task, 0, &count);
-    uint32_t *texel = task->out[0];
-    float *weight = task->out[1];
     struct radiosity_closing_room room;
     bool ok = radiosity_closing_room_init(&room, task->host, closing);
     for (uint64_t i = 0; ok && i < count && first + i < closing->seams.count; i++) {
         struct radiosity_closing_entry row[RADIOSITY_SEAM_ENTRIES];
         ok = !bake_task_cancelled(task);
         radiosity_close(closing, &room, (uint32_t)(first + i), row);
+        uint32_t *texel = bake_row(task, 0, i);
+        float *weight = bake_row(task, 1, i);
         for (uint32_t k = 0; k < RADIOSITY_SEAM_ENTRIES; k++) {
-            texel[i * RADIOSITY_SEAM_ENTRIES + k] = row[k].texel;
-            weight[i * RADIOSITY_SEAM_ENTRIES + k] = row[k].weight;
+            texel[k] = row[k].texel;
+            weight[k] = row[k].weight;
         }
     }
     radiosity_closing_room_finish(&room);

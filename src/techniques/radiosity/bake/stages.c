@@ -104,25 +104,22 @@ static void gather_texel(const struct bake_task *task, struct room *room, uint64
                          uint64_t i)
 {
     const struct job *job = task->job;
-    const size_t sources = (size_t)job->options.sources;
     const uint32_t texel = (uint32_t)(first + i);
     struct radiosity_gather *gather = &room->gather;
     const struct charts *charts = &job->scene.map.charts;
     const struct texel_point point = texel_find_point(job->scene.trace, charts, texel);
-    memcpy((float *)task->out[OUT_POINT] + 4 * i, &point, sizeof point);
-    ((uint8_t *)task->out[OUT_PART])[i] = job->scene.part[texel];
+    memcpy(bake_row(task, OUT_POINT, i), &point, sizeof point);
+    *(uint8_t *)bake_row(task, OUT_PART, i) = job->scene.part[texel];
     if (point.share == 0.0f) return;
     radiosity_gather(&job->scene, texel, point.position, task->bake_seed, gather);
-    const uint32_t count = radiosity_make_row(&room->rows, gather, (uint32_t)sources,
+    const uint32_t count = radiosity_make_row(&room->rows, gather, (uint32_t)job->options.sources,
                                               task->bake_seed ^ (uint64_t)texel << 32, room->row);
-    write_row(room->row, count, (uint32_t *)task->out[OUT_SOURCE] + i * sources,
-              (uint16_t *)task->out[OUT_FACTOR] + 3 * i * sources);
-    memcpy((float *)task->out[OUT_SKY] + 4 * i, &gather->light.sky, sizeof gather->light.sky);
-    memcpy((float *)task->out[OUT_EMITTED] + 12 * i, gather->light.emitted,
-           sizeof gather->light.emitted);
-    ((float *)task->out[OUT_DISTANCE])[i] = gather->inverse_distance;
+    write_row(room->row, count, bake_row(task, OUT_SOURCE, i), bake_row(task, OUT_FACTOR, i));
+    memcpy(bake_row(task, OUT_SKY, i), &gather->light.sky, sizeof gather->light.sky);
+    memcpy(bake_row(task, OUT_EMITTED, i), gather->light.emitted, sizeof gather->light.emitted);
+    *(float *)bake_row(task, OUT_DISTANCE, i) = gather->inverse_distance;
     const vec4s albedo = texel_reflectance(job->scene.trace, charts, texel);
-    memcpy((float *)task->out[OUT_ALBEDO] + 4 * i, albedo.raw, sizeof albedo.raw);
+    memcpy(bake_row(task, OUT_ALBEDO, i), albedo.raw, sizeof albedo.raw);
 }
 
 static bool run_texels(const struct bake_task *task)
@@ -247,9 +244,11 @@ static void merge_rows(const struct bake_task *task, const struct clusters *of, 
         sum_texels(of, (uint32_t)(first + i), &room->gather);
         const uint32_t entries = radiosity_make_row(&room->rows, &room->gather, (uint32_t)most,
                                                     task->bake_seed ^ (first + i), room->row);
+        uint32_t *source = bake_row(task, 0, i);
+        uint16_t *factor = bake_row(task, 1, i);
         for (uint32_t k = 0; k < entries; k++) {
-            ((uint32_t *)task->out[0])[i * most + k] = room->row[k].node;
-            ((uint16_t *)task->out[1])[i * most + k] = half_from_float(room->row[k].factor.weight);
+            source[k] = room->row[k].node;
+            factor[k] = half_from_float(room->row[k].factor.weight);
         }
     }
 }

@@ -167,11 +167,11 @@ bool radiosity_probe_plan(struct bake_plan *plan, struct frame_probes grid,
                                     .scratch_bytes = room_bytes });
 }
 
-static void write_row(const struct bake_task *task, uint64_t i, uint64_t most,
-                      const struct radiosity_entry *row, uint32_t count)
+static void write_row(const struct bake_task *task, uint64_t i, const struct radiosity_entry *row,
+                      uint32_t count)
 {
-    uint32_t *source = (uint32_t *)task->out[OUT_SOURCE] + i * most;
-    uint16_t(*factor)[4] = (uint16_t(*)[4])task->out[OUT_FACTOR] + i * most;
+    uint32_t *source = bake_row(task, OUT_SOURCE, i);
+    uint16_t(*factor)[4] = bake_row(task, OUT_FACTOR, i);
     for (uint32_t k = 0; k < count; k++) {
         source[k] = row[k].node;
         factor[k][0] = half_from_float(row[k].factor.weight);
@@ -181,14 +181,12 @@ static void write_row(const struct bake_task *task, uint64_t i, uint64_t most,
 
 static void write_probe(const struct bake_task *task, uint64_t i, const struct probe *probe)
 {
-    float *place = (float *)task->out[OUT_PLACE] + 4 * i;
+    float *place = bake_row(task, OUT_PLACE, i);
     memcpy(place, probe->position.raw, sizeof probe->position.raw);
     place[3] = probe->valid;
-    memcpy((float *)task->out[OUT_SKY] + RADIOSITY_SH * i, probe->sky, sizeof probe->sky);
-    memcpy((float *)task->out[OUT_EMITTED] + 3 * RADIOSITY_SH * i, probe->emitted,
-           sizeof probe->emitted);
-    memcpy((uint16_t *)task->out[OUT_DEPTH] + 2 * PROBE_DEPTHS * i, probe->depth,
-           sizeof probe->depth);
+    memcpy(bake_row(task, OUT_SKY, i), probe->sky, sizeof probe->sky);
+    memcpy(bake_row(task, OUT_EMITTED, i), probe->emitted, sizeof probe->emitted);
+    memcpy(bake_row(task, OUT_DEPTH, i), probe->depth, sizeof probe->depth);
 }
 
 bool radiosity_probe_run(const struct bake_task *task, const struct radiosity_scene *scene,
@@ -203,7 +201,7 @@ bool radiosity_probe_run(const struct bake_task *task, const struct radiosity_sc
         gather_probe(scene, grid, (uint32_t)(first + i), task->bake_seed, room->gather, &probe);
         const uint32_t entries = radiosity_make_row(room->rows, room->gather, (uint32_t)most,
                                                     task->bake_seed ^ (first + i) << 32, room->row);
-        write_row(task, i, most, room->row, entries);
+        write_row(task, i, room->row, entries);
         write_probe(task, i, &probe);
     }
     return true;
