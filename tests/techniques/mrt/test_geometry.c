@@ -98,6 +98,56 @@ TEST(texels_of_an_emitter_emit)
     finish(&l);
 }
 
+// ---- walls of surfaces
+
+// The wall of a block that stands for a surface in it: the one that faces its way most. The point
+// is projected onto the wall along an axis of the cell.
+struct wall_point {
+    int face;
+    float s, t; // clamped to [0, 1]
+};
+
+// The surface's normal in the cell: gradients transform with the transposed Jacobian.
+static vec3s normal_in_cell(const struct mrt_block *block, vec3s cell, vec3s normal)
+{
+    mat3s j = mrt_warp_jacobian(block->corner, cell);
+    return vec3_unit(glms_mat3_mulv(glms_mat3_transpose(j), normal));
+}
+
+static float clamped(float x)
+{
+    return fminf(fmaxf(x, 0.0f), 1.0f);
+}
+
+static float outside(vec3s cell)
+{
+    return fmaxf(glms_vec3_max(glms_vec3_abs(cell)) - 0.5f, 0.0f);
+}
+
+// False: the point is farther from the cell than `beyond`, a part of its edge, or the surface faces
+// away from all walls.
+static bool wall_of_surface(const struct mrt_block *block, vec3s position, vec3s normal,
+                            float beyond, struct wall_point *out)
+{
+    vec3s cell;
+    if (!mrt_warp_inverse(block->corner, position, &cell) || outside(cell) > beyond) return false;
+    vec3s n = normal_in_cell(block, cell, normal);
+    float most = 0.0f;
+    out->face = -1;
+    for (int f = 0; f < CUBE_FACES; f++) {
+        // The inner normal of a wall is that of its frame, reversed.
+        float along = -glms_vec3_dot(cube_from_face(f).col[2], n);
+        if (mrt_block_is_open(block, f) || along <= most) continue;
+        most = along;
+        out->face = f;
+    }
+    if (out->face < 0) return false;
+    mat3s frame = cube_from_face(out->face);
+    out->s = clamped(0.5f + glms_vec3_dot(frame.col[0], cell));
+    out->t = clamped(0.5f + glms_vec3_dot(frame.col[1], cell));
+    return true;
+}
+
 // A texel's own surface belongs to that texel.
 TEST(the_wall_of_a_texel_is_its_own)
 {
@@ -105,9 +155,9 @@ TEST(the_wall_of_a_texel_is_its_own)
     int n = RESOLUTION * RESOLUTION;
     for (int i = 0; i < l.atlas.texels; i++) {
         const struct mrt_tile *tile = &l.atlas.tiles[i / n];
-        struct mrt_wall_point point;
-        CHECK(mrt_wall_of_surface(&l.map.blocks[tile->block], l.geometry[i].position,
-                                  l.geometry[i].normal, 0.25f, &point));
+        struct wall_point point;
+        CHECK(wall_of_surface(&l.map.blocks[tile->block], l.geometry[i].position,
+                              l.geometry[i].normal, 0.25f, &point));
         CHECK(point.face == tile->face);
         CHECK_NEAR(point.s, ((float)(i % n % RESOLUTION) + 0.5f) / RESOLUTION, 1e-3);
         CHECK_NEAR(point.t, ((float)(i % n / RESOLUTION) + 0.5f) / RESOLUTION, 1e-3);
@@ -123,10 +173,10 @@ TEST(a_surface_that_faces_its_way_has_the_same_wall_in_a_warped_and_turned_block
         mrt_block_set_box(&block, (struct box3){ vec3_of(-1, -2, -3), vec3_of(1, 2, 3) });
         for (int c = 4; c < 8; c++) block.corner[c].x += 0.5f; // sheared
         mrt_turn_block(&block, o);
-        struct mrt_wall_point point;
-        CHECK(mrt_wall_of_surface(&block, vec3_of(0.1f, 0.3f, 0), vec3_of(0, 1, 0), 0.1f, &point));
+        struct wall_point point;
+        CHECK(wall_of_surface(&block, vec3_of(0.1f, 0.3f, 0), vec3_of(0, 1, 0), 0.1f, &point));
         vec3s wall = mrt_warp_point(block.corner, cube_face_point(point.face, point.s, point.t));
         CHECK_NEAR(glms_vec3_distance(wall, vec3_of(0.1f, -2, 0)), 0, 1e-4);
-        CHECK(!mrt_wall_of_surface(&block, vec3_of(0, 5, 0), vec3_of(0, 1, 0), 0.1f, &point));
+        CHECK(!wall_of_surface(&block, vec3_of(0, 5, 0), vec3_of(0, 1, 0), 0.1f, &point));
     }
 }

@@ -1,11 +1,9 @@
-// Geometry images, and the walls that stand for surfaces.
+// Geometry images.
 #include "geometry.h"
 
 #include "techniques/mrt/level/wall.h"
 
 #include "core/parallel.h"
-
-#include <math.h>
 
 // Rays start in the middle of the block, which scenes fill less than their walls, and end behind
 // the wall by a quarter of the block.
@@ -102,45 +100,4 @@ struct mrt_geometry_texel *mrt_geometry_create(struct host *host, const struct m
     }
     host_free(host, job.sight);
     return job.texels;
-}
-
-// ---- walls of surfaces
-
-// The surface's normal in the cell: gradients transform with the transposed Jacobian.
-static vec3s normal_in_cell(const struct mrt_block *block, vec3s cell, vec3s normal)
-{
-    mat3s j = mrt_warp_jacobian(block->corner, cell);
-    return vec3_unit(glms_mat3_mulv(glms_mat3_transpose(j), normal));
-}
-
-static float clamped(float x)
-{
-    return fminf(fmaxf(x, 0.0f), 1.0f);
-}
-
-static float outside(vec3s cell)
-{
-    return fmaxf(glms_vec3_max(glms_vec3_abs(cell)) - 0.5f, 0.0f);
-}
-
-bool mrt_wall_of_surface(const struct mrt_block *block, vec3s position, vec3s normal, float beyond,
-                         struct mrt_wall_point *out)
-{
-    vec3s cell;
-    if (!mrt_warp_inverse(block->corner, position, &cell) || outside(cell) > beyond) return false;
-    vec3s n = normal_in_cell(block, cell, normal);
-    float most = 0.0f;
-    out->face = -1;
-    for (int f = 0; f < CUBE_FACES; f++) {
-        // The inner normal of a wall is that of its frame, reversed.
-        float along = -glms_vec3_dot(cube_from_face(f).col[2], n);
-        if (mrt_block_is_open(block, f) || along <= most) continue;
-        most = along;
-        out->face = f;
-    }
-    if (out->face < 0) return false;
-    mat3s frame = cube_from_face(out->face);
-    out->s = clamped(0.5f + glms_vec3_dot(frame.col[0], cell));
-    out->t = clamped(0.5f + glms_vec3_dot(frame.col[1], cell));
-    return true;
 }

@@ -18,14 +18,3 @@ struct mrt_geometry_texel {
 struct mrt_geometry_texel *mrt_geometry_create(struct host *host, const struct mrt_block_map *map,
                                                const struct mrt_atlas *atlas,
                                                const struct trace_scene *scene);
-
-// The wall of a block that stands for a surface in it: the one that faces its way most. The point
-// is projected onto the wall along an axis of the cell.
-struct mrt_wall_point {
-    int face;
-    float s, t; // clamped to [0, 1]
-};
-// False: the point is farther from the cell than `beyond`, a part of its edge, or the surface faces
-// away from all walls.
-bool mrt_wall_of_surface(const struct mrt_block *block, vec3s position, vec3s normal, float beyond,
-                         struct mrt_wall_point *out);
