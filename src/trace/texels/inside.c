@@ -2,6 +2,7 @@
 
 #include "core/rng.h"
 #include "core/sampling.h"
+#include "trace/trace_scene.h"
 
 #include <math.h>
 

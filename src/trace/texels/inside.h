@@ -1,8 +1,11 @@
-// Whether a point is inside geometry: most of its rays first meet the back of a single-sided
-// surface.
+// Whether a point is inside geometry: most of its rays first meet the back of a surface. Backs are
+// those of single-sided surfaces, but for mrt and drt: there objects with closed surfaces of a
+// double-sided material have an inside, too.
 #pragma once
 
-#include "trace/trace_scene.h"
+#include "trace/embree.h"
+
+struct trace_scene;
 
 static inline bool is_inside(int backs, int rays)
 {

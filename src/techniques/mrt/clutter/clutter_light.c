@@ -1,21 +1,22 @@
 // Clutter's texels as a geometry image.
 #include "techniques/mrt/clutter/clutter_light.h"
 
-// Rays that find the material start so far from the surface, m.
-static const float AWAY = 1e-3f;
+#include "trace/texels/texels.h"
 
-static void look_at(const struct trace_scene *objects, const struct mrt_clutter *clutter,
-                    uint32_t texel, struct mrt_geometry_texel *out)
+static struct mrt_geometry_texel look_at(const struct trace_scene *objects,
+                                         const struct mrt_clutter *clutter, uint32_t texel)
 {
     const vec3s normal = chart_texel_normal(&clutter->charts, texel);
-    const vec3s position = chart_texel_of(&clutter->charts, texel)->position;
-    struct trace_hit hit;
-    *out = (struct mrt_geometry_texel){ .position = position, .normal = normal, .found = true };
-    if (!trace_closest(objects, glms_vec3_muladds(normal, AWAY, position), glms_vec3_negate(normal),
-                       2.0f * AWAY, &hit))
-        return;
-    out->albedo = glms_vec3_scale(hit.albedo, 1.0f - hit.metallic);
-    out->emission = hit.emission;
+    const struct chart_texel *t = chart_texel_of(&clutter->charts, texel);
+    struct surface surface;
+    texel_surface(objects, &clutter->charts.triangles[t->triangle], t->u, t->v, normal, &surface);
+    return (struct mrt_geometry_texel){
+        .position = t->position,
+        .normal = normal,
+        .albedo = glms_vec3_scale(surface.material.albedo, 1.0f - surface.material.metallic),
+        .emission = surface.emission,
+        .found = true,
+    };
 }
 
 static bool look(struct mrt_scene_images *images, const struct mrt_clutter *clutter)
@@ -23,7 +24,7 @@ static bool look(struct mrt_scene_images *images, const struct mrt_clutter *clut
     struct trace_scene *objects = trace_scene_create(images->host, &clutter->objects.pose);
     if (!objects) return false;
     for (uint32_t i = 0; i < clutter->charts.side_texel_count; i++)
-        look_at(objects, clutter, clutter->texels[i], &images->geometry[i]);
+        images->geometry[i] = look_at(objects, clutter, clutter->texels[i]);
     trace_scene_destroy(objects);
     return true;
 }

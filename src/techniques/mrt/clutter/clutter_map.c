@@ -8,6 +8,7 @@
 #include "core/sh.h"
 
 #include "techniques/mrt/level/probes.h"
+#include "trace/texels/inside.h"
 
 #include <math.h>
 
@@ -124,7 +125,7 @@ static void trace_texel(void *user, size_t i)
                            .from = glms_vec3_muladds(normal, away, position),
                            .frame = mrt_frame_of_normal(normal) };
     for (int r = 0; r < job->rays.count; r++) follow(&t, r);
-    job->out->inside[i] = 2 * t.backs > job->rays.count;
+    job->out->inside[i] = is_inside(t.backs, job->rays.count);
     for (int f = 0; f < CUBE_FACES; f++)
         job->out->kept[f][i] = t.all[f] > 0.0f ? t.kept[f] / t.all[f] : 0.0f;
 }

@@ -5,6 +5,7 @@
 
 #include "techniques/mrt/dictionary/cube_operators.h"
 #include "techniques/mrt/level/probes.h"
+#include "trace/texels/inside.h"
 
 #include <math.h>
 #include <string.h>
@@ -83,7 +84,7 @@ static void trace_point(void *user, size_t i)
     struct blocked count = { 0 };
     if (mrt_is_stopped(job->input->stop)) return;
     for (int r = 0; r < job->rays.count; r++) follow(job, i, point, r, &passing, &count);
-    job->out->inside[i] = 2 * count.backs > job->rays.count;
+    job->out->inside[i] = is_inside(count.backs, job->rays.count);
     job->out->closed[i] = count.rays == job->rays.count;
     for (int f = 0; f < CUBE_FACES; f++)
         job->out->kept[f][i] = passing.all[f] > 0.0f ? passing.kept[f] / passing.all[f]

@@ -6,6 +6,7 @@
 #include "core/sh.h"
 
 #include "techniques/mrt/dictionary/rays.h"
+#include "trace/texels/inside.h"
 
 #include <math.h>
 
@@ -21,7 +22,7 @@ static void add(vec3s light, const float weight[MRT_PROBE_VALUES], struct mrt_un
         out->emitted[i] = glms_vec3_muladds(light, weight[i], out->emitted[i]);
 }
 
-// More back than front faces: inside a solid.
+// Whether the point is inside a solid.
 static bool gather_rays(const struct job *job, const struct texel_receiver *at,
                         struct mrt_unbounced_probe *out)
 {
@@ -40,7 +41,7 @@ static bool gather_rays(const struct job *job, const struct texel_receiver *at,
         backs += seen.back;
         add(glms_vec3_scale(seen.emission, GLM_PIf * per_sr / density), weight, out);
     }
-    return 2 * backs > job->rays.count;
+    return is_inside(backs, job->rays.count);
 }
 
 static void sample_emitters(const struct job *job, const struct texel_receiver *at,
