@@ -100,6 +100,16 @@ bool charts_init(struct charts *out, struct host *host, const struct scene_pose 
                  const struct charts_options *options);
 void charts_finish(struct charts *charts);
 
+// Charts for the light map of a technique.
+struct charts_wish {
+    const char *technique; // in messages
+    uint32_t texels;       // about so many, without gutters
+    float density;         // texels/m, in place of `texels`; 0: none
+    uint32_t most_charts;
+};
+bool charts_init_wanted(struct charts *out, struct host *host, const struct scene_pose *pose,
+                        const struct charts_wish *wish);
+
 // ---- sides.c: texels of both sides
 
 static inline bool chart_is_back(const struct charts *charts, uint32_t texel)

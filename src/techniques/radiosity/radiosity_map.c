@@ -96,66 +96,14 @@ static bool make_hierarchy(struct radiosity_map *map)
     return true;
 }
 
-// ---- charts
-
-// Charts of a surface in many small parts touch several times as many texels as its area has. The
-// atlas has room for the gutters of those.
-enum { DENSITY_TRIES = 5, ATLAS_ROOM = 64, MOST_ATLAS = 1 << 28 };
-
-// What may bring the number of texels nearer to the wanted one. False: nothing.
-static bool want_fewer(struct charts_options *how, uint32_t texels, const struct charts *charts)
-{
-    // Each small part of a surface has a texel at any density: the others keep a quarter of them.
-    const uint32_t least = texels / 4;
-    if (charts->texel_count <= texels + texels / 8) return false;
-    if (how->surface_texels > least) {
-        const double surface = (double)how->surface_texels * texels / charts->texel_count;
-        how->surface_texels = surface > least ? (uint32_t)surface : least;
-        return true;
-    }
-    if (how->join == CHARTS_JOINED_ACROSS) return false;
-    how->join = CHARTS_JOINED_ACROSS;
-    return true;
-}
-
-// Of the surface, where the density is given.
-enum { MOST_TEXELS = 1 << 22 };
-
-static bool charts_at(struct charts *out, struct host *host, const struct scene_pose *pose,
-                      float density)
-{
-    const struct charts_options how = { .texels_per_m = density,
-                                        .max_texels = MOST_ATLAS,
-                                        .surface_texels = MOST_TEXELS,
-                                        .join = CHARTS_JOINED };
-    if (!charts_init(out, host, pose, &how)) return false;
-    const float reached = out->texels_per_m;
-    if (out->count == 0 || reached > 0.999f * density) return true;
-    return host_fail(host, FAIL_MEMORY,
-                     "radiosity: density=%g needs more than %d texels for %s; density=%.3g fits",
-                     (double)density, MOST_TEXELS, pose->scene->name, 0.99 * (double)reached);
-}
+// ----
 
 bool radiosity_charts_init(struct charts *out, struct host *host, const struct scene_pose *pose,
                            const struct radiosity_options *options)
 {
-    const uint32_t texels = (uint32_t)options->texels;
-    struct charts_options how = { .texels_per_m = 1e6f,
-                                  .max_texels = texels < MOST_ATLAS / ATLAS_ROOM
-                                                    ? texels * ATLAS_ROOM
-                                                    : MOST_ATLAS,
-                                  .surface_texels = texels,
-                                  .join = CHARTS_JOINED,
-                                  .atlas_per_texel = ATLAS_ROOM,
-                                  .most_texels = MOST_TEXELS,
-                                  .most_charts = RADIOSITY_MAX_CLUSTERS / 2 };
-    if (options->density > 0.0f) return charts_at(out, host, pose, options->density);
-    for (int i = 0; i < DENSITY_TRIES; i++) {
-        if (!charts_init(out, host, pose, &how)) return false;
-        if (!want_fewer(&how, texels, out)) return true;
-        if (i + 1 < DENSITY_TRIES) charts_finish(out);
-    }
-    return true;
+    const struct charts_wish wish = { "radiosity", (uint32_t)options->texels, options->density,
+                                      RADIOSITY_MAX_CLUSTERS / 2 };
+    return charts_init_wanted(out, host, pose, &wish);
 }
 
 static bool refuse(const struct radiosity_map *map)
