@@ -1,0 +1,94 @@
+// Light and the inside test at texels, against closed forms.
+#include "trace/trace_fixture.h"
+
+#include "trace/texels/inside.h"
+#include "trace/texels/light.h"
+
+#include <math.h>
+
+static struct trace_scene *open_trace(struct trace_fixture *s)
+{
+    assert_true(pose_init(&s->pose, s->scene, -1, 0));
+    struct trace_scene *scene = trace_scene_create(test_host(), &s->pose);
+    assert_non_null(scene);
+    return scene;
+}
+
+static struct texel_lights light_at(const struct trace_scene *scene, vec3s position, vec3s normal)
+{
+    const struct texel_receiver receiver = { .position = position,
+                                             .normal = normal,
+                                             .rays = 1024,
+                                             .light_samples = texel_light_samples(scene, 1024),
+                                             .seed = 5 };
+    struct texel_lights out;
+    texel_gather_light(scene, &receiver, NULL, NULL, &out);
+    return out;
+}
+
+static void check_along(const struct texel_light *light, vec3s normal, double irradiance, double by)
+{
+    CHECK_RELATIVE(light->irradiance, irradiance, by);
+    const vec3s v = vec3_of(light->vector[0], light->vector[1], light->vector[2]);
+    CHECK_RELATIVE(glms_vec3_dot(v, normal), light->irradiance, 0.01);
+}
+
+TEST(emissive_room_and_open_sky_give_pi)
+{
+    struct trace_fixture s;
+    fixture_init(&s);
+    fixture_room(&s, 2.0f, fixture_diffuse(&s, vec3_of(0, 0, 0), vec3_of(1, 2, 0)));
+    struct trace_scene *scene = open_trace(&s);
+    const vec3s up = vec3_of(0, 1, 0);
+    const struct texel_lights room = light_at(scene, vec3_of(0.3f, -1.5f, 0.7f), up);
+    check_along(&room.emitted[0], up, 3.14159, 0.02);
+    check_along(&room.emitted[1], up, 2 * 3.14159, 0.02);
+    CHECK(room.emitted[2].irradiance == 0.0f && room.sky.irradiance == 0.0f);
+    const struct texel_lights sky = light_at(scene, vec3_of(0, 3, 0), up); // over the room
+    check_along(&sky.sky, up, 3.14159, 1e-4);
+    trace_scene_destroy(scene);
+    fixture_finish(&s);
+}
+
+// E = L A / d², which few rays meet.
+TEST(small_emitter_is_sampled)
+{
+    struct trace_fixture s;
+    fixture_init(&s);
+    const int emitter = fixture_diffuse(&s, vec3_of(0, 0, 0), vec3_of(100, 100, 100));
+    fixture_disk(&s, vec3_of(0, 4, 0), vec3_of(0, -1, 0), 0.01f, 8, emitter);
+    struct trace_scene *scene = open_trace(&s);
+    const vec3s up = vec3_of(0, 1, 0);
+    const struct texel_lights light = light_at(scene, vec3_of(0, 0, 0), up);
+    check_along(&light.emitted[0], up, 100.0 * 0.01 / 16.0, 0.01);
+    const struct texel_lights below = light_at(scene, vec3_of(0, 0, 0), vec3_of(0, -1, 0));
+    CHECK(below.emitted[0].irradiance == 0.0f);
+    trace_scene_destroy(scene);
+    fixture_finish(&s);
+}
+
+static bool is_behind_wall(bool double_sided)
+{
+    struct trace_fixture s;
+    struct material material = material_default();
+    fixture_init(&s);
+    material.double_sided = double_sided;
+    fixture_room(&s, 2.0f, fixture_material(&s, &material));
+    struct trace_scene *scene = open_trace(&s);
+    const vec3s inwards = vec3_of(0, 0, -1);
+    const int room = inside_backs(scene, vec3_of(0, 0, 1.9f), inwards, 0, INSIDE_RAYS);
+    const int wall = inside_backs(scene, vec3_of(0, 0, 2.01f), inwards, 0, INSIDE_RAYS);
+    CHECK(room == 0);
+    CHECK(wall == inside_backs(scene, vec3_of(0, 0, 2.01f), inwards, 0, 4) +
+                      inside_backs(scene, vec3_of(0, 0, 2.01f), inwards, 4, INSIDE_RAYS));
+    trace_scene_destroy(scene);
+    fixture_finish(&s);
+    return is_inside(wall, INSIDE_RAYS);
+}
+
+TEST(backs_of_single_sided_surfaces_are_inside)
+{
+    CHECK(is_behind_wall(false));
+    CHECK(!is_behind_wall(true));
+    CHECK(is_inside(9, 16) && !is_inside(8, 16));
+}
