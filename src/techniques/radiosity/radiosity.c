@@ -66,14 +66,7 @@ static bool make_tables(struct radiosity *s)
 
 static bool make_light_maps(struct radiosity *s)
 {
-    const struct gpu_image_desc desc = { .name = "light_map",
-                                         .dimension = GPU_2D_ARRAY,
-                                         .format = GPU_RGBA16F,
-                                         .width = s->map.charts.width,
-                                         .height = s->map.charts.height,
-                                         .depth =
-                                             RADIOSITY_LAYERS * light_map_sides(&s->map.charts),
-                                         .usage = GPU_SAMPLED | GPU_STORAGE };
+    const struct gpu_image_desc desc = light_map_image(&s->map.charts, "light_map");
     const struct gpu_sampler_desc linear = { .name = "light_map",
                                              .filter = GPU_LINEAR,
                                              .mip_filter = GPU_NEAREST,
@@ -293,7 +286,7 @@ static uint64_t memory_estimate(const void *options)
                                  5 * table_bytes(nodes, 8);
     const uint64_t of_scene =
         texels * sizeof(struct light_map_triangle) + table_bytes(1, 16) + table_bytes(1, 4);
-    const uint64_t of_map = table_bytes(places, 8) + 2 * 8 * RADIOSITY_LAYERS * places;
+    const uint64_t of_map = table_bytes(places, 8) + 2 * 8 * LIGHT_MAP_LAYERS * places;
     return of_texels + of_clusters + of_scene + of_map + radiosity_probes_memory(o);
 }
 

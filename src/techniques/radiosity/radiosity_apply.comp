@@ -1,10 +1,5 @@
-// Irradiance of each pixel from the light map. With irradiance E along the surface's normal and
-// vector irradiance V, bands 0 and 1 of spherical harmonics have E(n) = (E + n·V) / 2: n·V is E for
-// the surface's own normal, so that E(n) is exact there, and in uniform light for all normals.
-//
-// SPECULAR: also the radiance that the specular lobe reflects, from what both say of the radiance
-// over the surface, L(ω) = E(n)/π + 3/(2π) V·t, with t the part of ω along the surface: its
-// irradiance is E(n) and its vector irradiance V along the surface, and uniform light is exact.
+// Irradiance of each pixel from the light map; SPECULAR: also the radiance that the specular lobe
+// reflects.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -16,11 +11,11 @@
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/octahedral.glsl"
-#include "techniques/radiosity/radiosity_lobe.glsl"
 #define LIGHT_MAP_INSTANCES_BINDING 4
 #define LIGHT_MAP_TRIANGLES_BINDING 5
 #define LIGHT_MAP_MOVES_BINDING     13
 #include "core/half.glsl"
+#include "techniques/common/light_map/lookup.glsl"
 #include "techniques/common/light_map/surface.glsl"
 #include "techniques/radiosity/radiosity_shared.h"
 
@@ -51,36 +46,15 @@ vec3 unit(vec3 v)
     return v * inversesqrt(dot(v, v));
 }
 
-// Irradiance and vector irradiance by colour.
-struct light_at_pixel {
-    vec3 irradiance;
-    mat3 vector; // a column for each colour
-};
-
-light_at_pixel light_at(vec3 place, vec3 n)
-{
-    vec2 uv = place.xy * vec2(push.per_width, push.per_height);
-    light_at_pixel light;
-    for (int c = 0; c < 3; c++) {
-        vec4 texel =
-            textureLod(light_map, vec3(uv, place.z * float(RADIOSITY_LAYERS) + float(c)), 0.0);
-        light.irradiance[c] = 0.5 * (texel.x + dot(texel.yzw, n));
-        light.vector[c] = texel.yzw;
-    }
-    light.irradiance = clamp(light.irradiance, vec3(0.0), vec3(HALF_MAX));
-    return light;
-}
-
 #if SPECULAR
-vec3 reflected(ivec2 pixel, light_map_surface s, light_at_pixel light)
+vec3 reflected(ivec2 pixel, light_map_surface s, light_map_light light)
 {
     vec4 lobe = BRDF_DEFAULT_DIELECTRIC;
     if (HAS_DIELECTRIC) lobe = texelFetch(dielectric, pixel, 0);
     brdf_material m =
         brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
     vec3 n = s.normal, to_viewer = unit(s.camera - s.position);
-    vec3 along = (dot(to_viewer, n) * n - to_viewer) * lean_of(brdf_alpha(m.roughness));
-    vec3 radiance = INV_PI * (light.irradiance + 1.5 * (along * light.vector));
+    vec3 radiance = light_map_radiance(light, n, to_viewer, brdf_alpha(m.roughness));
     return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
            clamp(radiance, vec3(0.0), vec3(HALF_MAX));
 }
@@ -93,7 +67,7 @@ void main()
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
     float z = texelFetch(depth, pixel, 0).r;
-    light_at_pixel light = light_at_pixel(vec3(0.0), mat3(0.0));
+    light_map_light light = light_map_light(vec3(0.0), mat3(0.0));
     vec3 radiance = vec3(0.0);
     if (z > 0.0) {
         vec2 uv = (vec2(pixel) + 0.5) * vec2(push.per_view_width, push.per_view_height);
@@ -101,7 +75,8 @@ void main()
         vec3 n = unit(octahedral_direction(texelFetch(normal, pixel, 0).rg));
         light_map_surface s = light_map_surface(position, n, frame.camera_position);
         vec3 place = light_map_place_of(texelFetch(id, pixel, 0).rg, push.instances, s);
-        if (place.z >= 0.0) light = light_at(place, s.normal);
+        vec2 per_size = vec2(push.per_width, push.per_height);
+        if (place.z >= 0.0) light = light_map_lookup(light_map, per_size, place, s.normal);
 #if SPECULAR
         radiance = reflected(pixel, s, light);
 #endif

@@ -24,7 +24,7 @@ void main()
     uvec3 at = light_map_place(owner.x);
     for (int c = 0; c < 3; c++) {
         uvec2 words = imageLoad(radiosity_light, radiosity_at(c * push.texels + owner.y)).xy;
-        imageStore(light_map, ivec3(at.xy, RADIOSITY_LAYERS * at.z + c),
+        imageStore(light_map, ivec3(at.xy, LIGHT_MAP_LAYERS * at.z + c),
                    radiosity_unpack_light(words));
     }
 }

@@ -41,6 +41,6 @@ void main()
     }
     uvec3 at = light_map_place(texelFetch(radiosity_places, radiosity_at(i), 0).x);
     for (int c = 0; c < 3; c++)
-        imageStore(light_map, ivec3(at.xy, RADIOSITY_LAYERS * at.z + c),
+        imageStore(light_map, ivec3(at.xy, LIGHT_MAP_LAYERS * at.z + c),
                    clamp(light[c], -HALF_MAX, HALF_MAX));
 }

@@ -9,10 +9,6 @@
 #define RADIOSITY_LOCAL    64 // workgroup size over texels and clusters
 #define RADIOSITY_LOCAL_2D 8  // over pixels and texels of the map, in x and y
 
-// Layers of the light map for one side of the surfaces: one for each colour. A texel is the
-// irradiance along the surface's normal, and the vector irradiance.
-#define RADIOSITY_LAYERS 3
-
 // An entry of a row: the node in the lower bits, above it the form factor as a half, of which the
 // upper two bits are zero: it is below 2.
 #define RADIOSITY_NODE_BITS 18

@@ -18,6 +18,17 @@ static vec3s axis_of(const struct chart_triangle *t, int axis, float *offset)
     return gradient;
 }
 
+struct gpu_image_desc light_map_image(const struct charts *charts, const char *name)
+{
+    return (struct gpu_image_desc){ .name = name,
+                                    .dimension = GPU_2D_ARRAY,
+                                    .format = GPU_RGBA16F,
+                                    .width = charts->width,
+                                    .height = charts->height,
+                                    .depth = LIGHT_MAP_LAYERS * light_map_sides(charts),
+                                    .usage = GPU_SAMPLED | GPU_STORAGE };
+}
+
 void light_map_fill_triangles(const struct charts *charts, const uint32_t *chart_triangle,
                               size_t count, struct light_map_triangle *out)
 {

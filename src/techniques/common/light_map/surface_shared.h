@@ -11,6 +11,9 @@
 // Specialization constant: whether some triangles have two sides in the map.
 #define LIGHT_MAP_HAS_BACKS 64
 
+// Layers of a light map for one side of the surfaces: one for each colour.
+#define LIGHT_MAP_LAYERS 3
+
 // Of a place of the light map: y above x, above both the side.
 #define LIGHT_MAP_PLACE_BITS 15
 

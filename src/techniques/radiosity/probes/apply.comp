@@ -13,7 +13,7 @@
 #include "frame/octahedral.glsl"
 #include "frame/probes.glsl"
 #include "techniques/common/probes/lookup.glsl"
-#include "techniques/radiosity/radiosity_lobe.glsl"
+#include "techniques/common/light_map/lobe.glsl"
 #include "techniques/radiosity/radiosity_shared.h"
 #include "techniques/radiosity/probes/probes_shared.h"
 
@@ -70,7 +70,7 @@ vec3 reflected(ivec2 pixel, vec3 position, vec3 n)
         brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
     vec3 to_viewer = normalize(frame.camera_position - position);
     vec3 upwards = dot(to_viewer, n) * n;
-    vec3 mean = upwards + (upwards - to_viewer) * lean_of(brdf_alpha(m.roughness));
+    vec3 mean = upwards + (upwards - to_viewer) * lobe_lean(brdf_alpha(m.roughness));
     vec3 radiance = INV_PI * light_at(position, n, normalize(mean + 1e-4 * n));
     return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
            clamp(radiance, vec3(0.0), vec3(HALF_MAX));

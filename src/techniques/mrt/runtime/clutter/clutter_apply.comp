@@ -29,8 +29,10 @@ vec3 map_irradiance(vec3 place, vec3 n)
 {
     vec2 uv = place.xy / vec2(textureSize(clutter_map, 0).xy);
     vec3 sum;
-    for (int c = 0; c < 3; c++)
-        sum[c] = sh4_dot(textureLod(clutter_map, vec3(uv, 3.0 * place.z + float(c)), 0.0), n);
+    for (int c = 0; c < 3; c++) {
+        float layer = float(LIGHT_MAP_LAYERS) * place.z + float(c);
+        sum[c] = sh4_dot(textureLod(clutter_map, vec3(uv, layer), 0.0), n);
+    }
     return max(sum, vec3(0.0));
 }
 

@@ -43,6 +43,7 @@ void main()
     uvec3 at = light_map_place(place.place);
     for (int c = 0; c < 3; c++) {
         vec4 texel = vec4(values[0][c], values[1][c], values[2][c], values[3][c]);
-        imageStore(clutter_map, ivec3(at.xy, 3u * at.z + c), clamp(texel, -HALF_MAX, HALF_MAX));
+        imageStore(clutter_map, ivec3(at.xy, LIGHT_MAP_LAYERS * at.z + c),
+                   clamp(texel, -HALF_MAX, HALF_MAX));
     }
 }

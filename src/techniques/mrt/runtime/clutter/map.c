@@ -136,23 +136,12 @@ static void fill_triangles(const struct mrt_runtime_input *input, void *items)
                              items);
 }
 
-static bool make_image(struct mrt_runtime *runtime, const struct charts *charts)
-{
-    const struct gpu_image_desc desc = { .name = "clutter_map",
-                                         .dimension = GPU_2D_ARRAY,
-                                         .format = GPU_RGBA16F,
-                                         .width = charts->width,
-                                         .height = charts->height,
-                                         .depth = 3 * light_map_sides(charts),
-                                         .usage = GPU_SAMPLED | GPU_STORAGE };
-    return mrt_image_of(runtime, &desc, &runtime->clutter.map.image);
-}
-
 bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     const struct mrt_clutter_atlas_input *from = &input->clutter->map;
     struct mrt_runtime_clutter_map *map = &runtime->clutter.map;
     if (from->count == 0) return true;
+    const struct gpu_image_desc image = light_map_image(&from->clutter->charts, "clutter_map");
     const size_t tiles = tiles_of(from),
                  instances = (size_t)from->clutter->walls.scene.instance_count;
     runtime->objects.constants[MRT_CONSTANT_ROW_BACKS] =
@@ -173,7 +162,7 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
                             &map->surfaces.triangles) &&
            mrt_buffer_of(runtime, "clutter_light", NULL, tiles * MRT_LOCAL * VALUES * VEC3_BYTES,
                          &map->light) &&
-           make_image(runtime, &from->clutter->charts) &&
+           mrt_image_of(runtime, &image, &map->image) &&
            mrt_pipeline_of(runtime, "clutter_fill", &shader_mrt_runtime_clutter_fill_comp, 0,
                            &map->fill) &&
            mrt_pipeline_of(runtime, "clutter_apply", &shader_mrt_runtime_clutter_apply_comp,

@@ -1,10 +1,10 @@
 // Directions of specular lobes.
-#ifndef AG_RADIOSITY_LOBE_GLSL
-#define AG_RADIOSITY_LOBE_GLSL
+#ifndef AG_LIGHT_MAP_LOBE_GLSL
+#define AG_LIGHT_MAP_LOBE_GLSL
 
 // How far the mean direction of the lobe leans, over the mirror direction's. A fit within 0.04 from
 // n·v = 0.25 on.
-float lean_of(float alpha)
+float lobe_lean(float alpha)
 {
     return (1.0 - alpha) / (1.0 + 1.2 * alpha * alpha);
 }

@@ -1,0 +1,41 @@
+// Light of a surface from a light map, whose layers are the colours of a side. A texel is the
+// irradiance E along the surface's normal, and the vector irradiance V: bands 0 and 1 of spherical
+// harmonics have E(n) = (E + n·V) / 2. n·V is E for the surface's own normal, so that E(n) is exact
+// there, and in uniform light for all normals. Include core/half.glsl and core/math.glsl first.
+#ifndef AG_LIGHT_MAP_LOOKUP_GLSL
+#define AG_LIGHT_MAP_LOOKUP_GLSL
+
+#include "techniques/common/light_map/lobe.glsl"
+#include "techniques/common/light_map/surface_shared.h"
+
+// Irradiance and vector irradiance by colour.
+struct light_map_light {
+    vec3 irradiance;
+    mat3 vector; // a column for each colour
+};
+
+// per_size: 1 / width and height of the map.
+light_map_light light_map_lookup(sampler2DArray light_map, vec2 per_size, vec3 place, vec3 n)
+{
+    vec2 uv = place.xy * per_size;
+    light_map_light light;
+    for (int c = 0; c < 3; c++) {
+        vec4 texel =
+            textureLod(light_map, vec3(uv, place.z * float(LIGHT_MAP_LAYERS) + float(c)), 0.0);
+        light.irradiance[c] = 0.5 * (texel.x + dot(texel.yzw, n));
+        light.vector[c] = texel.yzw;
+    }
+    light.irradiance = clamp(light.irradiance, vec3(0.0), vec3(HALF_MAX));
+    return light;
+}
+
+// Radiance in the mean direction of a specular lobe, from what both say of the radiance over the
+// surface, L(ω) = E(n)/π + 3/(2π) V·t, with t the part of ω along the surface: its irradiance is
+// E(n) and its vector irradiance V along the surface, and uniform light is exact.
+vec3 light_map_radiance(light_map_light light, vec3 n, vec3 to_viewer, float alpha)
+{
+    vec3 along = (dot(to_viewer, n) * n - to_viewer) * lobe_lean(alpha);
+    return INV_PI * (light.irradiance + 1.5 * (along * light.vector));
+}
+
+#endif
