@@ -8,6 +8,7 @@
 
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
+#include "techniques/common/light_map/triangle.glsl"
 #include "techniques/dnrt/dnrt_shared.h"
 
 #include "techniques/dnrt/dnrt_object.glsl"
@@ -49,31 +50,6 @@ layout(set = 0, binding = 9, scalar) readonly buffer dnrt_light
 };
 layout(set = 0, binding = 10, rgba16f) uniform image2D irradiance;
 
-// Weights of the second and third corner of the point of the triangle's plane nearest to p, moved
-// into the triangle.
-vec2 weights_at(vec3 a, vec3 b, vec3 c, vec3 p)
-{
-    vec3 u = b - a, v = c - a, w = p - a;
-    float uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v);
-    float area2 = uu * vv - uv * uv;
-    if (!(area2 > 0.0)) return vec2(0.0);
-    vec2 at = max(vec2(vv * wu - uv * wv, uu * wv - uv * wu) / area2, vec2(0.0));
-    return at / max(at.x + at.y, 1.0);
-}
-
-// The three points around, and their weights.
-void points_around(uint n, vec2 at, out uint points[3], out vec3 weights)
-{
-    vec2 scaled = at * float(n);
-    uint j = min(uint(scaled.y), n - 1u), i = min(uint(scaled.x), n - 1u - j);
-    vec2 part = scaled - vec2(i, j);
-    uint row = j * (2u * n + 3u - j) / 2u, above = row + n + 1u - j;
-    bool upper = part.x + part.y > 1.0 && i + j + 2u <= n;
-    points = uint[3](upper ? above + i + 1u : row + i, row + i + 1u, above + i);
-    weights = upper ? vec3(part.x + part.y - 1.0, 1.0 - part.y, 1.0 - part.x)
-                    : vec3(1.0 - part.x - part.y, part);
-}
-
 vec3 change_at(dnrt_gpu_patch patch_, vec2 at, vec3 n, uint light, uint lamps)
 {
     uint steps = patch_.grid & DNRT_PATCH_STEPS, points[3], first = patch_.first;
@@ -82,7 +58,7 @@ vec3 change_at(dnrt_gpu_patch patch_, vec2 at, vec3 n, uint light, uint lamps)
     if ((patch_.grid & DNRT_PATCH_TWO_SIDES) != 0u && dot(front, n) < 0.0)
         first += (steps + 1u) * (steps + 2u) / 2u;
     vec3 weights, sum = vec3(0.0);
-    points_around(steps, at, points, weights);
+    triangle_points(steps, at, points, weights);
     for (uint k = 0; k < 3; k++)
         for (uint j = 0; j < COEFFICIENTS; j++) {
             uvec2 packed = point_table[(first + points[k]) * COEFFICIENTS + j];
@@ -96,14 +72,15 @@ vec3 change_at(dnrt_gpu_patch patch_, vec2 at, vec3 n, uint light, uint lamps)
 vec3 change_of(ivec2 pixel, uvec2 ids, float z)
 {
     dnrt_own_instance of = instance_table[ids.x - 1u];
-    if (of.object < 0 || ids.y - 1u >= of.triangles) return vec3(0.0);
+    uint triangle = light_map_triangle_of(ids, of.triangles);
+    if (of.object < 0 || triangle == LIGHT_MAP_NO_TRIANGLE) return vec3(0.0);
     dnrt_gpu_object object = object_table[of.object];
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z) - object.centre;
     vec3 p = dnrt_object_from_world(object, position) / of.scale;
     vec3 n = dnrt_object_from_world(object, octahedral_decode(texelFetch(normal, pixel, 0).rg));
-    dnrt_gpu_patch first = patch_table[of.first + ids.y - 1u];
-    dnrt_gpu_patch next = patch_table[of.next + ids.y - 1u];
-    vec2 at = weights_at(mix(first.corner[0], next.corner[0], object.part),
+    dnrt_gpu_patch first = patch_table[of.first + triangle];
+    dnrt_gpu_patch next = patch_table[of.next + triangle];
+    vec2 at = triangle_weights(mix(first.corner[0], next.corner[0], object.part),
                          mix(first.corner[1], next.corner[1], object.part),
                          mix(first.corner[2], next.corner[2], object.part), p);
     uint light = push.light + uint(of.object) * DNRT_COEFFICIENTS;

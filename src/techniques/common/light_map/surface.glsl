@@ -4,6 +4,7 @@
 #define AG_LIGHT_MAP_SURFACE_GLSL
 
 #include "techniques/common/light_map/surface_shared.h"
+#include "techniques/common/light_map/triangle.glsl"
 
 layout(constant_id = LIGHT_MAP_HAS_BACKS) const bool HAS_BACKS = true; // some triangles: two sides
 layout(set = 0, binding = LIGHT_MAP_INSTANCES_BINDING, scalar) readonly buffer light_map_first
@@ -38,8 +39,9 @@ vec3 light_map_place_of(uvec2 ids, light_map_instances instances, inout light_ma
 {
     if (ids.x == 0u || ids.x > instances.count) return vec3(-1.0);
     uint first = first_triangle_table[ids.x - 1u];
-    if (ids.y - 1u >= first_triangle_table[ids.x] - first) return vec3(-1.0);
-    light_map_triangle t = triangle_table[first + ids.y - 1u];
+    uint triangle = light_map_triangle_of(ids, first_triangle_table[ids.x] - first);
+    if (triangle == LIGHT_MAP_NO_TRIANGLE) return vec3(-1.0);
+    light_map_triangle t = triangle_table[first + triangle];
     vec4 u = vec4(t.u_axis, t.offset.x), v = vec4(t.v_axis, t.offset.y);
     if (u == vec4(0.0, 0.0, 0.0, -1.0)) return vec3(-1.0);
     if (ids.x <= instances.moved) {
