@@ -9,6 +9,9 @@
 
 #include "technique_shaders.h"
 
+#include <stddef.h>
+#include <string.h>
+
 #define OPTION(...) OPTION_ROW(struct radiosity_options, __VA_ARGS__)
 static const struct option_row option_rows[] = {
 #include "techniques/radiosity/radiosity_options.def"
@@ -28,6 +31,10 @@ static bool create(void *state, const struct technique_create *how)
     s->host = how->host;
     s->gpu = how->gpu;
     s->options = *(const struct radiosity_options *)how->options;
+    // Rows of pixels suit the caches of a processor, squares those of a GPU.
+    const bool rows = gpu_info(s->gpu)->type == GPU_CPU;
+    s->pipelines.apply_width = rows ? 64 : RADIOSITY_LOCAL_2D;
+    s->pipelines.apply_height = rows ? 1 : RADIOSITY_LOCAL_2D;
     if (!how->pose) return true;
     s->instances = (uint32_t)how->pose->scene->instance_count;
     struct scene_statics statics;
@@ -38,99 +45,91 @@ static bool create(void *state, const struct technique_create *how)
     return ok;
 }
 
-// What shaders write.
-static bool make_tables(struct radiosity *s)
+// What shaders write, of `count` entries.
+static struct gpu_image_desc table(enum gpu_format format, size_t count)
 {
-    struct radiosity_tables *t = &s->tables;
+    const size_t rows = radiosity_table_room(count) / RADIOSITY_TABLE_WIDTH;
+    return (struct gpu_image_desc){ .format = format,
+                                    .width = RADIOSITY_TABLE_WIDTH,
+                                    .height = (uint32_t)rows,
+                                    .usage = GPU_SAMPLED | GPU_STORAGE };
+}
+
+#define TABLE(thing)    offsetof(struct radiosity, tables.thing)
+#define PIPELINE(thing) #thing, offsetof(struct radiosity, pipelines.thing)
+
+static void list_tables(const struct radiosity *s, struct gpu_objects *out)
+{
     const size_t texels = s->map.texel_count, nodes = s->map.tree.count;
-    const struct {
-        const char *name;
-        enum gpu_format format;
-        size_t count;
-        gpu_image *out;
-    } rows[] = {
-        { "flux", GPU_RGBA32F, texels, &t->flux },
-        { "light", GPU_RG32U, 3 * texels, &t->light },
-        { "smoothed", GPU_RG32U, 3 * texels, &t->smoothed },
-        { "sent", GPU_RG32U, nodes, &t->sent },
-        { "radiosity", GPU_RG32U, nodes, &t->radiosity[0] },
-        { "radiosity", GPU_RG32U, nodes, &t->radiosity[1] },
-        { "solution", GPU_RG32U, nodes, &t->solution },
-    };
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        if (!radiosity_table_create(s->host, s->gpu, rows[i].name, rows[i].format, rows[i].count,
-                                    rows[i].out))
-            return false;
-    return true;
+    struct gpu_image_desc map = light_map_image(&s->map.charts, "light_map");
+    if (texels == 0) map.width = 0;
+    GPU_ADD(out, 0, { GPU_IMAGE, "flux", TABLE(flux), .image = table(GPU_RGBA32F, texels) },
+            { GPU_IMAGE, "light", TABLE(light), .image = table(GPU_RG32U, 3 * texels) },
+            { GPU_IMAGE, "smoothed", TABLE(smoothed), .image = table(GPU_RG32U, 3 * texels) },
+            { GPU_IMAGE, "sent", TABLE(sent), .image = table(GPU_RG32U, nodes) },
+            { GPU_IMAGE, "radiosity", TABLE(radiosity[0]), .image = table(GPU_RG32U, nodes) },
+            { GPU_IMAGE, "radiosity", TABLE(radiosity[1]), .image = table(GPU_RG32U, nodes) },
+            { GPU_IMAGE, "solution", TABLE(solution), .image = table(GPU_RG32U, nodes) },
+            { GPU_IMAGE, "light_map", TABLE(light_maps[0]), .image = map },
+            { GPU_IMAGE, "light_map", TABLE(light_maps[1]), .image = map },
+            { GPU_SAMPLER, "light_map", .member = offsetof(struct radiosity, linear) });
 }
 
-static bool make_light_maps(struct radiosity *s)
+static void list_pipelines(const struct radiosity *s, struct gpu_objects *out)
 {
-    const struct gpu_image_desc desc = light_map_image(&s->map.charts, "light_map");
-    const struct gpu_sampler_desc linear = { .name = "light_map",
-                                             .filter = GPU_LINEAR,
-                                             .mip_filter = GPU_NEAREST,
-                                             .wrap_u = GPU_CLAMP,
-                                             .wrap_v = GPU_CLAMP,
-                                             .wrap_w = GPU_CLAMP };
-    return gpu_image_create(s->gpu, &desc, &s->tables.light_maps[0]) &&
-           gpu_image_create(s->gpu, &desc, &s->tables.light_maps[1]) &&
-           gpu_sampler_get(s->gpu, &linear, &s->linear);
+    const struct radiosity_pipelines *p = &s->pipelines;
+    const struct gpu_constant constants[] = { { RADIOSITY_APPLY_WIDTH, p->apply_width },
+                                              { RADIOSITY_APPLY_HEIGHT, p->apply_height },
+                                              { LIGHT_MAP_HAS_BACKS,
+                                                light_map_sides(&s->map.charts) == 2 },
+                                              { RADIOSITY_APPLY_DIELECTRIC, 0 },
+                                              { RADIOSITY_APPLY_DIELECTRIC, 1 } };
+    const struct gpu_shader *apply = s->options.specular ? &shader_radiosity_apply_specular_comp
+                                                         : &shader_radiosity_apply_diffuse_comp;
+    memcpy(out->constants, constants, sizeof constants);
+    if (s->map.texel_count == 0) return;
+    GPU_ADD(out, 0, { GPU_PIPELINE, PIPELINE(direct), .shader = &shader_radiosity_direct_comp },
+            { GPU_PIPELINE, PIPELINE(clusters), .shader = &shader_radiosity_clusters_comp },
+            { GPU_PIPELINE, PIPELINE(nodes), .shader = &shader_radiosity_nodes_comp },
+            { GPU_PIPELINE, PIPELINE(solve), .shader = &shader_radiosity_solve_comp },
+            { GPU_PIPELINE, PIPELINE(gather), .shader = &shader_radiosity_gather_comp },
+            { GPU_PIPELINE, PIPELINE(smooth), .shader = &shader_radiosity_smooth_comp },
+            { GPU_PIPELINE, PIPELINE(map), .shader = &shader_radiosity_map_comp },
+            { GPU_PIPELINE, PIPELINE(seams), .shader = &shader_radiosity_seams_comp },
+            { GPU_PIPELINE, PIPELINE(view), .shader = &shader_radiosity_view_comp },
+            { GPU_PIPELINE, PIPELINE(apply[0]), .shader = apply, .consts = 7u | 1u << 3 },
+            { GPU_PIPELINE, PIPELINE(apply[1]), .shader = apply, .consts = 7u | 1u << 4 });
 }
 
-// Rows of pixels suit the caches of a processor, squares those of a GPU.
-static bool make_lookups(struct radiosity *s)
+// What radiosity_upload creates.
+static void list_uploads(struct gpu_objects *out)
 {
-    struct radiosity_pipelines *p = &s->pipelines;
-    const bool rows = gpu_info(s->gpu)->type == GPU_CPU;
-    p->apply_width = rows ? 64 : RADIOSITY_LOCAL_2D;
-    p->apply_height = rows ? 1 : RADIOSITY_LOCAL_2D;
-    for (uint32_t dielectric = 0; dielectric < 2; dielectric++) {
-        const struct gpu_constant constants[] = { { RADIOSITY_APPLY_WIDTH, p->apply_width },
-                                                  { RADIOSITY_APPLY_HEIGHT, p->apply_height },
-                                                  { RADIOSITY_APPLY_DIELECTRIC, dielectric },
-                                                  { LIGHT_MAP_HAS_BACKS,
-                                                    light_map_sides(&s->map.charts) == 2 } };
-        if (!gpu_compute_pipeline_create(s->gpu, "apply",
-                                         s->options.specular ? &shader_radiosity_apply_specular_comp
-                                                             : &shader_radiosity_apply_diffuse_comp,
-                                         constants, 4, &p->apply[dielectric]))
-            return false;
-    }
-    return true;
+#define IMAGE(thing) { GPU_IMAGE, .member = TABLE(thing) }
+    GPU_ADD(out, 0, IMAGE(texels), IMAGE(neighbours), IMAGE(clusters), IMAGE(spans), IMAGE(members),
+            IMAGE(groups), IMAGE(owners), IMAGE(places), IMAGE(seams),
+            { GPU_BUFFER, .member = TABLE(surfaces.first) },
+            { GPU_BUFFER, .member = TABLE(surfaces.triangles) },
+            { GPU_BUFFER, .member = TABLE(labels) },
+            { GPU_BUFFER, .member = TABLE(owner_of_place) });
 }
 
-static bool make_pipelines(struct radiosity *s)
+static void list(const struct radiosity *s, struct gpu_objects *out)
 {
-    struct radiosity_pipelines *p = &s->pipelines;
-    const struct {
-        const char *name;
-        const struct gpu_shader *shader;
-        gpu_pipeline *out;
-    } rows[] = {
-        { "direct", &shader_radiosity_direct_comp, &p->direct },
-        { "clusters", &shader_radiosity_clusters_comp, &p->clusters },
-        { "nodes", &shader_radiosity_nodes_comp, &p->nodes },
-        { "solve", &shader_radiosity_solve_comp, &p->solve },
-        { "gather", &shader_radiosity_gather_comp, &p->gather },
-        { "smooth", &shader_radiosity_smooth_comp, &p->smooth },
-        { "map", &shader_radiosity_map_comp, &p->map },
-        { "seams", &shader_radiosity_seams_comp, &p->seams },
-    };
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        if (!gpu_compute_pipeline_create(s->gpu, rows[i].name, rows[i].shader, NULL, 0,
-                                         rows[i].out))
-            return false;
-    return make_lookups(s);
+    out->count = 0;
+    list_tables(s, out);
+    list_pipelines(s, out);
+    list_uploads(out);
 }
 
 static bool load(void *state, const struct tensors *bake)
 {
     struct radiosity *s = state;
     const struct radiosity_probes_create how = { s->host, s->gpu, &s->map, &s->options };
-    return radiosity_upload(s, bake) && make_tables(s) &&
-           radiosity_probes_init(&s->probes, &how, bake) &&
-           (s->map.texel_count == 0 || (make_light_maps(s) && make_pipelines(s)));
+    struct gpu_objects objects;
+    if (!radiosity_upload(s, bake)) return false;
+    list(s, &objects);
+    return gpu_objects_create(s->gpu, &objects, 0, s) &&
+           radiosity_probes_init(&s->probes, &how, bake);
 }
 
 static void set_options(void *state, const void *options)
@@ -216,36 +215,15 @@ static void debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view
         gpu_clear_image(cmd, out, (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
 }
 
-static void destroy_tables(struct radiosity *s)
-{
-    struct radiosity_tables *t = &s->tables;
-    gpu_image *const images[] = { &t->texels,   &t->neighbours,    &t->clusters,
-                                  &t->spans,    &t->members,       &t->groups,
-                                  &t->owners,   &t->places,        &t->seams,
-                                  &t->flux,     &t->light,         &t->smoothed,
-                                  &t->sent,     &t->radiosity[0],  &t->radiosity[1],
-                                  &t->solution, &t->light_maps[0], &t->light_maps[1] };
-    for (size_t i = 0; i < sizeof images / sizeof *images; i++)
-        gpu_image_destroy(s->gpu, images[i]);
-    gpu_buffer_destroy(s->gpu, &t->surfaces.first);
-    gpu_buffer_destroy(s->gpu, &t->surfaces.triangles);
-    gpu_buffer_destroy(s->gpu, &t->labels);
-    gpu_buffer_destroy(s->gpu, &t->owner_of_place);
-    radiosity_destroy_rows(s, &t->factors);
-    radiosity_destroy_rows(s, &t->cluster_factors);
-}
-
 static void destroy(void *state)
 {
     struct radiosity *s = state;
     if (!s->host) return;
-    struct radiosity_pipelines *p = &s->pipelines;
-    gpu_pipeline *const pipelines[] = { &p->direct,   &p->clusters, &p->nodes, &p->solve,
-                                        &p->gather,   &p->smooth,   &p->map,   &p->seams,
-                                        &p->apply[0], &p->apply[1], &p->view };
-    for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
-        gpu_pipeline_destroy(s->gpu, pipelines[i]);
-    destroy_tables(s);
+    struct gpu_objects objects;
+    list(s, &objects);
+    gpu_objects_destroy(s->gpu, &objects, s);
+    radiosity_destroy_rows(s, &s->tables.factors);
+    radiosity_destroy_rows(s, &s->tables.cluster_factors);
     radiosity_probes_finish(&s->probes, s->gpu);
     radiosity_followed_finish(&s->followed);
     radiosity_map_finish(&s->map);

@@ -28,15 +28,6 @@ static bool make(struct host *host, struct gpu *gpu, const struct gpu_image_desc
     return gpu_image_create(gpu, &desc, out);
 }
 
-bool radiosity_table_create(struct host *host, struct gpu *gpu, const char *name,
-                            enum gpu_format format, size_t count, gpu_image *out)
-{
-    const struct gpu_image_desc like = { .name = name,
-                                         .format = format,
-                                         .usage = GPU_SAMPLED | GPU_STORAGE };
-    return make(host, gpu, &like, count, out);
-}
-
 bool radiosity_table_upload(struct host *host, struct gpu *gpu, const char *name,
                             enum gpu_format format, void *entries, size_t count, gpu_image *out)
 {

@@ -7,10 +7,7 @@
 
 // Entries that the image has, at least `count` and 1: whole rows of it.
 size_t radiosity_table_room(size_t count);
-// One that shaders write, of zeros. false: beyond the limits of the device, or no memory.
-bool radiosity_table_create(struct host *host, struct gpu *gpu, const char *name,
-                            enum gpu_format format, size_t count, gpu_image *out);
-// One with these entries, in memory for radiosity_table_room(count), which is freed with host_free
-// in any case. NULL: false.
+// A table with these entries, in memory for radiosity_table_room(count), which is freed with
+// host_free in any case. NULL: false, as beyond the limits of the device.
 bool radiosity_table_upload(struct host *host, struct gpu *gpu, const char *name,
                             enum gpu_format format, void *entries, size_t count, gpu_image *out);

@@ -63,9 +63,7 @@ static bool upload_owners(struct radiosity *s, const uint32_t *shown)
 
 bool radiosity_view_init(struct radiosity *s, const float *points, const uint32_t *shown)
 {
-    return upload_labels(s, points) && upload_owners(s, shown) &&
-           gpu_compute_pipeline_create(s->gpu, "view", &shader_radiosity_view_comp, NULL, 0,
-                                       &s->pipelines.view);
+    return upload_labels(s, points) && upload_owners(s, shown);
 }
 
 static uint32_t number_of(const char *name)
