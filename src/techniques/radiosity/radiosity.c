@@ -109,8 +109,7 @@ static void list_uploads(struct gpu_objects *out)
             IMAGE(groups), IMAGE(owners), IMAGE(places), IMAGE(seams),
             { GPU_BUFFER, .member = TABLE(surfaces.first) },
             { GPU_BUFFER, .member = TABLE(surfaces.triangles) },
-            { GPU_BUFFER, .member = TABLE(labels) },
-            { GPU_BUFFER, .member = TABLE(owner_of_place) });
+            { GPU_BUFFER, .member = TABLE(labels) });
 }
 
 static void list(const struct radiosity *s, struct gpu_objects *out)
@@ -258,7 +257,7 @@ static uint64_t memory_estimate(const void *options)
     const uint64_t of_texels =
         table_bytes(RADIOSITY_TEXEL_PARTS * texels, 16) + rows_bytes(texels, 8 * sources) +
         table_bytes(RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR * texels, 16) + table_bytes(texels, 16) +
-        2 * table_bytes(3 * texels, 8) + texels * sizeof(struct radiosity_gpu_label);
+        2 * table_bytes(3 * texels, 8) + places * sizeof(struct radiosity_gpu_label);
     const uint64_t of_clusters = rows_bytes(clusters, 8 * sources) + table_bytes(clusters, 16) +
                                  table_bytes(clusters, 8) + table_bytes(texels, 4) +
                                  5 * table_bytes(nodes, 8);

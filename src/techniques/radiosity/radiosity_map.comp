@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "techniques/common/light_map/place.glsl"
+#define RADIOSITY_LIGHT_BINDING 1
 #include "techniques/radiosity/radiosity_table.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
@@ -13,7 +14,6 @@ layout(push_constant, scalar) uniform push_block
     radiosity_map_push push;
 };
 layout(set = 0, binding = 0) uniform usampler2D radiosity_owners; // places and their owners
-layout(set = 0, binding = 1, rg32ui) uniform readonly uimage2D radiosity_light; // [colour][texel]
 layout(set = 0, binding = 2, rgba16f) uniform writeonly image2DArray light_map;
 
 void main()
@@ -22,9 +22,7 @@ void main()
     uint i = push.first + gl_GlobalInvocationID.x;
     uvec2 owner = texelFetch(radiosity_owners, radiosity_at(i), 0).xy;
     uvec3 at = light_map_place(owner.x);
-    for (int c = 0; c < 3; c++) {
-        uvec2 words = imageLoad(radiosity_light, radiosity_at(c * push.texels + owner.y)).xy;
+    for (int c = 0; c < 3; c++)
         imageStore(light_map, ivec3(at.xy, LIGHT_MAP_LAYERS * at.z + c),
-                   radiosity_unpack_light(words));
-    }
+                   radiosity_light_of(owner.y, push.texels, c));
 }

@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "techniques/common/light_map/place.glsl"
+#define RADIOSITY_LIGHT_BINDING 2
 #include "techniques/radiosity/radiosity_table.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
@@ -16,14 +17,7 @@ layout(push_constant, scalar) uniform push_block
 layout(set = 0, binding = 0) uniform usampler2D radiosity_places;
 // [pair][place]: texels and weights; zeros at the end.
 layout(set = 0, binding = 1, rgba32ui) uniform readonly uimage2D radiosity_seam_rows;
-layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D radiosity_light; // [colour][texel]
 layout(set = 0, binding = 3, rgba16f) uniform writeonly image2DArray light_map;
-
-vec4 light_of(uint texel, int colour)
-{
-    uvec2 words = imageLoad(radiosity_light, radiosity_at(colour * push.texels + texel)).xy;
-    return radiosity_unpack_light(words);
-}
 
 void main()
 {
@@ -35,8 +29,8 @@ void main()
         vec2 weight = uintBitsToFloat(pair.yw);
         if (weight.x == 0.0) break;
         for (int c = 0; c < 3; c++) {
-            light[c] += weight.x * light_of(pair.x, c);
-            light[c] += weight.y * light_of(pair.z, c);
+            light[c] += weight.x * radiosity_light_of(pair.x, push.texels, c);
+            light[c] += weight.y * radiosity_light_of(pair.z, push.texels, c);
         }
     }
     uvec3 at = light_map_place(texelFetch(radiosity_places, radiosity_at(i), 0).x);

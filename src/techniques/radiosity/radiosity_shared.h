@@ -37,15 +37,16 @@
 // Neighbours of a texel, in pairs of (texel, weight).
 #define RADIOSITY_NEIGHBOURS 8
 
-// What debug views show of a texel.
+// What debug views show of a place of the light map, of the texel whose light it has.
 struct radiosity_gpu_label {
-    uint32_t place; // (side · height + y) · width + x in the light map
     uint32_t chart, cluster;
     uint32_t state; // RADIOSITY_SAMPLED_…
 };
 #define RADIOSITY_SAMPLED_IN_MIDDLE 0
 #define RADIOSITY_SAMPLED_BESIDE    1 // the middle is inside of something
 #define RADIOSITY_NOT_SAMPLED       2 // all of it is
+#define RADIOSITY_FILLED            3 // it is the light of another texel
+#define RADIOSITY_NO_TEXEL          4
 
 #define RADIOSITY_VIEW_CHARTS   0
 #define RADIOSITY_VIEW_TEXELS   1
@@ -107,7 +108,7 @@ struct radiosity_view_push {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct radiosity_gpu_label) == 16, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_gpu_label) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_view_push) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_direct_push) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_clusters_push) == 4, "layout is shared with GLSL");

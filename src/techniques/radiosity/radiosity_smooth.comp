@@ -5,6 +5,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#define RADIOSITY_LIGHT_BINDING 1
 #include "techniques/radiosity/radiosity_table.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
@@ -15,20 +16,14 @@ layout(push_constant, scalar) uniform push_block
 };
 // [pair][texel]: texels and weights; zeros at the end.
 layout(set = 0, binding = 0, rgba32ui) uniform readonly uimage2D radiosity_neighbours;
-layout(set = 0, binding = 1, rg32ui) uniform readonly uimage2D radiosity_light; // [colour][texel]
 layout(set = 0, binding = 2, rg32ui) uniform writeonly uimage2D radiosity_smoothed;
-
-vec4 light_of(uint texel, int colour)
-{
-    uvec2 words = imageLoad(radiosity_light, radiosity_at(colour * push.texels + texel)).xy;
-    return radiosity_unpack_light(words);
-}
 
 void main()
 {
     if (gl_GlobalInvocationID.x >= push.count) return;
     uint i = push.first + gl_GlobalInvocationID.x;
-    vec4 sum[3] = vec4[3](light_of(i, 0), light_of(i, 1), light_of(i, 2));
+    vec4 sum[3];
+    for (int c = 0; c < 3; c++) sum[c] = radiosity_light_of(i, push.texels, c);
     float weights = 1.0;
     for (uint k = 0; k < RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR; k++) {
         uvec4 pair = imageLoad(radiosity_neighbours, radiosity_at(k * push.texels + i));
@@ -37,8 +32,8 @@ void main()
         weights += weight.x;
         weights += weight.y;
         for (int c = 0; c < 3; c++) {
-            sum[c] += weight.x * light_of(pair.x, c);
-            sum[c] += weight.y * light_of(pair.z, c);
+            sum[c] += weight.x * radiosity_light_of(pair.x, push.texels, c);
+            sum[c] += weight.y * radiosity_light_of(pair.z, push.texels, c);
         }
     }
     for (int c = 0; c < 3; c++)

@@ -35,7 +35,7 @@ struct radiosity_tables {
     gpu_image sent, radiosity[2];               // [clusters and nodes] likewise
     gpu_image solution;                         // [clusters and nodes] of all bounces
     gpu_image light_maps[2];
-    gpu_buffer labels, owner_of_place; // of texels, of places: for debug views
+    gpu_buffer labels; // of places, for debug views
     struct radiosity_rows factors, cluster_factors;
 };
 

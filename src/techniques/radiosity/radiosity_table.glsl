@@ -37,4 +37,15 @@ vec4 radiosity_unpack_light(uvec2 words)
     return vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y));
 }
 
+#ifdef RADIOSITY_LIGHT_BINDING
+layout(set = 0, binding = RADIOSITY_LIGHT_BINDING,
+       rg32ui) uniform readonly uimage2D radiosity_light; // [colour][texel]
+
+vec4 radiosity_light_of(uint texel, uint texels, int colour)
+{
+    return radiosity_unpack_light(
+        imageLoad(radiosity_light, radiosity_at(colour * texels + texel)).xy);
+}
+#endif
+
 #endif

@@ -33,37 +33,30 @@ bool radiosity_buffer_upload(struct radiosity *s, const char *name, void *items,
     return ok;
 }
 
-static bool upload_labels(struct radiosity *s, const float *points)
+static struct radiosity_gpu_label label_of(const struct radiosity *s, const float *points,
+                                           uint32_t owner, size_t place)
 {
     const struct charts *charts = &s->map.charts;
-    struct radiosity_gpu_label *labels = host_alloc(s->host, s->map.texel_count, sizeof *labels);
-    for (uint32_t i = 0; labels && i < s->map.texel_count; i++) {
-        const struct chart_texel *t = chart_texel_of(charts, i);
-        const uint32_t row = (chart_is_back(charts, i) ? charts->height : 0) + t->y;
-        labels[i] = (struct radiosity_gpu_label){ .place = row * charts->width + t->x,
-                                                  .chart = charts->triangles[t->triangle].chart,
-                                                  .cluster = s->map.cluster_of[i],
-                                                  .state = state_of(t, points + 4 * (size_t)i) };
-    }
-    return radiosity_buffer_upload(s, "labels", labels, s->map.texel_count * sizeof *labels,
-                                   &s->tables.labels);
-}
-
-static bool upload_owners(struct radiosity *s, const uint32_t *shown)
-{
-    const size_t places = light_map_place_count(&s->map.charts);
-    uint32_t *owners = host_alloc(s->host, places, sizeof *owners);
-    for (size_t i = 0; owners && i < places; i++) {
-        const uint32_t texel = chart_texel_of_place(&s->map.charts, i);
-        owners[i] = texel == CHART_NONE ? CHART_NONE : shown[texel];
-    }
-    return radiosity_buffer_upload(s, "owner_of_place", owners, places * sizeof *owners,
-                                   &s->tables.owner_of_place);
+    const struct chart_texel *t = chart_texel_of(charts, owner);
+    const size_t row = (chart_is_back(charts, owner) ? charts->height : 0) + t->y;
+    const uint32_t state = state_of(t, points + 4 * (size_t)owner);
+    const bool filled = state != RADIOSITY_NOT_SAMPLED && row * charts->width + t->x != place;
+    return (struct radiosity_gpu_label){ .chart = charts->triangles[t->triangle].chart,
+                                         .cluster = s->map.cluster_of[owner],
+                                         .state = filled ? RADIOSITY_FILLED : state };
 }
 
 bool radiosity_view_init(struct radiosity *s, const float *points, const uint32_t *shown)
 {
-    return upload_labels(s, points) && upload_owners(s, shown);
+    const size_t places = light_map_place_count(&s->map.charts);
+    struct radiosity_gpu_label *labels = host_alloc(s->host, places, sizeof *labels);
+    for (size_t i = 0; labels && i < places; i++) {
+        const uint32_t texel = chart_texel_of_place(&s->map.charts, i);
+        labels[i] = texel == CHART_NONE
+                        ? (struct radiosity_gpu_label){ .state = RADIOSITY_NO_TEXEL }
+                        : label_of(s, points, shown[texel], i);
+    }
+    return radiosity_buffer_upload(s, "labels", labels, places * sizeof *labels, &s->tables.labels);
 }
 
 static uint32_t number_of(const char *name)
@@ -87,7 +80,6 @@ void radiosity_view_record(struct radiosity *s, struct gpu_cmd *cmd, const struc
                           { .name = "normal", .image = layers[FRAME_NORMAL] },
                           { .name = "id", .image = layers[FRAME_ID] },
                           LIGHT_MAP_SURFACE_BINDINGS(&s->tables.surfaces, cmd),
-                          { .name = "radiosity_owners", .buffer = s->tables.owner_of_place },
                           { .name = "radiosity_labels", .buffer = s->tables.labels },
                           { .name = "target", .image = out }),
                  &push, sizeof push, gpu_groups(view->width, RADIOSITY_LOCAL_2D),

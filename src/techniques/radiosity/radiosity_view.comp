@@ -20,19 +20,16 @@ layout(push_constant, scalar) uniform push_block
 layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2) uniform sampler2D normal;
 layout(set = 0, binding = 3) uniform usampler2D id; // FRAME_ID
-layout(set = 0, binding = 6, scalar) readonly buffer radiosity_owners
-{
-    uint owner_table[]; // [side][y][x]
-};
 layout(set = 0, binding = 7, scalar) readonly buffer radiosity_labels
 {
-    radiosity_gpu_label label_table[];
+    radiosity_gpu_label label_table[]; // [side][y][x]
 };
 layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D target;
 
 const vec3 NONE = vec3(0.02); // no light map
-const vec3 VALID = vec3(0.2), BESIDE = vec3(0.6, 0.45, 0.05), FILLED = vec3(0.7, 0.05, 0.05),
-           BLACK = vec3(0.5, 0.0, 0.5);
+// Of RADIOSITY_SAMPLED_IN_MIDDLE and the states after it.
+const vec3 VALIDITY[4] =
+    vec3[](vec3(0.2), vec3(0.6, 0.45, 0.05), vec3(0.5, 0.0, 0.5), vec3(0.7, 0.05, 0.05));
 
 // Integers of neighbours have colours far apart: the finalizer of MurmurHash3.
 vec3 colour_of(uint number)
@@ -43,26 +40,18 @@ vec3 colour_of(uint number)
     return 0.08 + 0.6 * vec3(uvec3(h, h >> 8, h >> 16) & 0xffu) / 255.0;
 }
 
-vec3 validity_of(radiosity_gpu_label label, uint place)
-{
-    if (label.state == uint(RADIOSITY_NOT_SAMPLED)) return BLACK;
-    if (label.place != place) return FILLED;
-    return label.state == uint(RADIOSITY_SAMPLED_BESIDE) ? BESIDE : VALID;
-}
-
 vec3 colour_at(vec3 at)
 {
     // Rounding at an edge of a triangle may leave the texels of its chart, not its gutter.
     uvec2 texel = uvec2(clamp(at.xy, vec2(0.0), vec2(push.width, push.height) - 1.0));
     uint place = (uint(at.z) * push.height + texel.y) * push.width + texel.x;
-    uint owner = owner_table[place];
-    if (owner == 0xffffffffu) return NONE;
+    radiosity_gpu_label label = label_table[place];
+    if (label.state == uint(RADIOSITY_NO_TEXEL)) return NONE;
     if (push.view == uint(RADIOSITY_VIEW_TEXELS))
         return vec3((texel.x + texel.y & 1u) == 0u ? 0.5 : 0.15);
-    radiosity_gpu_label label = label_table[owner];
     if (push.view == uint(RADIOSITY_VIEW_CHARTS)) return colour_of(label.chart);
     if (push.view == uint(RADIOSITY_VIEW_CLUSTERS)) return colour_of(label.cluster);
-    return validity_of(label, place);
+    return VALIDITY[label.state];
 }
 
 void main()

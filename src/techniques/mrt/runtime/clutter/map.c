@@ -10,9 +10,6 @@
 
 #include "technique_shaders.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 enum { VALUES = MRT_VECTOR_COEFFICIENTS, VEC3_BYTES = 12 };
 
 // ---- tables
@@ -81,18 +78,7 @@ static uint32_t light_of(const struct mrt_clutter_atlas_input *map, uint32_t tex
     return CHART_NONE;
 }
 
-// A lookup reads the texels that the surface touches and the eight around each.
-static bool is_read(const struct charts *charts, size_t place)
-{
-    const uint32_t owner = chart_texel_of_place(charts, place);
-    if (owner == CHART_NONE) return false;
-    const struct chart_texel *of = chart_texel_of(charts, owner);
-    const int x = (int)(place % charts->width) - (int)of->x;
-    const int y = (int)(place / charts->width % charts->height) - (int)of->y;
-    return abs(x) <= 1 && abs(y) <= 1;
-}
-
-// Texels of the atlas that lookups read. `out` may be NULL.
+// Places with light. `out` may be NULL.
 static uint32_t list_places(const struct mrt_clutter_atlas_input *map,
                             struct mrt_gpu_clutter_place *out)
 {
@@ -100,8 +86,7 @@ static uint32_t list_places(const struct mrt_clutter_atlas_input *map,
     const struct charts *charts = &map->clutter->charts;
     for (size_t i = 0; i < light_map_place_count(charts); i++) {
         const uint32_t texel = map->source[i];
-        const bool read = texel != CHART_NONE && is_read(charts, i);
-        const uint32_t light = read ? light_of(map, texel) : CHART_NONE;
+        const uint32_t light = texel == CHART_NONE ? CHART_NONE : light_of(map, texel);
         if (light == CHART_NONE) continue;
         if (out)
             out[count] =
@@ -114,14 +99,6 @@ static uint32_t list_places(const struct mrt_clutter_atlas_input *map,
 static void fill_places(const struct mrt_runtime_input *input, void *items)
 {
     list_places(&input->clutter->map, items);
-}
-
-// First triangles of the scene's instances, and the end.
-static void fill_first(const struct mrt_runtime_input *input, void *items)
-{
-    const struct mrt_clutter *clutter = input->clutter->map.clutter;
-    memcpy(items, clutter->scene_triangle_0,
-           ((size_t)clutter->walls.scene.instance_count + 1) * sizeof(uint32_t));
 }
 
 static size_t triangles_of(const struct mrt_clutter *clutter)
@@ -155,8 +132,8 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
                             sizeof(struct mrt_gpu_opening), fill_openings, &map->openings) &&
            mrt_table_upload(runtime, input, "clutter_places", map->fill_push.places,
                             sizeof(struct mrt_gpu_clutter_place), fill_places, &map->places) &&
-           mrt_table_upload(runtime, input, "clutter_first_triangles", instances + 1,
-                            sizeof(uint32_t), fill_first, &map->surfaces.first) &&
+           mrt_buffer_of(runtime, "clutter_first_triangles", from->clutter->scene_triangle_0,
+                         (instances + 1) * sizeof(uint32_t), &map->surfaces.first) &&
            mrt_table_upload(runtime, input, "clutter_triangles", triangles_of(from->clutter),
                             sizeof(struct light_map_triangle), fill_triangles,
                             &map->surfaces.triangles) &&
