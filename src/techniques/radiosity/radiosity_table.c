@@ -13,8 +13,8 @@ size_t radiosity_table_room(size_t count)
     return rows_of(count) * RADIOSITY_TABLE_WIDTH;
 }
 
-bool radiosity_table_create(struct host *host, struct gpu *gpu, const char *name,
-                            enum gpu_format format, size_t count, gpu_image *out)
+static bool create_table(struct host *host, struct gpu *gpu, const char *name,
+                         enum gpu_format format, size_t count, gpu_image *out)
 {
     const size_t rows = rows_of(count), most = gpu_limits(gpu)->max_image_2d;
     const struct gpu_image_desc desc = { .name = name,
@@ -34,7 +34,7 @@ bool radiosity_table_upload(struct host *host, struct gpu *gpu, const char *name
                             enum gpu_format format, void *entries, size_t count, gpu_image *out)
 {
     const size_t bytes = radiosity_table_room(count) * (size_t)gpu_format_bytes(format);
-    const bool ok = entries && radiosity_table_create(host, gpu, name, format, count, out) &&
+    const bool ok = entries && create_table(host, gpu, name, format, count, out) &&
                     gpu_image_upload(gpu, *out, 0, 0, entries, bytes);
     host_free(host, entries);
     return ok;
