@@ -11,14 +11,6 @@
 
 // ---- triangles of texels
 
-static struct raster_polygon polygon_of(const struct chart_triangle *t)
-{
-    struct raster_polygon polygon = { .count = 3 };
-    for (int k = 0; k < 3; k++)
-        for (int a = 0; a < 2; a++) polygon.at[k][a] = (double)t->place[k].raw[a];
-    return polygon;
-}
-
 static void range_of(const struct raster_polygon *polygon, int axis, uint32_t *low, uint32_t *high)
 {
     double least = INFINITY, most = -INFINITY;
@@ -31,10 +23,10 @@ static void range_of(const struct raster_polygon *polygon, int axis, uint32_t *l
 }
 
 // Calls with `list` NULL count, later ones fill.
-static void visit_triangle(const struct charts *charts, uint32_t triangle, const uint32_t *texel_of,
-                           uint32_t *first, uint32_t *list)
+static void visit_triangle(const struct charts *charts, uint32_t triangle, uint32_t *first,
+                           uint32_t *list)
 {
-    const struct raster_polygon whole = polygon_of(&charts->triangles[triangle]);
+    const struct raster_polygon whole = raster_polygon_of(charts->triangles[triangle].place);
     uint32_t top, bottom, left, right;
     range_of(&whole, 1, &top, &bottom);
     for (uint32_t y = top; y < bottom && y < charts->height; y++) {
@@ -42,41 +34,28 @@ static void visit_triangle(const struct charts *charts, uint32_t triangle, const
         if (row.count < 3) continue;
         range_of(&row, 0, &left, &right);
         for (uint32_t x = left; x < right && x < charts->width; x++) {
-            const uint32_t texel = texel_of[(size_t)y * charts->width + x];
-            if (texel == CHART_NONE) continue;
+            const uint32_t texel = charts->owner[(size_t)y * charts->width + x];
+            if (texel == CHART_NONE || charts->texels[texel].x != x || charts->texels[texel].y != y)
+                continue; // a gutter
             if (list) list[first[texel]] = triangle;
             first[texel]++;
         }
     }
 }
 
-// [width × height] the texel at a place, without gutters. Owned by the caller.
-static uint32_t *texels_of(struct host *host, const struct charts *charts)
-{
-    const size_t count = (size_t)charts->width * charts->height;
-    uint32_t *texel_of = host_alloc(host, count, sizeof *texel_of);
-    for (size_t i = 0; texel_of && i < count; i++) texel_of[i] = CHART_NONE;
-    for (uint32_t i = 0; texel_of && i < charts->texel_count; i++)
-        texel_of[(size_t)charts->texels[i].y * charts->width + charts->texels[i].x] = i;
-    return texel_of;
-}
-
 bool gather_list_triangles(struct gather_scene *s)
 {
     const struct charts *charts = s->charts;
     const uint32_t count = charts->texel_count;
-    uint32_t *texel_of = texels_of(s->host, charts);
     s->first = host_alloc(s->host, (size_t)count + 2, sizeof *s->first);
-    if (texel_of && s->first) {
-        // Counted two places further, so that filling leaves the first index of each texel.
-        for (uint32_t t = 0; t < charts->triangle_count; t++)
-            visit_triangle(charts, t, texel_of, s->first + 2, NULL);
-        for (uint32_t i = 0; i < count; i++) s->first[i + 2] += s->first[i + 1];
-        s->meeting = host_alloc(s->host, s->first[count + 1], sizeof *s->meeting);
-        for (uint32_t t = 0; s->meeting && t < charts->triangle_count; t++)
-            visit_triangle(charts, t, texel_of, s->first + 1, s->meeting);
-    }
-    host_free(s->host, texel_of);
+    if (!s->first) return false;
+    // Counted two places further, so that filling leaves the first index of each texel.
+    for (uint32_t t = 0; t < charts->triangle_count; t++)
+        visit_triangle(charts, t, s->first + 2, NULL);
+    for (uint32_t i = 0; i < count; i++) s->first[i + 2] += s->first[i + 1];
+    s->meeting = host_alloc(s->host, s->first[count + 1], sizeof *s->meeting);
+    for (uint32_t t = 0; s->meeting && t < charts->triangle_count; t++)
+        visit_triangle(charts, t, s->first + 1, s->meeting);
     return s->meeting;
 }
 

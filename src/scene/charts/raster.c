@@ -68,6 +68,14 @@ bool raster_centres(const struct raster_triangle *t, raster_visit visit, void *u
     return true;
 }
 
+struct raster_polygon raster_polygon_of(const vec2s corner[3])
+{
+    struct raster_polygon polygon = { .count = 3 };
+    for (int k = 0; k < 3; k++)
+        for (int a = 0; a < 2; a++) polygon.at[k][a] = (double)corner[k].raw[a];
+    return polygon;
+}
+
 // Sutherland & Hodgman 1974, one half-plane: sign · (coordinate − limit) ≥ 0.
 static struct raster_polygon clip_side(const struct raster_polygon *in, int axis, double limit,
                                        double sign)

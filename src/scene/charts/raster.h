@@ -2,6 +2,8 @@
 // covers.
 #pragma once
 
+#include "core/vec.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -24,6 +26,7 @@ struct raster_polygon {
     int count;
     double at[RASTER_MAX_CORNERS][2];
 };
+struct raster_polygon raster_polygon_of(const vec2s corner[3]);
 // Keeps the part of the polygon with low ≤ coordinate ≤ low + 1.
 struct raster_polygon raster_clip(const struct raster_polygon *polygon, int axis, double low);
 double raster_polygon_area(const struct raster_polygon *polygon);

@@ -18,14 +18,6 @@ struct cells {
     struct cell *at; // [chart->width × chart->height]
 };
 
-static struct raster_polygon polygon_of(const struct chart_triangle *t)
-{
-    struct raster_polygon polygon = { .count = 3 };
-    for (int k = 0; k < 3; k++)
-        for (int a = 0; a < 2; a++) polygon.at[k][a] = (double)t->place[k].raw[a];
-    return polygon;
-}
-
 static void range_of(const struct raster_polygon *polygon, int axis, double *low, double *high)
 {
     *low = INFINITY;
@@ -55,7 +47,7 @@ static void add_part(struct cell *cell, const struct raster_polygon *part, uint3
 static void add_triangle(const struct charts *charts, uint32_t triangle, struct cells *cells)
 {
     const struct chart_triangle *t = &charts->triangles[triangle];
-    const struct raster_polygon whole = polygon_of(t);
+    const struct raster_polygon whole = raster_polygon_of(t->place);
     const double m2_per_texel = (double)t->area_m2 / raster_polygon_area(&whole);
     if (!isfinite(m2_per_texel)) return;
     double top, bottom, left, right;
