@@ -11,7 +11,7 @@
 enum {
     PROBES = 8, // rays per texel that find out whether the sky is seen at all
     RAYS = 64,
-    LIGHT_SAMPLES = 64,
+    LIGHT_SAMPLES = 128,
 };
 
 static const float RAY_OFFSET = 1e-3f; // m, along the normal
