@@ -179,9 +179,8 @@ static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     const bool mapped = view->layers[FRAME_ID].id && s->map.texel_count > 0;
     if (mapped) radiosity_record_apply(s, cmd, view);
     if (mapped && !s->followed.any_lit) return;
-    const struct radiosity_lit lit = { mapped ? s->followed.lit : NULL, s->followed.count };
     gather_probes(s, cmd, view);
-    radiosity_probes_record_apply(&s->probes, cmd, view, lit);
+    radiosity_probes_record_apply(&s->probes, cmd, view, mapped);
 }
 
 static bool charts(const struct scene_pose *statics, const void *options, struct host *host,

@@ -1,5 +1,5 @@
 // Irradiance of each pixel from the light map; SPECULAR: also the radiance that the specular lobe
-// reflects.
+// reflects. Alpha is 0 where the map has no light.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -69,6 +69,7 @@ void main()
     float z = texelFetch(depth, pixel, 0).r;
     light_map_light light = light_map_light(vec3(0.0), mat3(0.0));
     vec3 radiance = vec3(0.0);
+    bool mapped = true;
     if (z > 0.0) {
         vec2 uv = (vec2(pixel) + 0.5) * vec2(push.per_view_width, push.per_view_height);
         vec3 position = frame.camera_position + frame_view_distance(z) * frame_view_ray(uv);
@@ -76,12 +77,13 @@ void main()
         light_map_surface s = light_map_surface(position, n, frame.camera_position);
         vec3 place = light_map_place_of(texelFetch(id, pixel, 0).rg, push.instances, s);
         vec2 per_size = vec2(push.per_width, push.per_height);
-        if (place.z >= 0.0) light = light_map_lookup(light_map, per_size, place, s.normal);
+        mapped = place.z >= 0.0;
+        if (mapped) light = light_map_lookup(light_map, per_size, place, s.normal);
 #if SPECULAR
         radiance = reflected(pixel, s, light);
 #endif
     }
-    imageStore(irradiance, pixel, vec4(light.irradiance, 1.0));
+    imageStore(irradiance, pixel, vec4(light.irradiance, mapped ? 1.0 : 0.0));
 #if SPECULAR
     imageStore(specular, pixel, vec4(radiance, 1.0));
 #endif

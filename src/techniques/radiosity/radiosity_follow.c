@@ -2,8 +2,6 @@
 
 #include "core/hash.h"
 
-#include <string.h>
-
 // In the bake.
 static bool is_static(const struct radiosity_followed *f, uint32_t i)
 {
@@ -26,9 +24,7 @@ bool radiosity_followed_init(struct radiosity_followed *out, struct host *host,
                                         .started = pose->scene->revisions.newest,
                                         .revision = UINT64_MAX };
     out->deformed = host_alloc(host, count, sizeof *out->deformed);
-    out->lit = host_alloc(host, count / 32 + 1, sizeof *out->lit);
-    if (!out->deformed || !out->lit || !light_map_places_init(&out->places, host, &statics->pose))
-        return false;
+    if (!out->deformed || !light_map_places_init(&out->places, host, &statics->pose)) return false;
     for (uint32_t i = 0; i < count; i++)
         if (is_static(out, i)) out->deformed[i] = deformed_hash(pose, (int)i);
     radiosity_followed_update(out, pose);
@@ -40,7 +36,6 @@ void radiosity_followed_finish(struct radiosity_followed *f)
     if (!f->host) return;
     host_free(f->host, f->deformed);
     light_map_places_finish(&f->places, f->host);
-    host_free(f->host, f->lit);
     *f = (struct radiosity_followed){ 0 };
 }
 
@@ -63,7 +58,11 @@ static void say(struct radiosity_followed *f, bool *said, const char *what)
 static void check_static(struct radiosity_followed *f, const struct scene_pose *pose, uint32_t i)
 {
     const bool mapped = has_map(f, pose, i);
-    if (!mapped) f->lit[i / 32] |= 1u << i % 32;
+    if (!mapped) {
+        f->places.moves[i] = (struct light_map_move){ 0 }; // none of its pixels finds the map
+        f->any_moved = true;
+        f->any_lit |= pose->scene->instances[i].mesh >= 0;
+    }
     if (!mapped || f->places.at[i].moved)
         say(f, &f->said_moved,
             "static geometry changed: what moved keeps the light of the bake, probes light the "
@@ -77,8 +76,8 @@ static void check_static(struct radiosity_followed *f, const struct scene_pose *
 
 static void check_other(struct radiosity_followed *f, const struct scene *scene, uint32_t i)
 {
-    if (i < f->count) f->lit[i / 32] |= 1u << i % 32;
     const struct instance *it = &scene->instances[i];
+    f->any_lit |= it->mesh >= 0;
     if (it->mesh >= 0 && it->added > f->started && !it->movable)
         say(f, &f->said_added,
             "static instances were added: probes light them, but they block and reflect no "
@@ -92,13 +91,10 @@ void radiosity_followed_update(struct radiosity_followed *f, const struct scene_
     f->revision = scene->revisions.newest;
     f->any_lit = false;
     f->any_moved = light_map_find_moves(&f->places, pose);
-    memset(f->lit, 0, (f->count / 32 + 1) * sizeof *f->lit);
     for (uint32_t i = 0; i < (uint32_t)scene->instance_count; i++) {
         if (is_static(f, i))
             check_static(f, pose, i);
         else
             check_other(f, scene, i);
-        const bool lit = i >= f->count || (f->lit[i / 32] >> i % 32 & 1u);
-        f->any_lit |= lit && scene->instances[i].mesh >= 0;
     }
 }

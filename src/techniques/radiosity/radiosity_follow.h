@@ -10,9 +10,8 @@ struct radiosity_followed {
     struct light_map_places places; // at the start, of static ones
     uint64_t *deformed;             // [count] hashes of their vertices where these are deformed
     uint32_t count;
-    uint32_t *lit;    // a bit for each of these: it is not in the light map
     bool any_moved;   // of those that are
-    bool any_lit;     // one of these that is in use, or a later one
+    bool any_lit;     // one that is not in the light map
     uint64_t started; // revisions of the scene
     uint64_t revision;
     bool said_moved, said_added, said_material;

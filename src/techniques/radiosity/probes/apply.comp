@@ -27,33 +27,13 @@ layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2) uniform sampler2D normal;
 layout(set = 0, binding = 3) uniform sampler3D volume;
 layout(set = 0, binding = 4) uniform sampler2D probe_depths;
-layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D irradiance;
+layout(set = 0, binding = 5, rgba16f) uniform image2D irradiance; // of the light map
 
 #if SPECULAR
 layout(set = 0, binding = 9) uniform sampler2D albedo;
 layout(set = 0, binding = 10) uniform sampler2D material;
 layout(set = 0, binding = 11) uniform sampler2D dielectric; // FRAME_DIELECTRIC if `has_dielectric`
 layout(set = 0, binding = 12, rgba16f) uniform writeonly image2D specular;
-#endif
-
-// IDS: whether the light map has pixels.
-#if IDS
-layout(set = 0, binding = 6) uniform usampler2D id; // FRAME_ID
-layout(set = 0, binding = 7, scalar) readonly buffer probe_lit
-{
-    uint lit_words[]; // a bit for each instance: it is lit by probes
-};
-
-bool is_lit(ivec2 pixel)
-{
-    uint instance = texelFetch(id, pixel, 0).r - 1u;
-    return instance >= push.instances || (lit_words[instance / 32u] >> instance % 32u & 1u) != 0u;
-}
-#else
-bool is_lit(ivec2 pixel)
-{
-    return true;
-}
 #endif
 
 vec3 light_at(vec3 position, vec3 n, vec3 direction)
@@ -81,7 +61,7 @@ void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
-    if (!is_lit(pixel)) return;
+    if (pixel.x < push.map_columns && imageLoad(irradiance, pixel).a > 0.0) return;
     float z = texelFetch(depth, pixel, 0).r;
     vec3 result = vec3(0.0), radiance = vec3(0.0);
     if (z > 0.0) {

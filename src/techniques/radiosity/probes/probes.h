@@ -8,7 +8,7 @@ struct radiosity_probes {
     struct probe_volume volume;
     uint32_t count, entries;   // entries: of a row
     gpu_buffer table, factors; // of probes
-    gpu_pipeline gather, apply_some, apply_all;
+    gpu_pipeline gather, apply;
     gpu_sampler linear;
     bool fresh; // the volume has the light of the newest update
 };
@@ -29,13 +29,9 @@ void radiosity_probes_record_gather(struct radiosity_probes *probes, struct gpu_
                                     const struct frame_view *view, gpu_image radiosity,
                                     bool emitters);
 
-// Pixels of instances whose bit is set and of those beyond `instances`; words NULL: all pixels.
-struct radiosity_lit {
-    const uint32_t *words;
-    uint32_t instances;
-};
+// Pixels that the light map has not lit; mapped false: all.
 void radiosity_probes_record_apply(const struct radiosity_probes *probes, struct gpu_cmd *cmd,
-                                   const struct frame_view *view, struct radiosity_lit lit);
+                                   const struct frame_view *view, bool mapped);
 
 // Of GPU memory.
 uint64_t radiosity_probes_memory(const struct radiosity_options *options);

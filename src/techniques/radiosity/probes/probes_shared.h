@@ -22,7 +22,8 @@ struct radiosity_probe_gather_push {
 
 struct radiosity_probe_apply_push {
     AG_STRUCT(frame_probes) grid;
-    uint32_t instances; // of the table; later ones have light of probes
+    // Columns of the image in which the light map lit pixels whose alpha is not 0: all or none.
+    int32_t map_columns;
     uint32_t has_dielectric;
 };
 

@@ -22,17 +22,16 @@ void radiosity_probes_record_gather(struct radiosity_probes *p, struct gpu_cmd *
 }
 
 void radiosity_probes_record_apply(const struct radiosity_probes *p, struct gpu_cmd *cmd,
-                                   const struct frame_view *view, struct radiosity_lit lit)
+                                   const struct frame_view *view, bool mapped)
 {
-    static const uint32_t none = 0;
     const gpu_image *layers = view->layers;
     const gpu_image dielectric = layers[FRAME_DIELECTRIC];
-    const struct radiosity_probe_apply_push push = { p->volume.grid, lit.instances,
+    const struct radiosity_probe_apply_push push = { p->volume.grid,
+                                                     mapped ? (int32_t)view->width : 0,
                                                      dielectric.id != 0 };
-    const size_t words = lit.words && lit.instances > 0 ? (lit.instances + 31) / 32 : 1;
     gpu_scope_begin(cmd, "apply_probes");
     gpu_dispatch(
-        cmd, lit.words ? p->apply_some : p->apply_all,
+        cmd, p->apply,
         GPU_BIND(
             view->constants_binding, view->ggx_albedo_binding,
             { .name = "depth", .image = layers[FRAME_DEPTH] },
@@ -40,8 +39,6 @@ void radiosity_probes_record_apply(const struct radiosity_probes *p, struct gpu_
             { .name = "albedo", .image = layers[FRAME_ALBEDO] },
             { .name = "material", .image = layers[FRAME_MATERIAL] },
             { .name = "dielectric", .image = dielectric.id ? dielectric : layers[FRAME_MATERIAL] },
-            { .name = "id", .image = layers[FRAME_ID] },
-            gpu_transient(cmd, "probe_lit", lit.words ? lit.words : &none, words * sizeof none),
             { .name = "volume", .image = p->volume.image, .sampler = p->linear },
             { .name = "probe_depths", .image = p->volume.depth, .sampler = p->linear },
             { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },

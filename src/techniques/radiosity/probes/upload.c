@@ -123,14 +123,10 @@ static bool make_pipelines(const struct upload *u, bool specular)
         gpu_pipeline *out;
     } rows[] = {
         { "probes", &shader_radiosity_probes_gather_comp, &p->gather },
-        { "apply_some",
-          specular ? &shader_radiosity_probes_apply_some_specular_comp
-                   : &shader_radiosity_probes_apply_some_comp,
-          &p->apply_some },
-        { "apply_all",
-          specular ? &shader_radiosity_probes_apply_all_specular_comp
-                   : &shader_radiosity_probes_apply_all_comp,
-          &p->apply_all },
+        { "apply",
+          specular ? &shader_radiosity_probes_apply_specular_comp
+                   : &shader_radiosity_probes_apply_diffuse_comp,
+          &p->apply },
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (!gpu_compute_pipeline_create(u->gpu, rows[i].name, rows[i].shader, NULL, 0,
@@ -157,9 +153,9 @@ bool radiosity_probes_init(struct radiosity_probes *out, const struct radiosity_
 void radiosity_probes_finish(struct radiosity_probes *p, struct gpu *gpu)
 {
     gpu_buffer *const buffers[] = { &p->table, &p->factors };
-    gpu_pipeline *const pipelines[] = { &p->gather, &p->apply_some, &p->apply_all };
+    gpu_pipeline *const pipelines[] = { &p->gather, &p->apply };
     for (int i = 0; i < 2; i++) gpu_buffer_destroy(gpu, buffers[i]);
-    for (int i = 0; i < 3; i++) gpu_pipeline_destroy(gpu, pipelines[i]);
+    for (int i = 0; i < 2; i++) gpu_pipeline_destroy(gpu, pipelines[i]);
     gpu_image_destroy(gpu, &p->volume.image);
     gpu_image_destroy(gpu, &p->volume.depth);
 }
