@@ -83,7 +83,9 @@ static void list_pipelines(const struct radiosity *s, struct gpu_objects *out)
                                               { LIGHT_MAP_HAS_BACKS,
                                                 light_map_sides(&s->map.charts) == 2 },
                                               { RADIOSITY_APPLY_DIELECTRIC, 0 },
-                                              { RADIOSITY_APPLY_DIELECTRIC, 1 } };
+                                              { RADIOSITY_APPLY_DIELECTRIC, 1 },
+                                              { LIGHT_MAP_HAS_MOVES, 0 } };
+    const uint32_t still = 7u | 1u << 5, moved = 7u;
     const struct gpu_shader *apply = s->options.specular ? &shader_radiosity_apply_specular_comp
                                                          : &shader_radiosity_apply_diffuse_comp;
     memcpy(out->constants, constants, sizeof constants);
@@ -97,8 +99,10 @@ static void list_pipelines(const struct radiosity *s, struct gpu_objects *out)
             { GPU_PIPELINE, PIPELINE(map), .shader = &shader_radiosity_map_comp },
             { GPU_PIPELINE, PIPELINE(seams), .shader = &shader_radiosity_seams_comp },
             { GPU_PIPELINE, PIPELINE(view), .shader = &shader_radiosity_view_comp },
-            { GPU_PIPELINE, PIPELINE(apply[0]), .shader = apply, .consts = 7u | 1u << 3 },
-            { GPU_PIPELINE, PIPELINE(apply[1]), .shader = apply, .consts = 7u | 1u << 4 });
+            { GPU_PIPELINE, PIPELINE(apply[0][0]), .shader = apply, .consts = still | 1u << 3 },
+            { GPU_PIPELINE, PIPELINE(apply[0][1]), .shader = apply, .consts = still | 1u << 4 },
+            { GPU_PIPELINE, PIPELINE(apply[1][0]), .shader = apply, .consts = moved | 1u << 3 },
+            { GPU_PIPELINE, PIPELINE(apply[1][1]), .shader = apply, .consts = moved | 1u << 4 });
 }
 
 // What radiosity_upload creates.

@@ -249,7 +249,7 @@ void radiosity_record_apply(struct radiosity *s, struct gpu_cmd *cmd, const stru
                                                1.0f / (float)view->height,
                                                light_map_instances(&s->tables.surfaces) };
     gpu_scope_begin(cmd, "apply");
-    gpu_dispatch(cmd, p->apply[dielectric.id != 0],
+    gpu_dispatch(cmd, p->apply[s->tables.surfaces.moves != NULL][dielectric.id != 0],
                  GPU_BIND(view->constants_binding, view->ggx_albedo_binding,
                           { .name = "depth", .image = layers[FRAME_DEPTH] },
                           { .name = "normal", .image = layers[FRAME_NORMAL] },

@@ -41,7 +41,7 @@ struct radiosity_tables {
 
 struct radiosity_pipelines {
     gpu_pipeline direct, clusters, nodes, solve, gather, smooth, map, seams, view;
-    gpu_pipeline apply[2];              // [whether there is FRAME_DIELECTRIC]
+    gpu_pipeline apply[2][2];           // [with moves][whether there is FRAME_DIELECTRIC]
     uint32_t apply_width, apply_height; // of their workgroups
 };
 

@@ -6,7 +6,8 @@
 #include "techniques/common/light_map/surface_shared.h"
 #include "techniques/common/light_map/triangle.glsl"
 
-layout(constant_id = LIGHT_MAP_HAS_BACKS) const bool HAS_BACKS = true; // some triangles: two sides
+layout(constant_id = LIGHT_MAP_HAS_BACKS) const bool HAS_BACKS = true;
+layout(constant_id = LIGHT_MAP_HAS_MOVES) const bool HAS_MOVES = true;
 layout(set = 0, binding = LIGHT_MAP_INSTANCES_BINDING, scalar) readonly buffer light_map_first
 {
     uint first_triangle_table[]; // of each instance, and the end
@@ -44,7 +45,7 @@ vec3 light_map_place_of(uvec2 ids, light_map_instances instances, inout light_ma
     light_map_triangle t = triangle_table[first + triangle];
     vec4 u = vec4(t.u_axis, t.offset.x), v = vec4(t.v_axis, t.offset.y);
     if (u == vec4(0.0, 0.0, 0.0, -1.0)) return vec3(-1.0);
-    if (ids.x <= instances.moved) {
+    if (HAS_MOVES && ids.x <= instances.moved) {
         if (move_table[ids.x - 1u].x == vec3(0.0)) return vec3(-1.0);
         s = light_map_surface_moved(s, move_table[ids.x - 1u]);
     }

@@ -8,8 +8,10 @@
 // octahedral.h), which does not give this word: that of triangles with one.
 #define LIGHT_MAP_ONE_SIDED 0x8000u
 
-// Specialization constant: whether some triangles have two sides in the map.
+// Specialization constants: whether some triangles have two sides in the map, and whether some
+// instances may have a move. A driver on a processor loads the rows of both without a use.
 #define LIGHT_MAP_HAS_BACKS 64
+#define LIGHT_MAP_HAS_MOVES 65
 
 // Layers of a light map for one side of the surfaces: one for each colour.
 #define LIGHT_MAP_LAYERS 3
