@@ -81,8 +81,8 @@ vec3 change_of(ivec2 pixel, uvec2 ids, float z)
     dnrt_gpu_patch first = patch_table[of.first + triangle];
     dnrt_gpu_patch next = patch_table[of.next + triangle];
     vec2 at = triangle_weights(mix(first.corner[0], next.corner[0], object.part),
-                         mix(first.corner[1], next.corner[1], object.part),
-                         mix(first.corner[2], next.corner[2], object.part), p);
+                               mix(first.corner[1], next.corner[1], object.part),
+                               mix(first.corner[2], next.corner[2], object.part), p);
     uint light = push.light + uint(of.object) * DNRT_COEFFICIENTS;
     uint lamps = push.lamps + uint(of.object) * DNRT_COEFFICIENTS;
     vec3 change = change_at(first, at, n, light, lamps);
