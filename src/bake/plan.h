@@ -33,6 +33,19 @@ struct bake_output {
     enum bake_reduction reduction;
     int keep; // BAKE_SAVED, BAKE_REPORTED or the last wave that reads it
 };
+// An output of floats: its shape is the last arguments.
+#define BAKE_F32(reduction, name, keep, ...)                                                       \
+    ((struct bake_output){ name,                                                                   \
+                           TENSOR_F32,                                                             \
+                           sizeof((uint64_t[]){ __VA_ARGS__ }) / 8,                                \
+                           { __VA_ARGS__ },                                                        \
+                           reduction,                                                              \
+                           keep })
+// The members of a stage that list these outputs.
+#define BAKE_OUTPUTS(...)                                                                          \
+    .outputs = (const struct bake_output[]){ __VA_ARGS__ },                                        \
+    .output_count =                                                                                \
+        sizeof((const struct bake_output[]){ __VA_ARGS__ }) / sizeof(struct bake_output)
 
 struct bake_stage {
     const char *name; // unique in the plan, shown to the user: "cube/1 gather"

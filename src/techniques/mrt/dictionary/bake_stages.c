@@ -1,7 +1,19 @@
-// Matrices of the tensors that a task reads and writes.
+// Arguments of stages, and matrices of the tensors that a task reads and writes.
 #include "bake_stages.h"
 
+#include "techniques/mrt/dictionary/cube_operators.h"
+#include "techniques/mrt/dictionary/gather.h"
+#include "techniques/mrt/dictionary/tube_symmetry.h"
+
 #include <stdio.h>
+
+const struct mrt_shape_stage *mrt_shape_stage(struct bake_plan *plan, int shape,
+                                              enum mrt_measure measure)
+{
+    struct mrt_shape_stage *stage = bake_plan_alloc(plan, 1, sizeof *stage);
+    if (stage) *stage = (struct mrt_shape_stage){ shape, measure };
+    return stage;
+}
 
 static struct matrix_f32 matrix_over(void *at, int rank, const uint64_t *shape, uint64_t rows)
 {
@@ -41,4 +53,23 @@ bool mrt_bake_shape_input(const struct bake_task *task, int shape, const char *w
     char name[32];
     snprintf(name, sizeof name, "%s/%d/%s", job->family, shape, what);
     return mrt_bake_input(task, name, out);
+}
+
+bool mrt_bake_gather(const struct bake_task *task, const struct mrt_shape *shape,
+                     enum mrt_measure measure, const struct matrix_f32 *out)
+{
+    const struct mrt_bake_job *job = task->job;
+    const struct mrt_rays *rays = &job->rays[measure];
+    const bool orbits = shape->kind != MRT_CUBE && measure != MRT_PROBE;
+    uint64_t points;
+    const uint64_t first = bake_task_rows(task, 0, &points);
+    for (uint64_t i = 0; i < points; i++) {
+        const int at = (int)(first + i);
+        if (bake_task_cancelled(task)) return false;
+        mrt_gather(shape,
+                   mrt_gather_point(shape, job->options.block_probes, measure,
+                                    orbits ? tube_representative(shape, at) : at),
+                   rays, out->at + i * (uint64_t)rays->values * out->stride, out->stride);
+    }
+    return true;
 }

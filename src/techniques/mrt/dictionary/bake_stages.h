@@ -41,6 +41,21 @@ static inline struct mrt_shape mrt_bake_shape(const struct mrt_bake_job *job, in
     return mrt_dictionary_shape(job->maze, job->options.texels, i);
 }
 
+// The argument of a stage of a shape: i in mrt_bake_shape, and what its rays measure.
+struct mrt_shape_stage {
+    int shape;
+    enum mrt_measure measure;
+};
+// Of the plan. NULL: out of memory.
+const struct mrt_shape_stage *mrt_shape_stage(struct bake_plan *plan, int shape,
+                                              enum mrt_measure measure);
+
+enum { MRT_POINTS_PER_TASK = 16 };
+static inline size_t mrt_point_tasks(uint64_t points)
+{
+    return (size_t)((points + MRT_POINTS_PER_TASK - 1) / MRT_POINTS_PER_TASK);
+}
+
 // Rows are all axes but the last. `at` is not to be written for an input.
 struct matrix_f32 mrt_tensor_matrix(const struct tensor *tensor);
 // NULL (and false): no such tensor.
@@ -51,5 +66,10 @@ struct matrix_f32 mrt_bake_output(const struct bake_task *task, int output, uint
 // The tensor FAMILY/I/WHAT of an earlier wave.
 bool mrt_bake_shape_input(const struct bake_task *task, int shape, const char *what,
                           struct matrix_f32 *out);
+
+// Adds the gather rows of the points of a task's first output: of texels, of a tube those of the
+// representatives of its orbits (tube_symmetry.h), or of probes.
+bool mrt_bake_gather(const struct bake_task *task, const struct mrt_shape *shape,
+                     enum mrt_measure measure, const struct matrix_f32 *out);
 
 bool mrt_interface_bake(struct bake_plan *plan, const struct mrt_bake_job *job);

@@ -85,26 +85,24 @@ static bool run_lightfields(const struct bake_task *task)
 static bool add_lightfields(struct bake_plan *plan, const struct mrt_bake_job *job)
 {
     const uint64_t columns = job->openings * job->k_b;
-    const struct bake_output scale = { "interface/scale", TENSOR_F32, 1,
-                                       { columns },       BAKE_ROWS,  WAVE_REDUCE + 1 };
-    const struct bake_output lightfields = {
-        "interface/H_lf", TENSOR_F32, 2, { job->samples, columns }, BAKE_ROWS, job->wave_final + 1
-    };
     const double rays =
         (double)(job->samples * job->openings) * mrt_lightfield_subsamples(job->lightfield);
-    return bake_plan_add(plan, &(struct bake_stage){ .name = "interface weights",
-                                                     .wave = WAVE_LIGHTFIELDS,
-                                                     .task_count = 1,
-                                                     .run = run_scale,
-                                                     .outputs = &scale,
-                                                     .output_count = 1 }) &&
-           bake_plan_add(plan, &(struct bake_stage){ .name = "lightfields",
-                                                     .wave = WAVE_LIGHTFIELDS,
-                                                     .task_count = row_tasks(job),
-                                                     .run = run_lightfields,
-                                                     .outputs = &lightfields,
-                                                     .output_count = 1,
-                                                     .rays = rays / (double)row_tasks(job) });
+    return bake_plan_add(
+               plan, &(struct bake_stage){ .name = "interface weights",
+                                           .wave = WAVE_LIGHTFIELDS,
+                                           .task_count = 1,
+                                           .run = run_scale,
+                                           BAKE_OUTPUTS(BAKE_F32(BAKE_ROWS, "interface/scale",
+                                                                 WAVE_REDUCE + 1, columns)) }) &&
+           bake_plan_add(plan,
+                         &(struct bake_stage){
+                             .name = "lightfields",
+                             .wave = WAVE_LIGHTFIELDS,
+                             .task_count = row_tasks(job),
+                             .run = run_lightfields,
+                             BAKE_OUTPUTS(BAKE_F32(BAKE_ROWS, "interface/H_lf", job->wave_final + 1,
+                                                   job->samples, columns)),
+                             .rays = rays / (double)row_tasks(job) });
 }
 
 // ---- a round
@@ -207,15 +205,6 @@ static bool add_reduction(struct bake_plan *plan, const struct mrt_bake_job *job
 {
     const int round = names->round, wave = mrt_wave_of_round(round);
     const bool last = round == job->options.lightfield_rounds;
-    const struct bake_output gram = { names->gram,          TENSOR_F32, 2,
-                                      { columns, columns }, BAKE_SUM,   wave + 1 };
-    const struct bake_output reduced[] = {
-        { names->coefficients, TENSOR_F32, 2, { columns, job->k_l }, BAKE_ROWS, wave + 2 },
-        { names->sigma, TENSOR_F32, 1, { job->k_l }, BAKE_ROWS, BAKE_REPORTED },
-    };
-    const struct bake_output basis = {
-        names->basis, TENSOR_F32, 2, { job->samples, job->k_l }, BAKE_ROWS, wave + (last ? 5 : 6)
-    };
     const double samples = (double)job->samples, n = (double)columns;
     return bake_plan_add(
                plan, &(struct bake_stage){ .name = bake_plan_name(plan, "round %d products", round),
@@ -223,8 +212,8 @@ static bool add_reduction(struct bake_plan *plan, const struct mrt_bake_job *job
                                            .task_count = GRAM_TASKS,
                                            .run = run_gram,
                                            .argument = names,
-                                           .outputs = &gram,
-                                           .output_count = 1,
+                                           BAKE_OUTPUTS(BAKE_F32(BAKE_SUM, names->gram, wave + 1,
+                                                                 columns, columns)),
                                            .flops = 2.0 * samples * n * n / GRAM_TASKS,
                                            .scratch_bytes = (size_t)(8 * columns * columns) }) &&
            bake_plan_add(
@@ -233,20 +222,22 @@ static bool add_reduction(struct bake_plan *plan, const struct mrt_bake_job *job
                                            .task_count = 1,
                                            .run = run_reduce,
                                            .argument = names,
-                                           .outputs = reduced,
-                                           .output_count = 2,
+                                           BAKE_OUTPUTS(BAKE_F32(BAKE_ROWS, names->coefficients,
+                                                                 wave + 2, columns, job->k_l),
+                                                        BAKE_F32(BAKE_ROWS, names->sigma,
+                                                                 BAKE_REPORTED, job->k_l)),
                                            .flops = 12.0 * n * n * n,
                                            .scratch_bytes = (size_t)(24 * columns * columns) }) &&
            bake_plan_add(
-               plan, &(struct bake_stage){ .name = bake_plan_name(plan, "round %d basis", round),
-                                           .wave = wave + 2,
-                                           .task_count = row_tasks(job),
-                                           .run = run_basis,
-                                           .argument = names,
-                                           .outputs = &basis,
-                                           .output_count = 1,
-                                           .flops = 2.0 * samples * n * (double)job->k_l /
-                                                    (double)row_tasks(job) });
+               plan, &(struct bake_stage){
+                         .name = bake_plan_name(plan, "round %d basis", round),
+                         .wave = wave + 2,
+                         .task_count = row_tasks(job),
+                         .run = run_basis,
+                         .argument = names,
+                         BAKE_OUTPUTS(BAKE_F32(BAKE_ROWS, names->basis, wave + (last ? 5 : 6),
+                                               job->samples, job->k_l)),
+                         .flops = 2.0 * samples * n * (double)job->k_l / (double)row_tasks(job) });
 }
 
 // Propagates the basis of a round; the next round or the operators read it.
@@ -255,22 +246,18 @@ static bool add_propagation(struct bake_plan *plan, const struct mrt_bake_job *j
 {
     const int wave = mrt_wave_of_round(names->round) + 3;
     const bool last = names->round == job->options.lightfield_rounds;
-    const struct bake_output out = {
-        names->further, TENSOR_F32,           2, { job->samples, (uint64_t)job->turns * job->k_l },
-        BAKE_ROWS,      wave + (last ? 1 : 3)
-    };
     const double rays =
         (double)job->samples * mrt_lightfield_subsamples(job->lightfield) * job->turns;
-    return bake_plan_add(
-        plan,
-        &(struct bake_stage){ .name = bake_plan_name(plan, "round %d propagation", names->round),
-                              .wave = wave,
-                              .task_count = row_tasks(job),
-                              .run = run_propagate,
-                              .argument = names,
-                              .outputs = &out,
-                              .output_count = 1,
-                              .rays = rays / (double)row_tasks(job) });
+    return bake_plan_add(plan,
+                         &(struct bake_stage){
+                             .name = bake_plan_name(plan, "round %d propagation", names->round),
+                             .wave = wave,
+                             .task_count = row_tasks(job),
+                             .run = run_propagate,
+                             .argument = names,
+                             BAKE_OUTPUTS(BAKE_F32(BAKE_ROWS, names->further, wave + (last ? 1 : 3),
+                                                   job->samples, (uint64_t)job->turns * job->k_l)),
+                             .rays = rays / (double)row_tasks(job) });
 }
 
 static struct round_names *names_of_round(struct bake_plan *plan, int round)
@@ -312,19 +299,18 @@ static bool add_project(struct bake_plan *plan, const struct mrt_bake_job *job,
 {
     const uint64_t columns = job->openings * job->k_b, turned = (uint64_t)job->turns * job->k_l;
     const int wave = job->wave_final + 1;
-    const struct bake_output sums[] = {
-        { "interface/product/b", TENSOR_F32, 2, { job->k_l, columns }, BAKE_SUM, wave + 1 },
-        { "interface/product/turn", TENSOR_F32, 2, { job->k_l, turned }, BAKE_SUM, wave + 1 },
-    };
     const double flops = 2.0 * (double)(job->samples * job->k_l * (columns + turned));
-    return bake_plan_add(plan, &(struct bake_stage){ .name = "projections",
-                                                     .wave = wave,
-                                                     .task_count = GRAM_TASKS,
-                                                     .run = run_project,
-                                                     .argument = names,
-                                                     .outputs = sums,
-                                                     .output_count = 2,
-                                                     .flops = flops / GRAM_TASKS });
+    return bake_plan_add(
+        plan,
+        &(struct bake_stage){
+            .name = "projections",
+            .wave = wave,
+            .task_count = GRAM_TASKS,
+            .run = run_project,
+            .argument = names,
+            BAKE_OUTPUTS(BAKE_F32(BAKE_SUM, "interface/product/b", wave + 1, job->k_l, columns),
+                         BAKE_F32(BAKE_SUM, "interface/product/turn", wave + 1, job->k_l, turned)),
+            .flops = flops / GRAM_TASKS });
 }
 
 // Columns of a projection as a stack of matrices, divided by σ².
@@ -370,12 +356,8 @@ static bool add_operators(struct bake_plan *plan, const struct mrt_bake_job *job
                           const struct round_names *names)
 {
     struct bake_output outputs[1 + MRT_MAX_CUBES] = {
-        { "interface/R_turn",
-          TENSOR_F32,
-          3,
-          { (uint64_t)job->turns, job->k_l, job->k_l },
-          BAKE_ROWS,
-          BAKE_SAVED },
+        BAKE_F32(BAKE_ROWS, "interface/R_turn", BAKE_SAVED, (uint64_t)job->turns, job->k_l,
+                 job->k_l),
     };
     int count = 1;
     for (int i = 0; i < job->shapes; i++) {
@@ -383,12 +365,8 @@ static bool add_operators(struct bake_plan *plan, const struct mrt_bake_job *job
         const uint64_t openings = (uint64_t)mrt_shape_openings(&shape);
         if (openings > 0)
             outputs[count++] =
-                (struct bake_output){ bake_plan_name(plan, "%s/%d/R_b", job->family, i),
-                                      TENSOR_F32,
-                                      3,
-                                      { openings, job->k_l, job->k_b },
-                                      BAKE_ROWS,
-                                      BAKE_SAVED };
+                BAKE_F32(BAKE_ROWS, bake_plan_name(plan, "%s/%d/R_b", job->family, i), BAKE_SAVED,
+                         openings, job->k_l, job->k_b);
     }
     return bake_plan_add(plan, &(struct bake_stage){ .name = "interface operators",
                                                      .wave = job->wave_final + 2,
@@ -489,20 +467,18 @@ static bool add_response_modes(struct bake_plan *plan, const struct mrt_bake_job
 {
     const uint64_t count = (uint64_t)job->entered, m = job->entered_texels;
     const int wave = job->wave_final + 1;
-    const struct bake_output outputs[] = {
-        { "interface/U_r", TENSOR_F32, 2, { count * m, job->k_r }, BAKE_ROWS, BAKE_SAVED },
-        { "interface/T_r", TENSOR_F32, 2, { count * job->k_r, job->k_l }, BAKE_ROWS, BAKE_SAVED },
-        { "interface/lift", TENSOR_F32, 2, { count * job->k_l, job->k_r }, BAKE_ROWS, wave + 1 },
-    };
     return bake_plan_add(
-        plan, &(struct bake_stage){ .name = "response modes",
-                                    .wave = wave,
-                                    .task_count = (size_t)count,
-                                    .run = run_response_modes,
-                                    .outputs = outputs,
-                                    .output_count = 3,
-                                    .flops = 10.0 * (double)(m * job->k_l) * (double)job->k_l,
-                                    .scratch_bytes = (size_t)(32 * m * job->k_l) });
+        plan, &(struct bake_stage){
+                  .name = "response modes",
+                  .wave = wave,
+                  .task_count = (size_t)count,
+                  .run = run_response_modes,
+                  BAKE_OUTPUTS(
+                      BAKE_F32(BAKE_ROWS, "interface/U_r", BAKE_SAVED, count * m, job->k_r),
+                      BAKE_F32(BAKE_ROWS, "interface/T_r", BAKE_SAVED, count * job->k_r, job->k_l),
+                      BAKE_F32(BAKE_ROWS, "interface/lift", wave + 1, count * job->k_l, job->k_r)),
+                  .flops = 10.0 * (double)(m * job->k_l) * (double)job->k_l,
+                  .scratch_bytes = (size_t)(32 * m * job->k_l) });
 }
 
 // The lightfields of single r-coefficients.
@@ -526,17 +502,15 @@ static bool add_lift(struct bake_plan *plan, const struct mrt_bake_job *job,
                      const struct round_names *names)
 {
     const uint64_t count = (uint64_t)job->entered;
-    const struct bake_output out = {
-        "interface/H_r", TENSOR_F32,         2, { count * job->samples, job->k_r },
-        BAKE_ROWS,       job->wave_final + 3
-    };
-    return bake_plan_add(plan, &(struct bake_stage){ .name = "response lightfields",
-                                                     .wave = job->wave_final + 2,
-                                                     .task_count = (size_t)count * row_tasks(job),
-                                                     .run = run_lift,
-                                                     .argument = names,
-                                                     .outputs = &out,
-                                                     .output_count = 1 });
+    return bake_plan_add(
+        plan,
+        &(struct bake_stage){ .name = "response lightfields",
+                              .wave = job->wave_final + 2,
+                              .task_count = (size_t)count * row_tasks(job),
+                              .run = run_lift,
+                              .argument = names,
+                              BAKE_OUTPUTS(BAKE_F32(BAKE_ROWS, "interface/H_r", job->wave_final + 3,
+                                                    count * job->samples, job->k_r)) });
 }
 
 static bool add_responses(struct bake_plan *plan, const struct mrt_bake_job *job,
@@ -549,18 +523,12 @@ static bool add_responses(struct bake_plan *plan, const struct mrt_bake_job *job
                                              m == MRT_IRRADIANCE ? last->basis : "interface/H_r",
                                              m == MRT_PROBE ? job->probes : job->entered_texels };
     const uint64_t count = (uint64_t)job->entered, texels = count * job->entered_texels;
-    const struct bake_output g = { "interface/G",        TENSOR_F32, 2,
-                                   { texels, job->k_l }, BAKE_ROWS,  job->wave_final + 1 };
-    const struct bake_output vec = {
-        "interface/U_rvec", TENSOR_F32, 3, { texels, MRT_VECTOR_COEFFICIENTS, job->k_r },
-        BAKE_ROWS,          BAKE_SAVED
-    };
-    const struct bake_output vol = { "interface/U_rvol",
-                                     TENSOR_F32,
-                                     3,
-                                     { count * job->probes, MRT_PROBE_COEFFICIENTS, job->k_r },
-                                     BAKE_ROWS,
-                                     BAKE_SAVED };
+    const struct bake_output g =
+        BAKE_F32(BAKE_ROWS, "interface/G", job->wave_final + 1, texels, job->k_l);
+    const struct bake_output vec = BAKE_F32(BAKE_ROWS, "interface/U_rvec", BAKE_SAVED, texels,
+                                            MRT_VECTOR_COEFFICIENTS, job->k_r);
+    const struct bake_output vol = BAKE_F32(BAKE_ROWS, "interface/U_rvol", BAKE_SAVED,
+                                            count * job->probes, MRT_PROBE_COEFFICIENTS, job->k_r);
     return add_response(plan, job, "response", job->wave_final, &stages[0], &g) &&
            add_project(plan, job, last) && add_response_modes(plan, job) &&
            add_operators(plan, job, last) && add_lift(plan, job, last) &&

@@ -1,76 +1,9 @@
-// Gathering in tubes by symmetry.
+// Operators of tubes by symmetry.
 #include "tube_bake.h"
 
 #include "techniques/mrt/dictionary/cube_operators.h"
-#include "techniques/mrt/dictionary/gather.h"
 #include "techniques/mrt/dictionary/prior.h"
 #include "techniques/mrt/dictionary/tube_symmetry.h"
-
-enum { POINTS_PER_TASK = 16 };
-
-// Of a stage: the shape and what its rays measure.
-struct tube_stage {
-    int shape;
-    enum mrt_measure measure;
-};
-
-static const struct tube_stage *stage_of(struct bake_plan *plan, int shape,
-                                         enum mrt_measure measure)
-{
-    struct tube_stage *stage = bake_plan_alloc(plan, 1, sizeof *stage);
-    if (stage) *stage = (struct tube_stage){ shape, measure };
-    return stage;
-}
-
-static size_t tasks_of(uint64_t points)
-{
-    return (size_t)((points + POINTS_PER_TASK - 1) / POINTS_PER_TASK);
-}
-
-// The point of a row: the representative of an orbit, or a probe.
-static struct mrt_point point_of(const struct mrt_bake_job *job, const struct mrt_shape *shape,
-                                 enum mrt_measure measure, int i)
-{
-    return mrt_gather_point(shape, job->options.block_probes, measure,
-                            measure == MRT_PROBE ? i : tube_representative(shape, i));
-}
-
-static bool run_gather(const struct bake_task *task)
-{
-    const struct mrt_bake_job *job = task->job;
-    const struct tube_stage *stage = task->argument;
-    const struct mrt_shape shape = mrt_bake_shape(job, stage->shape);
-    uint64_t first, points;
-    const struct matrix_f32 out = mrt_bake_output(task, 0, &first);
-    bake_task_rows(task, 0, &points);
-    for (uint64_t i = 0; i < points; i++) {
-        if (bake_task_cancelled(task)) return false;
-        mrt_gather(&shape, point_of(job, &shape, stage->measure, (int)(first + i)),
-                   &job->rays[stage->measure], out.at + i * out.stride, out.stride);
-    }
-    return true;
-}
-
-bool mrt_tube_gather(struct bake_plan *plan, const struct mrt_bake_job *job, int i)
-{
-    const struct mrt_shape shape = mrt_bake_shape(job, i);
-    const uint64_t n = (uint64_t)mrt_shape_texels(&shape), rows = (uint64_t)tube_orbits(&shape);
-    const struct tube_stage *stage = stage_of(plan, i, MRT_IRRADIANCE);
-    const struct bake_output out = {
-        bake_plan_name(plan, "tube/%d/F", i), TENSOR_F32, 2, { rows, n }, BAKE_ROWS, WAVE_MODES
-    };
-    const double points = (double)rows / (double)tasks_of(rows);
-    return stage && bake_plan_add(plan, &(struct bake_stage){
-                                            .name = bake_plan_name(plan, "tube %d gather", i),
-                                            .wave = WAVE_GATHER,
-                                            .task_count = tasks_of(rows),
-                                            .run = run_gather,
-                                            .argument = stage,
-                                            .outputs = &out,
-                                            .output_count = 1,
-                                            .rays = points * job->options.rays,
-                                            .texels = points });
-}
 
 bool mrt_tube_operator(const struct bake_task *task, int i, struct matrix_f64 *out)
 {
@@ -95,48 +28,24 @@ bool mrt_tube_operator(const struct bake_task *task, int i, struct matrix_f64 *o
 static bool run_probes(const struct bake_task *task)
 {
     const struct mrt_bake_job *job = task->job;
-    const struct tube_stage *stage = task->argument;
+    const struct mrt_shape_stage *stage = task->argument;
     const struct mrt_shape shape = mrt_bake_shape(job, stage->shape);
-    const struct mrt_rays *rays = &job->rays[MRT_PROBE];
     struct matrix_f32 l_imp, gather = { 0 };
-    uint64_t first, unused, points;
+    uint64_t unused;
     struct matrix_f32 out = mrt_bake_output(task, 0, &unused);
-    first = bake_task_rows(task, 0, &points);
     bool ok = mrt_bake_shape_input(task, stage->shape, "L_imp", &l_imp) &&
-              matrix_f32_init(task->host, &gather, out.rows, l_imp.rows);
-    for (uint64_t i = 0; ok && i < points; i++) {
-        mrt_gather(&shape, point_of(job, &shape, MRT_PROBE, (int)(first + i)), rays,
-                   gather.at + i * (uint64_t)rays->values * gather.stride, gather.stride);
-        ok = !bake_task_cancelled(task);
-    }
-    ok = ok && matrix_f32_multiply(task->host, 1.0f, &gather, NOT_TRANSPOSED, &l_imp,
-                                   NOT_TRANSPOSED, 0.0f, &out);
+              matrix_f32_init(task->host, &gather, out.rows, l_imp.rows) &&
+              mrt_bake_gather(task, &shape, MRT_PROBE, &gather) &&
+              matrix_f32_multiply(task->host, 1.0f, &gather, NOT_TRANSPOSED, &l_imp, NOT_TRANSPOSED,
+                                  0.0f, &out);
     matrix_f32_finish(task->host, &gather);
     return ok;
-}
-
-// The rows of all representatives of a tube, four for each.
-static bool run_vector_gather(const struct bake_task *task)
-{
-    const struct mrt_bake_job *job = task->job;
-    const struct tube_stage *stage = task->argument;
-    const struct mrt_shape shape = mrt_bake_shape(job, stage->shape);
-    uint64_t first, points;
-    const struct matrix_f32 out = mrt_bake_output(task, 0, &first);
-    first = bake_task_rows(task, 0, &points);
-    for (uint64_t i = 0; i < points; i++) {
-        if (bake_task_cancelled(task)) return false;
-        mrt_gather(&shape, point_of(job, &shape, MRT_VECTOR, (int)(first + i)),
-                   &job->rays[MRT_VECTOR],
-                   out.at + i * (uint64_t)MRT_VECTOR_COEFFICIENTS * out.stride, out.stride);
-    }
-    return true;
 }
 
 static bool run_vector(const struct bake_task *task)
 {
     const struct mrt_bake_job *job = task->job;
-    const struct tube_stage *stage = task->argument;
+    const struct mrt_shape_stage *stage = task->argument;
     const struct mrt_shape shape = mrt_bake_shape(job, stage->shape);
     struct matrix_f32 l_imp, rows, moved = { 0 };
     uint64_t unused, points;
@@ -161,52 +70,19 @@ static bool run_vector(const struct bake_task *task)
     return ok;
 }
 
-static bool add_vector_gather(struct bake_plan *plan, const struct mrt_bake_job *job,
-                              const struct tube_stage *stage)
-{
-    const struct mrt_shape shape = mrt_bake_shape(job, stage->shape);
-    const uint64_t n = (uint64_t)mrt_shape_texels(&shape), rows = (uint64_t)tube_orbits(&shape);
-    const struct bake_output out = { bake_plan_name(plan, "tube/%d/vector", stage->shape),
-                                     TENSOR_F32,
-                                     3,
-                                     { rows, MRT_VECTOR_COEFFICIENTS, n },
-                                     BAKE_ROWS,
-                                     WAVE_ELEMENTS };
-    return bake_plan_add(plan,
-                         &(struct bake_stage){
-                             .name = bake_plan_name(plan, "tube %d gather by normal", stage->shape),
-                             .wave = WAVE_GATHER,
-                             .task_count = tasks_of(rows),
-                             .run = run_vector_gather,
-                             .argument = stage,
-                             .outputs = &out,
-                             .output_count = 1,
-                             .rays = (double)rows * job->options.rays / (double)tasks_of(rows) });
-}
-
-bool mrt_tube_vector_gather(struct bake_plan *plan, const struct mrt_bake_job *job, int i)
-{
-    const struct tube_stage *stage = stage_of(plan, i, MRT_VECTOR);
-    return stage && add_vector_gather(plan, job, stage);
-}
-
 // Rows of U_vec or U_bvol.
 static bool add_directional(struct bake_plan *plan, const struct mrt_bake_job *job,
-                            const struct tube_stage *stage, const char *what,
+                            const struct mrt_shape_stage *stage, const char *what,
                             struct bake_stage added)
 {
     const struct mrt_shape shape = mrt_bake_shape(job, stage->shape);
     const bool probes = stage->measure == MRT_PROBE;
     const uint64_t points = probes ? job->probes : (uint64_t)mrt_shape_texels(&shape);
     const uint64_t values = probes ? MRT_PROBE_COEFFICIENTS : MRT_VECTOR_COEFFICIENTS;
-    const struct bake_output out = { bake_plan_name(plan, what, stage->shape),
-                                     TENSOR_F32,
-                                     3,
-                                     { points, values, job->k_b },
-                                     BAKE_ROWS,
-                                     BAKE_SAVED };
+    const struct bake_output out = BAKE_F32(BAKE_ROWS, bake_plan_name(plan, what, stage->shape),
+                                            BAKE_SAVED, points, values, job->k_b);
     added.wave = WAVE_ELEMENTS;
-    added.task_count = tasks_of(points);
+    added.task_count = mrt_point_tasks(points);
     added.argument = stage;
     added.outputs = &out;
     added.output_count = 1;
@@ -215,21 +91,21 @@ static bool add_directional(struct bake_plan *plan, const struct mrt_bake_job *j
 
 bool mrt_tube_directions(struct bake_plan *plan, const struct mrt_bake_job *job, int i)
 {
-    const struct tube_stage *vector = stage_of(plan, i, MRT_VECTOR);
-    const struct tube_stage *probe = stage_of(plan, i, MRT_PROBE);
+    const struct mrt_shape_stage *vector = mrt_shape_stage(plan, i, MRT_VECTOR);
+    const struct mrt_shape_stage *probe = mrt_shape_stage(plan, i, MRT_PROBE);
     const struct mrt_shape shape = mrt_bake_shape(job, i);
     const double texels = (double)mrt_shape_texels(&shape);
     return vector && probe &&
-           add_directional(
-               plan, job, vector, "tube/%d/U_vec",
-               (struct bake_stage){ .name = bake_plan_name(plan, "tube %d directions", i),
-                                    .run = run_vector,
-                                    .flops = 8.0 * POINTS_PER_TASK * texels * (double)job->k_b }) &&
+           add_directional(plan, job, vector, "tube/%d/U_vec",
+                           (struct bake_stage){
+                               .name = bake_plan_name(plan, "tube %d directions", i),
+                               .run = run_vector,
+                               .flops = 8.0 * MRT_POINTS_PER_TASK * texels * (double)job->k_b }) &&
            add_directional(
                plan, job, probe, "tube/%d/U_bvol",
                (struct bake_stage){ .name = bake_plan_name(plan, "tube %d probes", i),
                                     .run = run_probes,
-                                    .rays = (double)POINTS_PER_TASK * job->options.rays });
+                                    .rays = (double)MRT_POINTS_PER_TASK * job->options.rays });
 }
 
 // ---- the right bend
@@ -315,24 +191,14 @@ bool mrt_tube_mirror_modes(struct bake_plan *plan, const struct mrt_bake_job *jo
 
 bool mrt_tube_mirror_directions(struct bake_plan *plan, const struct mrt_bake_job *job)
 {
-    const struct bake_output outputs[] = {
-        { "tube/2/U_vec",
-          TENSOR_F32,
-          3,
-          { job->entered_texels, MRT_VECTOR_COEFFICIENTS, job->k_b },
-          BAKE_ROWS,
-          BAKE_SAVED },
-        { "tube/2/U_bvol",
-          TENSOR_F32,
-          3,
-          { job->probes, MRT_PROBE_COEFFICIENTS, job->k_b },
-          BAKE_ROWS,
-          BAKE_SAVED },
-    };
-    return bake_plan_add(plan, &(struct bake_stage){ .name = "tube 2 directions",
-                                                     .wave = WAVE_LIGHTFIELDS,
-                                                     .task_count = 1,
-                                                     .run = run_mirror_directions,
-                                                     .outputs = outputs,
-                                                     .output_count = 2 });
+    return bake_plan_add(
+        plan, &(struct bake_stage){
+                  .name = "tube 2 directions",
+                  .wave = WAVE_LIGHTFIELDS,
+                  .task_count = 1,
+                  .run = run_mirror_directions,
+                  BAKE_OUTPUTS(BAKE_F32(BAKE_ROWS, "tube/2/U_vec", BAKE_SAVED, job->entered_texels,
+                                        MRT_VECTOR_COEFFICIENTS, job->k_b),
+                               BAKE_F32(BAKE_ROWS, "tube/2/U_bvol", BAKE_SAVED, job->probes,
+                                        MRT_PROBE_COEFFICIENTS, job->k_b)) });
 }

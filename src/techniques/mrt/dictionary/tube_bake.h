@@ -3,12 +3,8 @@
 
 #include "techniques/mrt/dictionary/bake_stages.h"
 
-// Rows of F for the representatives of a straight tube and a left bend (tube_symmetry.h).
-bool mrt_tube_gather(struct bake_plan *plan, const struct mrt_bake_job *job, int shape);
-// The whole F. The caller finishes it.
+// The whole F, from its rows for the representatives (tube_symmetry.h). The caller finishes it.
 bool mrt_tube_operator(const struct bake_task *task, int shape, struct matrix_f64 *out);
-// Rows of irradiance by normal for the representatives, after F in the order of stages.
-bool mrt_tube_vector_gather(struct bake_plan *plan, const struct mrt_bake_job *job, int shape);
 // U_vec and U_bvol.
 bool mrt_tube_directions(struct bake_plan *plan, const struct mrt_bake_job *job, int shape);
 // The right bend from the left one: two stages, before and after that of directions.
