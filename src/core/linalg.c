@@ -75,6 +75,16 @@ void matrix_f64_finish(struct host *host, struct matrix_f64 *m)
     *m = (struct matrix_f64){ 0 };
 }
 
+bool matrix_f32_copy(struct host *host, const struct matrix_f32 *from, size_t columns,
+                     struct matrix_f32 *out)
+{
+    if (!matrix_f32_init(host, out, from->rows, columns)) return false;
+    for (size_t r = 0; r < from->rows; r++)
+        memcpy(out->at + r * out->stride, from->at + r * from->stride,
+               from->columns * sizeof *out->at);
+    return true;
+}
+
 bool matrix_f64_from_f32(struct host *host, const struct matrix_f32 *from, struct matrix_f64 *out)
 {
     if (!matrix_f64_init(host, out, from->rows, from->columns)) return false;

@@ -28,7 +28,9 @@ bool matrix_f32_init(struct host *host, struct matrix_f32 *m, size_t rows, size_
 bool matrix_f64_init(struct host *host, struct matrix_f64 *m, size_t rows, size_t columns);
 void matrix_f32_finish(struct host *host, struct matrix_f32 *m);
 void matrix_f64_finish(struct host *host, struct matrix_f64 *m);
-// A contiguous copy.
+// Contiguous copies; f32: of at least as many columns, zeros beyond those of `from`.
+bool matrix_f32_copy(struct host *host, const struct matrix_f32 *from, size_t columns,
+                     struct matrix_f32 *out);
 bool matrix_f64_from_f32(struct host *host, const struct matrix_f32 *from, struct matrix_f64 *out);
 // The block of rows first_row… and columns first_column…, in the memory of m; never finish it.
 struct matrix_f32 matrix_f32_block(const struct matrix_f32 *m, size_t first_row,

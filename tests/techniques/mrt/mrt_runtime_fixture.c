@@ -42,10 +42,10 @@ static void make_bases(struct mrt_runtime_fixture *f, int k_b)
     for (int b = 0; b < f->map.count; b++) {
         struct mrt_shape shape = mrt_cube(f->atlas.resolution, f->map.blocks[b].open);
         int texels = mrt_shape_texels(&shape);
-        f->bases[b] = (struct mrt_basis_input){ .open = shape.missing,
-                                                .t_db = zeros(k_b, texels),
-                                                .u_b = zeros(texels, k_b),
-                                                .u_vec = zeros(4 * texels, k_b) };
+        f->bases[b] =
+            (struct mrt_basis_input){ .open = shape.missing,
+                                      .t_db = zeros(k_b, texels),
+                                      .u = { zeros(texels, k_b), zeros(4 * texels, k_b) } };
         f->basis_of_block[b] = b;
     }
 }
@@ -82,20 +82,20 @@ void mrt_runtime_fixture_init(struct mrt_runtime_fixture *f, struct mrt_block_ma
     f->input.response_count = CUBE_FACES;
     for (int face = 0; face < CUBE_FACES; face++)
         f->responses[face] =
-            (struct mrt_response_input){ .u_r = zeros(6 * resolution * resolution, k_r),
-                                         .u_vec = zeros(24 * resolution * resolution, k_r) };
+            (struct mrt_response_input){ { zeros(6 * resolution * resolution, k_r),
+                                           zeros(24 * resolution * resolution, k_r) } };
 }
 
 void mrt_runtime_fixture_finish(struct mrt_runtime_fixture *f)
 {
     for (int b = 0; b < f->map.count; b++) {
         matrix_f32_finish(test_host(), &f->bases[b].t_db);
-        matrix_f32_finish(test_host(), &f->bases[b].u_b);
-        matrix_f32_finish(test_host(), &f->bases[b].u_vec);
+        matrix_f32_finish(test_host(), &f->bases[b].u[MRT_IRRADIANCE]);
+        matrix_f32_finish(test_host(), &f->bases[b].u[MRT_VECTOR]);
     }
     for (int face = 0; face < CUBE_FACES; face++) {
-        matrix_f32_finish(test_host(), &f->responses[face].u_r);
-        matrix_f32_finish(test_host(), &f->responses[face].u_vec);
+        matrix_f32_finish(test_host(), &f->responses[face].u[MRT_IRRADIANCE]);
+        matrix_f32_finish(test_host(), &f->responses[face].u[MRT_VECTOR]);
     }
     mrt_atlas_finish(&f->atlas);
     mrt_block_map_finish(&f->map);
@@ -134,12 +134,12 @@ void mrt_runtime_fixture_randomize(struct mrt_runtime_fixture *f, uint32_t seed)
     for (int b = 0; b < f->map.count; b++) {
         // As in a dictionary: small in T_d→b, large in U_b.
         randomize(&f->bases[b].t_db, &rng, 1e-6f);
-        randomize(&f->bases[b].u_b, &rng, 1e3f);
-        randomize(&f->bases[b].u_vec, &rng, 1e3f);
+        randomize(&f->bases[b].u[MRT_IRRADIANCE], &rng, 1e3f);
+        randomize(&f->bases[b].u[MRT_VECTOR], &rng, 1e3f);
     }
     for (int face = 0; face < CUBE_FACES; face++) {
-        randomize(&f->responses[face].u_r, &rng, 1.0f);
-        randomize(&f->responses[face].u_vec, &rng, 1.0f);
+        randomize(&f->responses[face].u[MRT_IRRADIANCE], &rng, 1.0f);
+        randomize(&f->responses[face].u[MRT_VECTOR], &rng, 1.0f);
     }
     make_pairs(f, &rng);
 }
@@ -159,7 +159,7 @@ void mrt_runtime_fixture_use_closed_cube(struct mrt_runtime_fixture *f)
     struct mrt_transfer transfer;
     mrt_fixture_transfer(&cube, f->input.k_b, true, &gather, &transfer);
     copy_matrix(&transfer.t_db, &f->bases[0].t_db);
-    copy_matrix(&transfer.u_b, &f->bases[0].u_b);
+    copy_matrix(&transfer.u_b, &f->bases[0].u[MRT_IRRADIANCE]);
     matrix_f64_finish(test_host(), &gather);
     mrt_transfer_finish(test_host(), &transfer);
 }
@@ -229,13 +229,13 @@ static float *solve(const struct mrt_runtime_fixture *f, const float *radiosity,
         block = tile->block;
         const struct mrt_basis_input *basis = &f->bases[block];
         for (int c = 0; c < 3; c++) {
-            double sum =
-                row_dot(values == 1 ? &basis->u_b : &basis->u_vec, rows, b + 3 * block * k_b, c);
+            double sum = row_dot(&basis->u[values == 1 ? MRT_IRRADIANCE : MRT_VECTOR], rows,
+                                 b + 3 * block * k_b, c);
             for (int o = 0; o < f->input.opening_count; o++) {
                 if (f->openings[o].block != block) continue;
                 const struct mrt_response_input *response = &f->responses[f->openings[o].face];
                 int row = (tile->face * per_tile + i / values % per_tile) * values + i % values;
-                sum += row_dot(values == 1 ? &response->u_r : &response->u_vec, row,
+                sum += row_dot(&response->u[values == 1 ? MRT_IRRADIANCE : MRT_VECTOR], row,
                                r + 3 * o * f->input.k_r, c);
             }
             out[3 * i + c] = (float)sum;

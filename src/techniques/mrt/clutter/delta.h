@@ -21,8 +21,6 @@
 
 #include <stdatomic.h>
 
-enum { MRT_MEASURES = 3 }; // enum mrt_measure
-
 // What clutter changes at the points of a block: texels of its walls, or probes.
 struct mrt_delta {
     struct matrix_f32 b;     // points · values × k_b: ΔU_b ≤ 0 for light ≥ 0

@@ -12,7 +12,7 @@ enum mrt_measure {
     MRT_PROBE,      // 9: irradiance as a function of the normal, SH in the frame of the point
 };
 
-enum { MRT_VECTOR_COEFFICIENTS = 4, MRT_PROBE_COEFFICIENTS = 9 };
+enum { MRT_MEASURES = 3, MRT_VECTOR_COEFFICIENTS = 4, MRT_PROBE_COEFFICIENTS = 9 };
 
 struct mrt_rays {
     int count, values; // `values`: quantities per ray

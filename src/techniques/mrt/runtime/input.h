@@ -4,6 +4,7 @@
 
 #include "core/linalg.h"
 
+#include "techniques/mrt/dictionary/rays.h"
 #include "techniques/mrt/level/atlas.h"
 #include "techniques/mrt/clutter/clutter_light.h"
 #include "techniques/mrt/level/probes.h"
@@ -14,19 +15,17 @@
 // Operators of blocks with the same openings. n texels of mrt_block_shape(resolution).
 struct mrt_basis_input {
     unsigned open;
-    struct matrix_f32 t_db;  // k_b × n
-    struct matrix_f32 u_b;   // n × k_b
-    struct matrix_f32 u_vec; // 4 n × k_b, in the frame of mrt_point; empty: no irradiance by normal
-    struct matrix_f32 u_vol; // 9 p³ × k_b, probes in the frame of the cell; empty: none
+    struct matrix_f32 t_db; // k_b × n
+    // By measure: n × k_b; 4 n × k_b, in the frame of mrt_point, empty: no irradiance by normal;
+    // 9 p³ × k_b, probes in the frame of the cell, empty: none.
+    struct matrix_f32 u[MRT_MEASURES];
     struct matrix_f32 l_imp; // n × k_b; the run time does not read it
 };
 
 // Response of a block to the light of an opening, at the 6 n² texels of a closed cube, 0 on that
 // face; of a tube, at its n² texels.
 struct mrt_response_input {
-    struct matrix_f32 u_r;   // 6 n² × k_r
-    struct matrix_f32 u_vec; // 24 n² × k_r
-    struct matrix_f32 u_vol; // 9 p³ × k_r
+    struct matrix_f32 u[MRT_MEASURES]; // 6 n² × k_r, 24 n² × k_r, 9 p³ × k_r
 };
 
 // Light of a block that enters another one through an opening of that one: T_b→r.

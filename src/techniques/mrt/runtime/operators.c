@@ -67,7 +67,7 @@ static float largest_in(const float *at, size_t count, size_t stride)
 static float balance(const struct mrt_basis_input *basis, size_t mode)
 {
     float t = largest_in(basis->t_db.at + mode * basis->t_db.stride, basis->t_db.columns, 1);
-    float u = largest_in(basis->u_b.at + mode, basis->u_b.rows, basis->u_b.stride);
+    float u = largest_in(basis->u[0].at + mode, basis->u[0].rows, basis->u[0].stride);
     if (!(t > 0.0f) || !(u > 0.0f)) return 1.0f;
     return exp2f(roundf(0.5f * (log2f(u) - log2f(t))));
 }
@@ -98,7 +98,7 @@ static void scales_finish(struct mrt_scales *s, struct host *host)
 static size_t rows_of_bases(const struct mrt_runtime_input *input)
 {
     size_t rows = 0;
-    for (int i = 0; i < input->basis_count; i++) rows += input->bases[i].u_b.rows;
+    for (int i = 0; i < input->basis_count; i++) rows += input->bases[i].u[0].rows;
     return rows;
 }
 
@@ -123,50 +123,32 @@ static void put_matrix(struct words *w, const struct matrix_f32 *m, const float 
         put_row(w, m->at + row * m->stride, 1, factor, count);
 }
 
-// Operators of texels, of texels by normal, of probes.
-enum points { TEXELS, TEXELS_BY_NORMAL, PROBES };
-
-static const struct matrix_f32 *of_basis(const struct mrt_basis_input *basis, enum points points)
-{
-    return points == TEXELS ? &basis->u_b : points == PROBES ? &basis->u_vol : &basis->u_vec;
-}
-
-static const struct matrix_f32 *of_response(const struct mrt_response_input *response,
-                                            enum points points)
-{
-    return points == TEXELS   ? &response->u_r
-           : points == PROBES ? &response->u_vol
-                              : &response->u_vec;
-}
-
 static bool upload_u_b(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                       const struct mrt_scales *scales, enum points points, gpu_buffer *out)
+                       const struct mrt_scales *scales, enum mrt_measure measure, gpu_buffer *out)
 {
     static const char *const names[] = { "u_b", "u_b_vector", "u_b_probes" };
     struct words w;
     size_t rows = 0;
-    for (int i = 0; i < input->basis_count; i++) rows += of_basis(&input->bases[i], points)->rows;
+    for (int i = 0; i < input->basis_count; i++) rows += input->bases[i].u[measure].rows;
     if (!words_init(&w, runtime->host, runtime->options.half, rows, mrt_quads(input->k_b)))
         return false;
     for (int i = 0; i < input->basis_count; i++)
-        put_matrix(&w, of_basis(&input->bases[i], points), scales->inverse + i * scales->k_b,
-                   input->k_b);
-    return words_upload(&w, runtime, names[points], out);
+        put_matrix(&w, &input->bases[i].u[measure], scales->inverse + i * scales->k_b, input->k_b);
+    return words_upload(&w, runtime, names[measure], out);
 }
 
 static bool upload_u_r(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                       enum points points, gpu_buffer *out)
+                       enum mrt_measure measure, gpu_buffer *out)
 {
     static const char *const names[] = { "u_r", "u_r_vector", "u_r_probes" };
     struct words w;
     size_t rows = 0;
-    for (int i = 0; i < input->response_count; i++)
-        rows += of_response(&input->responses[i], points)->rows;
+    for (int i = 0; i < input->response_count; i++) rows += input->responses[i].u[measure].rows;
     if (!words_init(&w, runtime->host, runtime->options.half, rows, mrt_quads(input->k_r)))
         return false;
     for (int i = 0; i < input->response_count; i++)
-        put_matrix(&w, of_response(&input->responses[i], points), NULL, input->k_r);
-    return words_upload(&w, runtime, names[points], out);
+        put_matrix(&w, &input->responses[i].u[measure], NULL, input->k_r);
+    return words_upload(&w, runtime, names[measure], out);
 }
 
 // By column: [pair][k_b][k_r], with k_b padded too.
@@ -264,15 +246,16 @@ bool mrt_operators_upload(struct mrt_runtime *runtime, const struct mrt_runtime_
     struct mrt_scales scales = { 0 };
     struct mrt_runtime_buffers *b = &runtime->buffers;
     bool ok = scales_init(&scales, runtime->host, input) && upload_t_db(runtime, input, &scales) &&
-              upload_u_b(runtime, input, &scales, TEXELS, &b->u_b) &&
-              upload_u_r(runtime, input, TEXELS, &b->u_r) && upload_t_br(runtime, input, &scales);
+              upload_u_b(runtime, input, &scales, MRT_IRRADIANCE, &b->u_b) &&
+              upload_u_r(runtime, input, MRT_IRRADIANCE, &b->u_r) &&
+              upload_t_br(runtime, input, &scales);
     ok = ok && mrt_reflection_upload(runtime, input, &scales);
     if (ok && runtime->options.vector)
-        ok = upload_u_b(runtime, input, &scales, TEXELS_BY_NORMAL, &b->u_b_vector) &&
-             upload_u_r(runtime, input, TEXELS_BY_NORMAL, &b->u_r_vector);
+        ok = upload_u_b(runtime, input, &scales, MRT_VECTOR, &b->u_b_vector) &&
+             upload_u_r(runtime, input, MRT_VECTOR, &b->u_r_vector);
     if (ok && runtime->options.probes)
-        ok = upload_u_b(runtime, input, &scales, PROBES, &runtime->probes.u_b) &&
-             upload_u_r(runtime, input, PROBES, &runtime->probes.u_r);
+        ok = upload_u_b(runtime, input, &scales, MRT_PROBE, &runtime->probes.u_b) &&
+             upload_u_r(runtime, input, MRT_PROBE, &runtime->probes.u_r);
     if (ok && input->clutter) ok = upload_coupling(runtime, input);
     if (ok && input->clutter && input->clutter->map.count > 0)
         ok = upload_clutter_map(runtime, input, &scales);

@@ -134,6 +134,15 @@ void mrt_record_bounces(struct mrt_runtime *runtime, struct gpu_cmd *cmd, int co
                         float feedback);
 // b and r of the radiosity in `probes.radiosity`, where the host computed irradiance.
 void mrt_record_coefficients(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
+// U_b b + U_r r at the texels of some tiles. vector: by normal. Buffers by their names in
+// `buffers`.
+struct mrt_reconstruct {
+    bool vector;
+    gpu_buffer tiles, openings, u_b, u_r, irradiance;
+    uint32_t texels_of_tile, tile_count;
+};
+void mrt_record_reconstruct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                            const struct mrt_reconstruct *what);
 // The light map with its borders, and irradiance by normal.
 void mrt_record_light_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
 // Probes of all blocks, and the published volume, from the newest b and r.

@@ -69,17 +69,11 @@ static void record_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 static void record_reconstruct(struct mrt_runtime *runtime, struct gpu_cmd *cmd, bool vector)
 {
     const struct mrt_runtime_buffers *b = &runtime->buffers;
-    const struct mrt_runtime_pipelines *p = &runtime->pipelines;
-    gpu_dispatch(
-        cmd, vector ? p->reconstruct_vector : p->reconstruct,
-        GPU_BIND(level_binding(runtime, cmd), { .name = "mrt_tiles", .buffer = b->tiles },
-                 { .name = "mrt_blocks", .buffer = b->blocks },
-                 { .name = "mrt_openings", .buffer = b->openings },
-                 { .name = "mrt_b", .buffer = b->b }, { .name = "mrt_r", .buffer = b->r },
-                 { .name = "mrt_u_b", .buffer = vector ? b->u_b_vector : b->u_b },
-                 { .name = "mrt_u_r", .buffer = vector ? b->u_r_vector : b->u_r },
-                 { .name = "mrt_irradiance", .buffer = vector ? b->vector : b->irradiance }),
-        NULL, 0, gpu_groups(runtime->level.texels_of_tile, MRT_LOCAL), runtime->level.tiles, 1);
+    mrt_record_reconstruct(runtime, cmd,
+                           &(struct mrt_reconstruct){
+                               vector, b->tiles, b->openings, vector ? b->u_b_vector : b->u_b,
+                               vector ? b->u_r_vector : b->u_r, vector ? b->vector : b->irradiance,
+                               runtime->level.texels_of_tile, runtime->level.tiles });
 }
 
 void mrt_record_bounces(struct mrt_runtime *runtime, struct gpu_cmd *cmd, int count, float feedback)
@@ -141,19 +135,10 @@ void mrt_record_light_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 static void record_probe_light(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
     const struct mrt_runtime_probes *p = &runtime->probes;
-    struct mrt_level_params level = runtime->level;
-    level.texels_of_tile = MRT_PROBE_VALUES * level.probes * level.probes * level.probes;
-    gpu_dispatch(cmd, runtime->pipelines.reconstruct,
-                 GPU_BIND(gpu_transient(cmd, "mrt_level", &level, sizeof level),
-                          { .name = "mrt_tiles", .buffer = p->tiles },
-                          { .name = "mrt_blocks", .buffer = runtime->buffers.blocks },
-                          { .name = "mrt_openings", .buffer = p->openings },
-                          { .name = "mrt_b", .buffer = runtime->buffers.b },
-                          { .name = "mrt_r", .buffer = runtime->buffers.r },
-                          { .name = "mrt_u_b", .buffer = p->u_b },
-                          { .name = "mrt_u_r", .buffer = p->u_r },
-                          { .name = "mrt_irradiance", .buffer = p->light }),
-                 NULL, 0, gpu_groups(level.texels_of_tile, MRT_LOCAL), runtime->block_count, 1);
+    const uint32_t edge = runtime->level.probes, rows = MRT_PROBE_VALUES * edge * edge * edge;
+    mrt_record_reconstruct(runtime, cmd,
+                           &(struct mrt_reconstruct){ false, p->tiles, p->openings, p->u_b, p->u_r,
+                                                      p->light, rows, runtime->block_count });
 }
 
 static void record_bricks(struct mrt_runtime *runtime, struct gpu_cmd *cmd,

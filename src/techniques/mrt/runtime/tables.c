@@ -6,19 +6,9 @@
 
 #include <string.h>
 
-// An array of `count` items that `fill` writes, in a new buffer.
-static bool upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                   const char *name, int count, size_t size,
-                   void (*fill)(const struct mrt_runtime *runtime,
-                                const struct mrt_runtime_input *input, void *items),
-                   gpu_buffer *out)
+static uint32_t texels_of_tile(const struct mrt_runtime_input *input)
 {
-    void *items = host_alloc(runtime->host, (size_t)count, size);
-    if (!items) return false;
-    fill(runtime, input, items);
-    bool ok = mrt_buffer_of(runtime, name, items, (size_t)count * size, out);
-    host_free(runtime->host, items);
-    return ok;
+    return (uint32_t)(input->atlas->resolution * input->atlas->resolution);
 }
 
 // Area of texel `local` of a tile: the wall's derivatives along s and t at its centre.
@@ -34,11 +24,10 @@ static float texel_area(const struct mrt_runtime_input *input, const struct mrt_
     return glms_vec3_norm(glms_vec3_cross(u, v)) / (float)(n * n);
 }
 
-static void fill_texels(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                        void *items)
+static void fill_texels(const struct mrt_runtime_input *input, void *items)
 {
     struct mrt_texel *texels = items;
-    const int per_tile = (int)runtime->level.texels_of_tile;
+    const int per_tile = (int)texels_of_tile(input);
     for (int i = 0; i < input->atlas->texels; i++) {
         const struct mrt_geometry_texel *from = &input->images->geometry[i];
         const struct mrt_tile *tile = &input->atlas->tiles[i / per_tile];
@@ -56,7 +45,7 @@ static void fill_texels(const struct mrt_runtime *runtime, const struct mrt_runt
 static uint32_t basis_row(const struct mrt_runtime_input *input, int basis)
 {
     size_t row = 0;
-    for (int i = 0; i < basis; i++) row += input->bases[i].u_b.rows;
+    for (int i = 0; i < basis; i++) row += input->bases[i].u[0].rows;
     return (uint32_t)row;
 }
 
@@ -69,8 +58,7 @@ int mrt_first_texel(const struct mrt_atlas *atlas, int block)
     return -1;
 }
 
-static void fill_tiles(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                       void *items)
+static void fill_tiles(const struct mrt_runtime_input *input, void *items)
 {
     struct mrt_gpu_tile *tiles = items;
     for (int i = 0; i < input->atlas->tile_count; i++) {
@@ -81,7 +69,7 @@ static void fill_tiles(const struct mrt_runtime *runtime, const struct mrt_runti
             .block = (uint32_t)tile->block,
             .first_texel = (uint32_t)tile->first_texel,
             .basis_row = basis_row(input, input->basis_of_block[tile->block]) + before,
-            .response_row = (uint32_t)tile->face * runtime->level.texels_of_tile,
+            .response_row = (uint32_t)tile->face * texels_of_tile(input),
             .x = tile->x,
             .y = tile->y,
         };
@@ -139,8 +127,7 @@ static uint32_t columns_of(const struct mrt_runtime_input *input, int first_open
     return 4 * quads;
 }
 
-static void fill_blocks(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                        void *items)
+static void fill_blocks(const struct mrt_runtime_input *input, void *items)
 {
     struct mrt_gpu_block *blocks = items;
     int opening = 0;
@@ -154,7 +141,7 @@ static void fill_blocks(const struct mrt_runtime *runtime, const struct mrt_runt
         fill_inverse(from, to);
         to->bend = mrt_block_is_tube(from) ? (int32_t)mrt_block_bend(from) : -1;
         to->first_texel = (uint32_t)mrt_first_texel(input->atlas, b);
-        to->texels = (uint32_t)mrt_block_walls(from) * runtime->level.texels_of_tile;
+        to->texels = (uint32_t)mrt_block_walls(from) * texels_of_tile(input);
         to->basis_row = basis_row(input, input->basis_of_block[b]);
         to->first_opening = (uint32_t)opening;
         while (opening < input->opening_count && input->openings[opening].block == b) opening++;
@@ -163,17 +150,15 @@ static void fill_blocks(const struct mrt_runtime *runtime, const struct mrt_runt
     }
 }
 
-static void fill_openings(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                          void *items)
+static void fill_openings(const struct mrt_runtime_input *input, void *items)
 {
     struct mrt_gpu_opening *openings = items;
     int pair = 0, clutter = 0;
     uint32_t sender = 0;
-    (void)runtime;
     for (int i = 0; i < input->opening_count; i++) {
         size_t response = 0;
         for (int k = 0; k < input->openings[i].response; k++)
-            response += input->responses[k].u_r.rows;
+            response += input->responses[k].u[0].rows;
         openings[i] = (struct mrt_gpu_opening){ .response = (uint32_t)response,
                                                 .first_pair = (uint32_t)pair,
                                                 .quads = mrt_used_quads(input, i),
@@ -187,19 +172,15 @@ static void fill_openings(const struct mrt_runtime *runtime, const struct mrt_ru
     }
 }
 
-static void fill_sources(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                         void *items)
+static void fill_sources(const struct mrt_runtime_input *input, void *items)
 {
     uint32_t *sources = items;
-    (void)runtime;
     for (int i = 0; i < input->pair_count; i++) sources[i] = (uint32_t)input->pairs[i].source;
 }
 
-static void fill_borders(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                         void *items)
+static void fill_borders(const struct mrt_runtime_input *input, void *items)
 {
     struct mrt_gpu_border *borders = items;
-    (void)runtime;
     for (int i = 0; i < input->atlas->border_count; i++) {
         const struct mrt_border *from = &input->atlas->borders[i];
         borders[i] = (struct mrt_gpu_border){ .texel = from->texel, .count = from->count };
@@ -211,10 +192,9 @@ _Static_assert(MRT_BORDER_SOURCES == 8, "as in mrt_gpu_border");
 
 static struct mrt_level_params level_of(const struct mrt_runtime_input *input)
 {
-    const uint32_t n = (uint32_t)input->atlas->resolution;
     return (struct mrt_level_params){
-        .resolution = n,
-        .texels_of_tile = n * n,
+        .resolution = (uint32_t)input->atlas->resolution,
+        .texels_of_tile = texels_of_tile(input),
         .texels = (uint32_t)input->atlas->texels,
         .borders = (uint32_t)input->atlas->border_count,
         .map_width = (uint32_t)input->atlas->width,
@@ -230,16 +210,16 @@ bool mrt_tables_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inp
     runtime->level = level_of(input);
     runtime->block_count = (uint32_t)input->map->count;
     runtime->opening_count = (uint32_t)input->opening_count;
-    return upload(runtime, input, "texels", atlas->texels, sizeof(struct mrt_texel), fill_texels,
-                  &b->texels) &&
-           upload(runtime, input, "tiles", atlas->tile_count, sizeof(struct mrt_gpu_tile),
-                  fill_tiles, &b->tiles) &&
-           upload(runtime, input, "blocks", input->map->count, sizeof(struct mrt_gpu_block),
-                  fill_blocks, &b->blocks) &&
-           upload(runtime, input, "openings", input->opening_count, sizeof(struct mrt_gpu_opening),
-                  fill_openings, &b->openings) &&
-           upload(runtime, input, "sources", input->pair_count, sizeof(uint32_t), fill_sources,
-                  &b->sources) &&
-           upload(runtime, input, "borders", atlas->border_count, sizeof(struct mrt_gpu_border),
-                  fill_borders, &b->borders);
+    return mrt_table_upload(runtime, input, "texels", (size_t)atlas->texels,
+                            sizeof(struct mrt_texel), fill_texels, &b->texels) &&
+           mrt_table_upload(runtime, input, "tiles", (size_t)atlas->tile_count,
+                            sizeof(struct mrt_gpu_tile), fill_tiles, &b->tiles) &&
+           mrt_table_upload(runtime, input, "blocks", (size_t)input->map->count,
+                            sizeof(struct mrt_gpu_block), fill_blocks, &b->blocks) &&
+           mrt_table_upload(runtime, input, "openings", (size_t)input->opening_count,
+                            sizeof(struct mrt_gpu_opening), fill_openings, &b->openings) &&
+           mrt_table_upload(runtime, input, "sources", (size_t)input->pair_count, sizeof(uint32_t),
+                            fill_sources, &b->sources) &&
+           mrt_table_upload(runtime, input, "borders", (size_t)atlas->border_count,
+                            sizeof(struct mrt_gpu_border), fill_borders, &b->borders);
 }

@@ -79,11 +79,15 @@ static bool turn_vectors(struct host *host, const struct turn *turn, const struc
     return true;
 }
 
-static bool turn_probes(struct host *host, const struct turn *turn, int p,
-                        const struct matrix_f32 *from, struct matrix_f32 *out)
+// By measure: one row for each texel, four for each texel, nine for each of p³ probes.
+static bool turn_light(struct host *host, const struct turn *turn, int p,
+                       const struct matrix_f32 *const from[MRT_MEASURES],
+                       struct matrix_f32 out[MRT_MEASURES])
 {
     const struct mrt_probe_turn probes = { &turn->from, &turn->to, turn->to_from };
-    return mrt_turn_probes(host, p, &probes, from, out);
+    return turn_rows(host, turn, from[MRT_IRRADIANCE], &out[MRT_IRRADIANCE]) &&
+           turn_vectors(host, turn, from[MRT_VECTOR], &out[MRT_VECTOR]) &&
+           mrt_turn_probes(host, p, &probes, from[MRT_PROBE], &out[MRT_PROBE]);
 }
 
 // ---- bases
@@ -97,12 +101,12 @@ static bool make_basis(struct host *host, const struct mrt_level *level,
     const struct turn turn = { element->shape, mrt_level_cell(level, block),
                                place->block_from_cube };
     const struct mrt_retraced *retraced = mrt_level_retraced(level, block);
+    const struct matrix_f32 *const light[] = { retraced ? &retraced->u_b : &element->u_b,
+                                               retraced ? &retraced->u_vec : &element->u_vec,
+                                               &element->u_bvol };
     out->open = level->map->blocks[block].open;
     return turn_columns(host, &turn, &element->t_db, &out->t_db) &&
-           turn_rows(host, &turn, retraced ? &retraced->u_b : &element->u_b, &out->u_b) &&
-           turn_vectors(host, &turn, retraced ? &retraced->u_vec : &element->u_vec, &out->u_vec) &&
-           turn_probes(host, &turn, dictionary->options.block_probes, &element->u_bvol,
-                       &out->u_vol) &&
+           turn_light(host, &turn, dictionary->options.block_probes, light, out->u) &&
            turn_rows(host, &turn, &element->l_imp, &out->l_imp);
 }
 
@@ -139,10 +143,8 @@ static bool make_response(struct mrt_turned *out, const struct mrt_dictionary *d
     const struct turn turn = { mrt_entered_shape((enum mrt_maze)dictionary->options.maze,
                                                  dictionary->options.texels, index),
                                *to, mrt_block_from_entry(face) };
-    return turn_rows(out->host, &turn, &entered->u_r, &response->u_r) &&
-           turn_vectors(out->host, &turn, &entered->u_rvec, &response->u_vec) &&
-           turn_probes(out->host, &turn, dictionary->options.block_probes, &entered->u_rvol,
-                       &response->u_vol);
+    const struct matrix_f32 *const light[] = { &entered->u_r, &entered->u_rvec, &entered->u_rvol };
+    return turn_light(out->host, &turn, dictionary->options.block_probes, light, response->u);
 }
 
 static bool make_tube_responses(struct mrt_turned *out, const struct mrt_dictionary *dictionary)
@@ -219,17 +221,13 @@ bool mrt_turned_init(struct host *host, const struct mrt_level *level, struct mr
 void mrt_basis_input_finish(struct host *host, struct mrt_basis_input *basis)
 {
     matrix_f32_finish(host, &basis->t_db);
-    matrix_f32_finish(host, &basis->u_b);
-    matrix_f32_finish(host, &basis->u_vec);
-    matrix_f32_finish(host, &basis->u_vol);
+    for (int m = 0; m < MRT_MEASURES; m++) matrix_f32_finish(host, &basis->u[m]);
     matrix_f32_finish(host, &basis->l_imp);
 }
 
 void mrt_response_input_finish(struct host *host, struct mrt_response_input *response)
 {
-    matrix_f32_finish(host, &response->u_r);
-    matrix_f32_finish(host, &response->u_vec);
-    matrix_f32_finish(host, &response->u_vol);
+    for (int m = 0; m < MRT_MEASURES; m++) matrix_f32_finish(host, &response->u[m]);
 }
 
 void mrt_turned_finish(struct mrt_turned *turned)

@@ -24,13 +24,13 @@ struct builder {
 
 // ---- matrices
 
-static bool copy_matrix(struct host *host, const struct matrix_f32 *from, struct matrix_f32 *to)
+static bool copy_light(struct host *host, const struct matrix_f32 from[MRT_MEASURES],
+                       struct matrix_f32 to[MRT_MEASURES])
 {
-    if (!matrix_f32_init(host, to, from->rows, from->columns)) return false;
-    for (size_t r = 0; r < from->rows; r++)
-        memcpy(to->at + r * to->stride, from->at + r * from->stride,
-               from->columns * sizeof *to->at);
-    return true;
+    bool ok = true;
+    for (int m = 0; ok && m < MRT_MEASURES; m++)
+        ok = matrix_f32_copy(host, &from[m], from[m].columns, &to[m]);
+    return ok;
 }
 
 // U_b + ΔU_b. U_b has the error of other rays, which does not cancel where nothing arrives.
@@ -52,19 +52,12 @@ static int values_of(enum mrt_measure measure)
 
 // ---- bases: U_b + ΔU_b
 
-static struct matrix_f32 *of_basis(struct mrt_basis_input *basis, enum mrt_measure measure)
-{
-    return measure == MRT_IRRADIANCE ? &basis->u_b
-           : measure == MRT_VECTOR   ? &basis->u_vec
-                                     : &basis->u_vol;
-}
-
 static void change_basis(const struct builder *s, const struct mrt_block *block,
                          const struct mrt_delta_block *delta, struct mrt_basis_input *basis)
 {
     for (int m = 0; m < MRT_MEASURES; m++) {
         const struct mrt_delta *of = &delta->of[m];
-        struct matrix_f32 *rows = of_basis(basis, (enum mrt_measure)m);
+        struct matrix_f32 *rows = &basis->u[m];
         if (rows->rows == 0 || !of->inside) continue;
         add_shadows(rows, of, values_of((enum mrt_measure)m));
         if (m == MRT_PROBE)
@@ -83,24 +76,15 @@ static bool add_basis(struct builder *s, int block, const struct mrt_delta_block
     struct mrt_basis_input *basis = &turned->bases[turned->input.basis_count];
     turned->basis_of_block[block] = turned->input.basis_count++;
     basis->open = old->open;
-    const bool ok = copy_matrix(host, &old->t_db, &basis->t_db) &&
-                    copy_matrix(host, &old->u_b, &basis->u_b) &&
-                    copy_matrix(host, &old->u_vec, &basis->u_vec) &&
-                    copy_matrix(host, &old->u_vol, &basis->u_vol) &&
-                    copy_matrix(host, &old->l_imp, &basis->l_imp);
+    const bool ok = matrix_f32_copy(host, &old->t_db, old->t_db.columns, &basis->t_db) &&
+                    copy_light(host, old->u, basis->u) &&
+                    matrix_f32_copy(host, &old->l_imp, old->l_imp.columns, &basis->l_imp);
     if (ok) change_basis(s, &s->level->map->blocks[block], delta, basis);
     s->l_imp[block] = &basis->l_imp;
     return ok;
 }
 
 // ---- responses
-
-static struct matrix_f32 *of_response(struct mrt_response_input *response, enum mrt_measure measure)
-{
-    return measure == MRT_IRRADIANCE ? &response->u_r
-           : measure == MRT_VECTOR   ? &response->u_vec
-                                     : &response->u_vol;
-}
 
 // Visits each texel of the walls: its index in the closed cube and in the block.
 struct wall_texels {
@@ -156,17 +140,11 @@ static bool add_kept_response(struct builder *s, int block, int face,
     const struct mrt_response_input *old = &s->out->responses[opening->response];
     const int index = s->out->input.response_count++;
     struct mrt_response_input *response = &s->out->responses[index];
-    struct host *host = s->out->host;
     opening->response = index;
-    if (!copy_matrix(host, &old->u_r, &response->u_r) ||
-        !copy_matrix(host, &old->u_vec, &response->u_vec) ||
-        !copy_matrix(host, &old->u_vol, &response->u_vol))
-        return false;
-    for (int m = 0; m < MRT_MEASURES; m++) {
-        struct matrix_f32 *rows = of_response(response, (enum mrt_measure)m);
-        if (rows->rows > 0 && delta->of[m].inside)
-            keep_share(s, block, face, delta, (enum mrt_measure)m, rows);
-    }
+    if (!copy_light(s->out->host, old->u, response->u)) return false;
+    for (int m = 0; m < MRT_MEASURES; m++)
+        if (response->u[m].rows > 0 && delta->of[m].inside)
+            keep_share(s, block, face, delta, (enum mrt_measure)m, &response->u[m]);
     return true;
 }
 
@@ -197,12 +175,9 @@ static void put_faces(const struct builder *s, int block, const struct mrt_delta
 static bool add_face_response(struct builder *s, int block, const struct mrt_delta_block *delta,
                               int index)
 {
-    const struct mrt_response_input *like = &s->turned->responses[0];
-    struct mrt_response_input *response = &s->out->responses[index];
     for (int m = 0; m < MRT_MEASURES; m++) {
-        const struct matrix_f32 *sizes =
-            of_response((struct mrt_response_input *)like, (enum mrt_measure)m);
-        struct matrix_f32 *rows = of_response(response, (enum mrt_measure)m);
+        const struct matrix_f32 *sizes = &s->turned->responses[0].u[m];
+        struct matrix_f32 *rows = &s->out->responses[index].u[m];
         if (!matrix_f32_init(s->out->host, rows, sizes->rows, sizes->columns)) return false;
         if (rows->rows > 0 && delta->of[m].inside)
             put_faces(s, block, delta, (enum mrt_measure)m, rows);
@@ -262,20 +237,21 @@ static int pairs_of_opening(const struct mrt_runtime_input *input, int opening, 
 static bool trace_entry(struct builder *s, int index, int pairs, const struct mrt_delta_entry **out)
 {
     const struct mrt_opening_input *opening = &s->turned->input.openings[index];
-    const struct mrt_delta_entry_input input = { .map = s->level->map,
-                                                 .l_imp = s->l_imp,
-                                                 .resolution = s->level->resolution,
-                                                 .clutter = s->clutter,
-                                                 .objects = s->objects,
-                                                 .rays = ENTRY_RAYS,
-                                                 .depth = s->options->depth,
-                                                 .block = opening->block,
-                                                 .face = opening->face,
-                                                 .u_r =
-                                                     &s->turned->responses[opening->response].u_r,
-                                                 .sources = s->sources,
-                                                 .source_count = pairs,
-                                                 .stop = s->options->stop };
+    const struct mrt_delta_entry_input input = {
+        .map = s->level->map,
+        .l_imp = s->l_imp,
+        .resolution = s->level->resolution,
+        .clutter = s->clutter,
+        .objects = s->objects,
+        .rays = ENTRY_RAYS,
+        .depth = s->options->depth,
+        .block = opening->block,
+        .face = opening->face,
+        .u_r = &s->turned->responses[opening->response].u[MRT_IRRADIANCE],
+        .sources = s->sources,
+        .source_count = pairs,
+        .stop = s->options->stop
+    };
     bool any = false;
     for (int i = 0; i < pairs; i++) {
         int first;

@@ -41,9 +41,8 @@ static enum use use_of(const struct order *s, int face)
     const struct mrt_response_input *response =
         &s->of->responses[s->of->openings[s->opening].response];
     if (map && has_column(&map->u_r[s->place], face)) return CLUTTER;
-    if (has_column(&response->u_r, face) || has_column(&response->u_vec, face) ||
-        has_column(&response->u_vol, face))
-        return WALLS;
+    for (int m = 0; m < MRT_MEASURES; m++)
+        if (has_column(&response->u[m], face)) return WALLS;
     for (int i = 0; i < s->of->face_pair_count; i++)
         if (s->of->face_pairs[i].source == s->block && has_row(&s->of->face_pairs[i].of_c, face))
             return WALLS;
@@ -95,9 +94,7 @@ static void move_operators(const struct order *s)
     struct mrt_cluttered *of = s->of;
     struct mrt_response_input *response = &of->responses[of->openings[s->opening].response];
     struct mrt_clutter_rows_input *map = map_of(s);
-    move_columns(s, &response->u_r);
-    move_columns(s, &response->u_vec);
-    move_columns(s, &response->u_vol);
+    for (int m = 0; m < MRT_MEASURES; m++) move_columns(s, &response->u[m]);
     if (map) move_columns(s, &map->u_r[s->place]);
     for (int i = 0; i < of->input.pair_count; i++)
         if (of->pairs[i].opening == s->opening)

@@ -152,22 +152,12 @@ void mrt_record_clutter_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
     struct mrt_runtime_clutter_map *m = &runtime->clutter.map;
     if (m->tile_count == 0) return;
-    struct mrt_level_params level = runtime->level;
-    level.texels_of_tile = MRT_LOCAL;
     gpu_scope_begin(cmd, "clutter_map");
     if (!m->is_clear) gpu_clear_image(cmd, m->image, (const float[4]){ 0.0f });
     m->is_clear = true;
-    gpu_dispatch(cmd, runtime->pipelines.reconstruct_vector,
-                 GPU_BIND(gpu_transient(cmd, "mrt_level", &level, sizeof level),
-                          { .name = "mrt_tiles", .buffer = m->tiles },
-                          { .name = "mrt_blocks", .buffer = runtime->buffers.blocks },
-                          { .name = "mrt_openings", .buffer = m->openings },
-                          { .name = "mrt_b", .buffer = runtime->buffers.b },
-                          { .name = "mrt_r", .buffer = runtime->buffers.r },
-                          { .name = "mrt_u_b", .buffer = m->u_b },
-                          { .name = "mrt_u_r", .buffer = m->u_r },
-                          { .name = "mrt_irradiance", .buffer = m->light }),
-                 NULL, 0, 1, m->tile_count, 1);
+    mrt_record_reconstruct(runtime, cmd,
+                           &(struct mrt_reconstruct){ true, m->tiles, m->openings, m->u_b, m->u_r,
+                                                      m->light, MRT_LOCAL, m->tile_count });
     gpu_dispatch(cmd, m->fill,
                  GPU_BIND({ .name = "mrt_clutter_places", .buffer = m->places },
                           { .name = "mrt_clutter_light", .buffer = m->light },

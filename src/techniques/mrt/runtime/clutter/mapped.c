@@ -12,17 +12,6 @@ bool mrt_mapped_init(struct mrt_mapped *out, struct host *host, int blocks)
     return out->rows;
 }
 
-// Faces are the first columns of an opening that is clutter.
-static bool widen(struct host *host, const struct matrix_f32 *from, size_t columns,
-                  struct matrix_f32 *to)
-{
-    if (!matrix_f32_init(host, to, from->rows, columns)) return false;
-    for (size_t r = 0; r < from->rows; r++)
-        memcpy(to->at + r * to->stride, from->at + r * from->stride,
-               from->columns * sizeof *to->at);
-    return true;
-}
-
 static bool add_openings(struct host *host, struct mrt_clutter_rows_input *rows,
                          const struct mrt_turned *turned, const struct mrt_clutter_map *map,
                          const struct mrt_clutter_map_input *input,
@@ -32,12 +21,13 @@ static bool add_openings(struct host *host, struct mrt_clutter_rows_input *rows,
     for (int i = 0; ok && i < opening_count; i++) {
         const int face = openings[i].face;
         if (face < 0) {
-            ok = widen(host, &map->c, (size_t)turned->input.k_r, &rows->u_r[i]);
+            // Faces are the first columns.
+            ok = matrix_f32_copy(host, &map->c, (size_t)turned->input.k_r, &rows->u_r[i]);
             continue;
         }
         const struct mrt_response_input *response =
             &turned->responses[mrt_response_of(&input->map->blocks[rows->block], face)];
-        ok = mrt_clutter_map_response(map, host, input, face, &response->u_vol,
+        ok = mrt_clutter_map_response(map, host, input, face, &response->u[MRT_PROBE],
                                       turned->input.probes, &rows->u_r[i]);
     }
     return ok;
@@ -63,7 +53,7 @@ bool mrt_mapped_add(struct mrt_mapped *out, const struct mrt_turned *turned,
     *rows = (struct mrt_clutter_rows_input){ .block = block,
                                              .first_texel = (int)map->first_texel,
                                              .texel_count = (int)map->texel_count };
-    return widen(out->host, &map->b, map->b.columns, &rows->u_b) &&
+    return matrix_f32_copy(out->host, &map->b, map->b.columns, &rows->u_b) &&
            keep_inside(out, map, &input->clutter->charts) &&
            add_openings(out->host, rows, turned, map, input, openings, opening_count);
 }
