@@ -347,36 +347,33 @@ static uint32_t vctao_more_needs(const void *options)
     return vct_more_needs(&occlusion);
 }
 
+// What both have in common.
+#define VCT_TECHNIQUE(of_name, of_title, of_paper)                                                 \
+    .name = of_name, .title = of_title, .paper = of_paper, .state_size = sizeof(struct vct),       \
+    .resize = vct_resize, .set_options = vct_set_options, .invalidate = vct_invalidate,            \
+    .update = vct_update, .record = vct_record, .debug_view = vct_debug_view,                      \
+    .destroy = vct_destroy
+
 const struct technique technique_vct = {
-    .name = "vct",
-    .title = "voxel cone tracing",
-    .paper = "Hong 2015, Temporal Voxel Cone Tracing with Interleaved Sample Patterns, ch. 2.5.3, "
-             "4; Crassin et al. 2011",
+    VCT_TECHNIQUE("vct", "voxel cone tracing",
+                  "Hong 2015, Temporal Voxel Cone Tracing with Interleaved Sample Patterns, ch. "
+                  "2.5.3, 4; Crassin et al. 2011"),
     .role = ROLE_SOURCE,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | MAKES_SPECULAR | GATHERS_EMISSION,
     .needs = FRAME_WRITES_IRRADIANCE,
     .options = OPTION_TABLE(struct vct_options, option_rows, aliases),
     .presets = presets,
     .debug_views = debug_views,
-    .state_size = sizeof(struct vct),
     .more_needs = vct_more_needs,
     .check = vct_check,
     .objects = vct_objects,
     .create = vct_create,
-    .resize = vct_resize,
-    .set_options = vct_set_options,
-    .invalidate = vct_invalidate,
-    .update = vct_update,
-    .record = vct_record,
-    .debug_view = vct_debug_view,
-    .destroy = vct_destroy,
 };
 
 const struct technique technique_vctao = {
-    .name = "vctao",
-    .title = "ambient occlusion by voxel cones",
-    .paper = "Hong 2015, Temporal Voxel Cone Tracing with Interleaved Sample Patterns, "
-             "sec. 2.5.3.3.8; Crassin et al. 2011",
+    VCT_TECHNIQUE("vctao", "ambient occlusion by voxel cones",
+                  "Hong 2015, Temporal Voxel Cone Tracing with Interleaved Sample Patterns, sec. "
+                  "2.5.3.3.8; Crassin et al. 2011"),
     .folder = "vct",
     .role = ROLE_VISIBILITY,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
@@ -384,16 +381,8 @@ const struct technique technique_vctao = {
     .options = OPTION_TABLE(struct vct_options, occlusion_rows, occlusion_aliases),
     .presets = occlusion_presets,
     .debug_views = occlusion_views,
-    .state_size = sizeof(struct vct),
     .more_needs = vctao_more_needs,
     .check = vctao_check,
     .objects = vctao_objects,
     .create = vctao_create,
-    .resize = vct_resize,
-    .set_options = vct_set_options,
-    .invalidate = vct_invalidate,
-    .update = vct_update,
-    .record = vct_record,
-    .debug_view = vct_debug_view,
-    .destroy = vct_destroy,
 };
