@@ -63,7 +63,7 @@ bool bake_fits(const struct bake *a, const struct bake *b)
     return strcmp(of_a->technique, of_b->technique) == 0 && of_a->version == of_b->version &&
            strcmp(of_a->options, of_b->options) == 0 &&
            a->plan.depends_on_scene == b->plan.depends_on_scene &&
-           a->plan.scene.high == b->plan.scene.high && a->plan.scene.low == b->plan.scene.low;
+           hash128_same(a->plan.scene, b->plan.scene);
 }
 
 static struct hash128 content_hash(const struct tensor_metadata *metadata, size_t metadata_count,

@@ -1,6 +1,7 @@
 // Content hashes (XXH3, 64 and 128 bits), for cache keys and reproducibility tests.
 #pragma once
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -15,4 +16,8 @@ enum { HASH128_TEXT = 33 }; // 32 hexadecimal digits and the zero
 // into each other: "ab" + "c" differs from "a" + "bc".
 struct hash128 hash128_add(struct hash128 before, const void *data, size_t size);
 struct hash128 hash128_add_text(struct hash128 before, const char *text);
+static inline bool hash128_same(struct hash128 a, struct hash128 b)
+{
+    return a.high == b.high && a.low == b.low;
+}
 void hash128_print(struct hash128 hash, char out[HASH128_TEXT]);

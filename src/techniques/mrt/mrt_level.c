@@ -146,8 +146,7 @@ static bool make_images(struct mrt_parts *out, const struct mrt *mrt, const stru
     const int probes = mrt_runtime_options_of(&mrt->options).probes ? mrt->options.block_probes : 0;
     const struct scene_pose *walls = out->clutter.triangles > 0 ? &out->clutter.walls.pose : pose;
     if (mrt->delta) out->walls = hash_of_walls(walls);
-    const bool same =
-        last && last->walls.high == out->walls.high && last->walls.low == out->walls.low;
+    const bool same = last && hash128_same(last->walls, out->walls);
     return (!mrt->delta || note_walls(out, walls)) &&
            mrt_scene_images_init(out->host, pose, walls, &mrt->map, &mrt->atlas, probes,
                                  same ? last->images.geometry : NULL, &out->images);

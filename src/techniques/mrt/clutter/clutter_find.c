@@ -17,13 +17,6 @@ static float smoothstep(const float edge[2], float x)
     return t * t * (3.0f - 2.0f * t);
 }
 
-static struct box3 block_bounds(const struct mrt_block *block)
-{
-    struct box3 box = box3_empty();
-    for (int c = 0; c < MRT_CORNERS; c++) box = box3_add_point(box, block->corner[c]);
-    return box;
-}
-
 static bool is_in_box(struct box3 box, vec3s p)
 {
     for (int a = 0; a < 3; a++)
@@ -34,7 +27,7 @@ static bool is_in_box(struct box3 box, vec3s p)
 int mrt_block_of_point(const struct mrt_block_map *map, vec3s world, vec3s *cell)
 {
     for (int b = 0; b < map->count; b++) {
-        if (!is_in_box(block_bounds(&map->blocks[b]), world)) continue;
+        if (!is_in_box(mrt_warp_bounds(map->blocks[b].corner), world)) continue;
         if (!mrt_warp_inverse(map->blocks[b].corner, world, cell)) continue;
         if (glms_vec3_max(glms_vec3_abs(*cell)) <= 0.5f) return b;
     }

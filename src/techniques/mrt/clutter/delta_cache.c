@@ -57,9 +57,7 @@ static struct box3 widened(struct box3 box)
 
 static struct box3 bounds_of_block(const struct mrt_block *block)
 {
-    struct box3 box = box3_empty();
-    for (int c = 0; c < MRT_CORNERS; c++) box = box3_add_point(box, block->corner[c]);
-    return widened(box);
+    return widened(mrt_warp_bounds(block->corner));
 }
 
 static struct box3 bounds_of_triangle(const struct chart_triangle *triangle)
@@ -69,20 +67,13 @@ static struct box3 bounds_of_triangle(const struct chart_triangle *triangle)
     return box;
 }
 
-static bool overlap(struct box3 a, struct box3 b)
-{
-    for (int k = 0; k < 3; k++)
-        if (!(a.min.raw[k] <= b.max.raw[k] && b.min.raw[k] <= a.max.raw[k])) return false;
-    return true;
-}
-
 struct box3 mrt_clutter_bounds_in(const struct mrt_clutter *clutter, const struct mrt_block *block)
 {
     const struct box3 at = bounds_of_block(block);
     struct box3 all = box3_empty();
     for (uint32_t t = 0; t < clutter->charts.triangle_count; t++) {
         const struct box3 box = bounds_of_triangle(&clutter->charts.triangles[t]);
-        if (overlap(box, at)) all = box3_union(all, box);
+        if (box3_intersects(box, at)) all = box3_union(all, box);
     }
     return box3_is_empty(all) ? all : widened(all);
 }
@@ -117,7 +108,7 @@ static struct hash128 add_triangles(struct hash128 key, const struct mrt_clutter
 {
     for (uint32_t t = 0; t < clutter->charts.triangle_count; t++) {
         const struct chart_triangle *triangle = &clutter->charts.triangles[t];
-        if (!overlap(bounds_of_triangle(triangle), box)) continue;
+        if (!box3_intersects(bounds_of_triangle(triangle), box)) continue;
         const int face = mrt_face_of_chart(clutter, block, triangle->chart);
         key = add_triangle(key, clutter, triangle, face < 0 ? -1 : face - first_face);
     }
@@ -200,11 +191,6 @@ static struct hash128 map_key(const struct mrt_clutter_map_input *input, int blo
     return add_triangles(key, input->clutter, block, first, box);
 }
 
-static bool same(struct hash128 a, struct hash128 b)
-{
-    return a.high == b.high && a.low == b.low;
-}
-
 // ---- operators
 
 const struct mrt_delta_block *mrt_kept_delta(struct mrt_delta_cache *cache,
@@ -215,7 +201,7 @@ const struct mrt_delta_block *mrt_kept_delta(struct mrt_delta_cache *cache,
     const int faces = mrt_faces_of_block(input->clutter, input->index, &first);
     const struct hash128 key = add_triangles((struct hash128){ 0 }, input->clutter, input->index,
                                              first, bounds_of_block(input->block));
-    if (kept->has_delta && same(kept->delta_key, key) && kept->delta.face_count == faces) {
+    if (kept->has_delta && hash128_same(kept->delta_key, key) && kept->delta.face_count == faces) {
         kept->delta.first_face = first;
         return &kept->delta;
     }
@@ -232,7 +218,7 @@ const struct mrt_gather_faces *mrt_kept_gather(struct mrt_delta_cache *cache,
 {
     struct mrt_kept_block *kept = &cache->blocks[block];
     const struct hash128 key = gather_key(input->clutter, block);
-    if (kept->has_gathered && same(kept->gathered_key, key)) return &kept->gathered;
+    if (kept->has_gathered && hash128_same(kept->gathered_key, key)) return &kept->gathered;
     forget_gathered(kept);
     if (!mrt_gather_faces_init(&kept->gathered, cache->host, input, block)) return NULL;
     kept->gathered_key = key;
@@ -247,7 +233,7 @@ const struct mrt_clutter_map *mrt_kept_map(struct mrt_delta_cache *cache,
     const struct hash128 key = map_key(input, block);
     int first;
     const int faces = mrt_faces_of_block(input->clutter, block, &first);
-    if (kept->has_map && same(kept->map_key, key)) {
+    if (kept->has_map && hash128_same(kept->map_key, key)) {
         kept->map.first_texel = faces > 0 ? input->clutter->faces[first].first_texel : 0;
         return &kept->map;
     }
@@ -268,7 +254,7 @@ const struct mrt_delta_entry *mrt_kept_entry(struct mrt_delta_cache *cache,
                  input->depth, openings);
     const struct hash128 key = entry_key(input, openings);
     host_free(cache->host, openings);
-    if (kept->valid && same(kept->key, key)) return &kept->entry;
+    if (kept->valid && hash128_same(kept->key, key)) return &kept->entry;
     kept->valid = false;
     mrt_delta_entry_finish(&kept->entry);
     if (!mrt_delta_entry_init(&kept->entry, cache->host, input)) return NULL;

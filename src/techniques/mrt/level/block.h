@@ -69,6 +69,7 @@ int mrt_neighbor_direction(const struct mrt_block *block, int face, int directio
 vec3s mrt_warp_point(const vec3s corner[MRT_CORNERS], vec3s cell);
 // Columns: derivatives by x, y and z of the cell.
 mat3s mrt_warp_jacobian(const vec3s corner[MRT_CORNERS], vec3s cell);
+struct box3 mrt_warp_bounds(const vec3s corner[MRT_CORNERS]);
 // Whether the warp mirrors or folds over: its Jacobian's determinant is not positive throughout.
 bool mrt_warp_folds(const vec3s corner[MRT_CORNERS]);
 // Whether the block is a parallelepiped, to the rounding of its corners.

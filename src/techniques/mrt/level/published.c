@@ -17,7 +17,7 @@ static struct frame_probes grid_of(const struct mrt_block_map *map, int p)
     float volume = 0.0f;
     for (int b = 0; b < map->count; b++) {
         const struct mrt_block *block = &map->blocks[b];
-        for (int c = 0; c < MRT_CORNERS; c++) box = box3_add_point(box, block->corner[c]);
+        box = box3_union(box, mrt_warp_bounds(block->corner));
         volume += glms_mat3_det(mrt_warp_jacobian(block->corner, vec3_of(0, 0, 0)));
     }
     const float edge = cbrtf(volume / (float)map->count);

@@ -31,14 +31,19 @@ mat3s mrt_warp_jacobian(const vec3s corner[MRT_CORNERS], vec3s cell)
     return j;
 }
 
+struct box3 mrt_warp_bounds(const vec3s corner[MRT_CORNERS])
+{
+    struct box3 box = box3_empty();
+    for (int c = 0; c < MRT_CORNERS; c++) box = box3_add_point(box, corner[c]);
+    return box;
+}
+
 // The determinant has degree two in each coordinate. Five points per axis include the corners;
 // between them it cannot fall far below its neighbours.
 bool mrt_warp_folds(const vec3s corner[MRT_CORNERS])
 {
     enum { POINTS = 5 };
-    struct box3 box = box3_empty();
-    for (int c = 0; c < MRT_CORNERS; c++) box = box3_add_point(box, corner[c]);
-    vec3s size = box3_size(box);
+    vec3s size = box3_size(mrt_warp_bounds(corner));
     // Relative to the volume of the bounding box: flat blocks are folded too.
     float least = 1e-6f * size.x * size.y * size.z;
     for (int i = 0; i < POINTS * POINTS * POINTS; i++) {

@@ -17,8 +17,7 @@ struct grid {
 
 static struct box3 bounds_of(const struct mrt_block *block, float margin)
 {
-    struct box3 box = box3_empty();
-    for (int c = 0; c < MRT_CORNERS; c++) box = box3_add_point(box, block->corner[c]);
+    const struct box3 box = mrt_warp_bounds(block->corner);
     vec3s more = glms_vec3_scale(box3_size(box), margin);
     return (struct box3){ glms_vec3_sub(box.min, more), glms_vec3_add(box.max, more) };
 }
@@ -27,8 +26,7 @@ static struct grid grid_of(const struct mrt_block_map *map)
 {
     struct box3 all = box3_empty();
     for (int b = 0; b < map->count; b++) {
-        struct box3 box = bounds_of(&map->blocks[b], MARGIN);
-        all = box3_add_point(box3_add_point(all, box.min), box.max);
+        all = box3_union(all, bounds_of(&map->blocks[b], MARGIN));
     }
     vec3s size = box3_size(all);
     struct grid grid = { .origin = all.min, .cell = glms_vec3_max(size) / (float)MRT_LOOKUP_CELLS };
