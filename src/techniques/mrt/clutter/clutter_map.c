@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "core/sh.h"
 
+#include "techniques/mrt/dictionary/gather.h"
 #include "techniques/mrt/level/probes.h"
 #include "trace/texels/inside.h"
 
@@ -54,16 +55,10 @@ struct texel_job {
 static void add_wall(const struct texel_job *t, const float weight[VALUES],
                      const struct mrt_hit *wall)
 {
-    const struct matrix_f32 *l_imp = t->job->input->l_imp;
-    struct matrix_f32 *b = &t->job->out->b;
-    for (int q = 0; q < VALUES; q++) {
-        float *to = b->at + (t->index * VALUES + (size_t)q) * b->stride;
-        for (int k = 0; k < wall->texels; k++) {
-            const float *from = l_imp->at + (size_t)wall->texel[k] * l_imp->stride;
-            const float w = weight[q] * wall->weight[k];
-            for (size_t m = 0; m < b->columns; m++) to[m] += w * from[m];
-        }
-    }
+    const struct matrix_f32 *b = &t->job->out->b;
+    for (int q = 0; q < VALUES; q++)
+        mrt_add_radiosity(wall, weight[q], t->job->input->l_imp,
+                          b->at + (t->index * VALUES + (size_t)q) * b->stride);
 }
 
 static void add_face(struct texel_job *t, const float weight[VALUES], const struct trace_hit *hit)

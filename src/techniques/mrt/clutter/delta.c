@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 
 #include "techniques/mrt/dictionary/cube_operators.h"
+#include "techniques/mrt/dictionary/gather.h"
 #include "techniques/mrt/level/probes.h"
 #include "trace/texels/inside.h"
 
@@ -27,16 +28,10 @@ struct passing {
 static void subtract_wall(const struct job *job, size_t row, const float *weight,
                           const struct mrt_hit *wall)
 {
-    const struct matrix_f32 *l_imp = job->input->l_imp;
-    struct matrix_f32 *b = &job->out->b;
-    for (int q = 0; q < job->rays.values; q++) {
-        float *to = b->at + (row + (size_t)q) * b->stride;
-        for (int k = 0; k < wall->texels; k++) {
-            const float *from = l_imp->at + (size_t)wall->texel[k] * l_imp->stride;
-            const float w = weight[q] * wall->weight[k];
-            for (size_t m = 0; m < b->columns; m++) to[m] -= w * from[m];
-        }
-    }
+    const struct matrix_f32 *b = &job->out->b;
+    for (int q = 0; q < job->rays.values; q++)
+        mrt_add_radiosity(wall, -weight[q], job->input->l_imp,
+                          b->at + (row + (size_t)q) * b->stride);
 }
 
 static void add_face(const struct job *job, size_t row, const float *weight, int face)

@@ -5,7 +5,7 @@
 
 #include "core/parallel.h"
 
-#include "techniques/mrt/dictionary/rays.h"
+#include "techniques/mrt/dictionary/gather.h"
 
 // Segments start and end so much of their way from walls.
 static const float OFFSET = 1e-3f;
@@ -30,17 +30,13 @@ static int source_of(const struct mrt_delta_entry_input *input, int block)
 static void add_wall(const struct job *job, size_t point, int source, int block, bool hidden,
                      const struct mrt_hit *wall)
 {
-    const struct matrix_f32 *l_imp = job->input->l_imp[block];
     float *to = job->b.at + point * job->b.stride + (size_t)source * job->k_b;
     const float weight = 1.0f / (float)job->rays.count;
     if (hidden) {
         job->hidden[point * (size_t)job->input->source_count + (size_t)source] = true;
         return;
     }
-    for (int k = 0; k < wall->texels; k++) {
-        const float *from = l_imp->at + (size_t)wall->texel[k] * l_imp->stride;
-        for (size_t m = 0; m < job->k_b; m++) to[m] += weight * wall->weight[k] * from[m];
-    }
+    mrt_add_radiosity(wall, weight, job->input->l_imp[block], to);
 }
 
 // The first clutter of other blocks on a way.

@@ -7,6 +7,8 @@
 #include "core/rng.h"
 #include "core/sampling.h"
 
+#include "techniques/mrt/dictionary/gather.h"
+
 #include <math.h>
 
 struct job {
@@ -27,13 +29,9 @@ static int mean_count(uint32_t texels, int rays)
 static void add_wall(const struct job *job, int block, size_t face, float weight,
                      const struct mrt_hit *hit)
 {
-    const struct matrix_f32 *l_imp = job->input->l_imp[block];
     float *to = job->of_b + ((size_t)block * job->faces + face) * job->k_b;
     job->reached[(size_t)block * job->faces + face] = true;
-    for (int k = 0; k < hit->texels; k++) {
-        const float *from = l_imp->at + (size_t)hit->texel[k] * l_imp->stride;
-        for (size_t m = 0; m < job->k_b; m++) to[m] += weight * hit->weight[k] * from[m];
-    }
+    mrt_add_radiosity(hit, weight, job->input->l_imp[block], to);
 }
 
 // Where a ray ends that no clutter blocks.

@@ -15,20 +15,6 @@ struct tensor_part {
     size_t rows, middle, columns;
 };
 
-// Copies each matrix of a stack.
-static bool take_stack(const struct reader *reader, const char *name, size_t count, size_t rows_,
-                       size_t columns, struct matrix_f32 *const *out)
-{
-    const uint64_t shape[3] = { count, rows_, columns };
-    const float *data = tensors_expect(reader->host, reader->bake, name, TENSOR_F32, 3, shape);
-    if (!data) return false;
-    for (size_t i = 0; i < count; i++) {
-        if (!matrix_f32_init(reader->host, out[i], rows_, columns)) return false;
-        memcpy(out[i]->at, data + i * rows_ * columns, rows_ * columns * sizeof *data);
-    }
-    return true;
-}
-
 static const char *shape_tensor(char out[32], int maze, int i, const char *what)
 {
     snprintf(out, 32, "%s/%d/%s", maze == MRT_TUNNEL ? "tube" : "cube", i, what);
@@ -75,8 +61,9 @@ static bool take_element(const struct reader *reader, const struct mrt_dictionar
            take(reader, shape_tensor(name, o->maze, i, "L_imp"), n, 1, k, &e->l_imp) &&
            take(reader, shape_tensor(name, o->maze, i, "U_vec"), n, 4, k, &e->u_vec) &&
            take(reader, shape_tensor(name, o->maze, i, "U_bvol"), probes, 9, k, &e->u_bvol) &&
-           (count == 0 || take_stack(reader, shape_tensor(name, o->maze, i, "R_b"), count,
-                                     (size_t)o->lightfield_modes, k, openings));
+           (count == 0 ||
+            take_parts(reader, shape_tensor(name, o->maze, i, "R_b"),
+                       (struct tensor_part){ 1, (size_t)o->lightfield_modes, k }, count, openings));
 }
 
 static bool take_interfaces(const struct reader *reader, const struct mrt_dictionary_options *o,
@@ -94,7 +81,8 @@ static bool take_interfaces(const struct reader *reader, const struct mrt_dictio
         part[2][i] = &d->entered[i].u_rvec;
         part[3][i] = &d->entered[i].u_rvol;
     }
-    return take_stack(reader, "interface/R_turn", (size_t)d->turn_count, k_l, k_l, turns) &&
+    return take_parts(reader, "interface/R_turn", (struct tensor_part){ 1, k_l, k_l },
+                      (size_t)d->turn_count, turns) &&
            take_parts(reader, "interface/T_r", (struct tensor_part){ k_r, 1, k_l }, parts,
                       part[0]) &&
            take_parts(reader, "interface/U_r", (struct tensor_part){ m, 1, k_r }, parts, part[1]) &&

@@ -19,3 +19,13 @@ void mrt_gather(const struct mrt_shape *shape, struct mrt_point point, const str
         add_hit(&hit, rays->weight + (size_t)i * (size_t)rays->values, rays->values, rows, stride);
     }
 }
+
+void mrt_add_radiosity(const struct mrt_hit *hit, float weight, const struct matrix_f32 *radiosity,
+                       float *row)
+{
+    for (int k = 0; k < hit->texels; k++) {
+        const float *from = radiosity->at + (size_t)hit->texel[k] * radiosity->stride;
+        const float w = weight * hit->weight[k];
+        for (size_t m = 0; m < radiosity->columns; m++) row[m] += w * from[m];
+    }
+}

@@ -218,7 +218,7 @@ bool mrt_turned_init(struct host *host, const struct mrt_level *level, struct mr
     return true;
 }
 
-void mrt_basis_input_finish(struct host *host, struct mrt_basis_input *basis)
+static void basis_finish(struct host *host, struct mrt_basis_input *basis)
 {
     matrix_f32_finish(host, &basis->t_db);
     for (int m = 0; m < MRT_MEASURES; m++) matrix_f32_finish(host, &basis->u[m]);
@@ -234,7 +234,7 @@ void mrt_turned_finish(struct mrt_turned *turned)
 {
     if (!turned->host) return;
     for (int i = 0; i < turned->input.basis_count; i++)
-        mrt_basis_input_finish(turned->host, &turned->bases[i]);
+        basis_finish(turned->host, &turned->bases[i]);
     for (int i = 0; turned->responses && i < MRT_RESPONSES; i++)
         mrt_response_input_finish(turned->host, &turned->responses[i]);
     host_free(turned->host, turned->bases);

@@ -17,5 +17,4 @@ struct mrt_turned {
 bool mrt_turned_init(struct host *host, const struct mrt_level *level, struct mrt_turned *out);
 void mrt_turned_finish(struct mrt_turned *turned);
 
-void mrt_basis_input_finish(struct host *host, struct mrt_basis_input *basis);
 void mrt_response_input_finish(struct host *host, struct mrt_response_input *response);
