@@ -21,13 +21,13 @@ struct words {
     bool half;
 };
 
-static bool words_init(struct words *w, struct host *host, bool half, size_t rows, size_t quads)
+static bool words_init(struct words *w, const struct mrt_runtime *runtime, size_t rows, int modes)
 {
-    *w = (struct words){ .host = host, .half = half };
+    *w = (struct words){ .host = runtime->host, .half = runtime->options.half };
     size_t numbers;
-    if (!size_mul(rows, 4 * quads, &numbers))
-        return host_fail(host, FAIL_MEMORY, "mrt: operators of %zu rows are too large", rows);
-    w->at = host_alloc(host, numbers, half ? 2 : 4);
+    if (!size_mul(rows, 4 * (size_t)mrt_quads(modes), &numbers))
+        return host_fail(w->host, FAIL_MEMORY, "mrt: operators of %zu rows are too large", rows);
+    w->at = host_alloc(w->host, numbers, w->half ? 2 : 4);
     return w->at;
 }
 
@@ -106,9 +106,7 @@ static bool upload_t_db(struct mrt_runtime *runtime, const struct mrt_runtime_in
                         const struct mrt_scales *scales)
 {
     struct words w;
-    if (!words_init(&w, runtime->host, runtime->options.half, rows_of_bases(input),
-                    mrt_quads(input->k_b)))
-        return false;
+    if (!words_init(&w, runtime, rows_of_bases(input), input->k_b)) return false;
     for (int i = 0; i < input->basis_count; i++) {
         const struct matrix_f32 *t = &input->bases[i].t_db;
         for (size_t texel = 0; texel < t->columns; texel++)
@@ -130,8 +128,7 @@ static bool upload_u_b(struct mrt_runtime *runtime, const struct mrt_runtime_inp
     struct words w;
     size_t rows = 0;
     for (int i = 0; i < input->basis_count; i++) rows += input->bases[i].u[measure].rows;
-    if (!words_init(&w, runtime->host, runtime->options.half, rows, mrt_quads(input->k_b)))
-        return false;
+    if (!words_init(&w, runtime, rows, input->k_b)) return false;
     for (int i = 0; i < input->basis_count; i++)
         put_matrix(&w, &input->bases[i].u[measure], scales->inverse + i * scales->k_b, input->k_b);
     return words_upload(&w, runtime, names[measure], out);
@@ -144,8 +141,7 @@ static bool upload_u_r(struct mrt_runtime *runtime, const struct mrt_runtime_inp
     struct words w;
     size_t rows = 0;
     for (int i = 0; i < input->response_count; i++) rows += input->responses[i].u[measure].rows;
-    if (!words_init(&w, runtime->host, runtime->options.half, rows, mrt_quads(input->k_r)))
-        return false;
+    if (!words_init(&w, runtime, rows, input->k_r)) return false;
     for (int i = 0; i < input->response_count; i++)
         put_matrix(&w, &input->responses[i].u[measure], NULL, input->k_r);
     return words_upload(&w, runtime, names[measure], out);
@@ -158,8 +154,7 @@ static bool upload_t_br(struct mrt_runtime *runtime, const struct mrt_runtime_in
     struct words w;
     const int columns = (int)(4 * mrt_quads(input->k_b));
     const float zero = 0.0f;
-    if (!words_init(&w, runtime->host, runtime->options.half,
-                    (size_t)input->pair_count * (size_t)columns, mrt_quads(input->k_r)))
+    if (!words_init(&w, runtime, (size_t)input->pair_count * (size_t)columns, input->k_r))
         return false;
     for (int i = 0; i < input->pair_count; i++) {
         const struct mrt_pair_input *pair = &input->pairs[i];
@@ -183,8 +178,7 @@ static bool upload_coupling(struct mrt_runtime *runtime, const struct mrt_runtim
     uint32_t count = 0;
     for (int i = 0; i < input->opening_count; i++) count += mrt_senders(input, i, NULL);
     struct mrt_sender *senders = host_alloc(runtime->host, count, sizeof *senders);
-    bool ok = senders &&
-              words_init(&w, runtime->host, runtime->options.half, count, mrt_quads(input->k_r));
+    bool ok = senders && words_init(&w, runtime, count, input->k_r);
     for (int i = 0; ok && i < input->opening_count; i++) {
         const uint32_t of_opening = mrt_senders(input, i, senders);
         for (uint32_t k = 0; k < of_opening; k++) put_row(&w, senders[k].of_c, 1, NULL, input->k_r);
@@ -223,9 +217,8 @@ static bool upload_clutter_map(struct mrt_runtime *runtime, const struct mrt_run
         for (int k = 0; k <= CUBE_FACES && map->rows[i].u_r[k].rows > 0; k++)
             rows_r += rows_of_map(&map->rows[i]);
     }
-    if (!words_init(&b, runtime->host, runtime->options.half, rows_b, mrt_quads(input->k_b)))
-        return false;
-    if (!words_init(&r, runtime->host, runtime->options.half, rows_r, mrt_quads(input->k_r))) {
+    if (!words_init(&b, runtime, rows_b, input->k_b)) return false;
+    if (!words_init(&r, runtime, rows_r, input->k_r)) {
         host_free(b.host, b.at);
         return false;
     }
