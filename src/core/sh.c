@@ -1,4 +1,4 @@
-// The basis, zonal harmonics and convolution. Rotation: sh_rotate.c; products: sh_product.c.
+// The basis, zonal harmonics and convolution. Rotation: sh_rotate.c.
 #include "core/sh_basis.h"
 
 #include <assert.h>

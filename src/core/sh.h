@@ -33,5 +33,3 @@ void sh_irradiance(int bands, const float *radiance, float *out);
 // Rotation of a function by the rotation matrix `to_from`: out(to_from · ω) = in(ω). out may not be
 // in.
 void sh_rotate(int bands, mat3s to_from, const float *in, float *out);
-// Product of two functions projected back onto `bands` bands (the triple-product tensor, exact).
-void sh_product(int bands, const float *a, const float *b, float *out);

@@ -381,21 +381,6 @@ static void read_timestamps(struct gpu *gpu)
     gpu->limits.timestamps = bits > 0 && gpu->ns_per_tick > 0;
 }
 
-static void read_subgroups(struct gpu *gpu)
-{
-    VkPhysicalDeviceSubgroupProperties subgroups = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
-    };
-    VkPhysicalDeviceProperties2 p = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
-        .pNext = &subgroups,
-    };
-    vkGetPhysicalDeviceProperties2(gpu->physical, &p);
-    gpu->limits.subgroup_broadcast =
-        subgroups.subgroupSize >= 8 && (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) &&
-        (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_BALLOT_BIT);
-}
-
 void device_read_limits(struct gpu *gpu)
 {
     VkPhysicalDeviceMaintenance3Properties allocation = {
@@ -430,5 +415,4 @@ void device_read_limits(struct gpu *gpu)
     }
     out->ray_query = has_extension(gpu->physical, VK_KHR_RAY_QUERY_EXTENSION_NAME);
     read_timestamps(gpu);
-    read_subgroups(gpu);
 }

@@ -103,7 +103,6 @@ struct gpu_limits {
     uint32_t max_image_2d, max_image_3d, max_layers, max_push_bytes, max_groups[3];
     uint64_t max_storage_bytes, memory_bytes;
     bool timestamps, geometry_shader, ray_query;
-    bool subgroup_broadcast; // GL_KHR_shader_subgroup_ballot in compute, at least 8 invocations
 };
 const struct gpu_limits *gpu_limits(const struct gpu *gpu);
 
