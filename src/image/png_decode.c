@@ -12,7 +12,7 @@ struct job {
     png_structp png;
     png_infop info;
     jmp_buf escape;
-    const uint8_t *data, *end;
+    struct png_input input;
     char *why; // [DECODE_WHY_SIZE]
 };
 
@@ -26,14 +26,6 @@ static void on_error(png_structp png, png_const_charp message)
 static void on_warning(png_structp png, png_const_charp message)
 {
     (void)png, (void)message;
-}
-
-static void on_read(png_structp png, png_bytep out, size_t bytes)
-{
-    struct job *job = png_get_io_ptr(png);
-    if (bytes > (size_t)(job->end - job->data)) png_error(png, "the file ends too early");
-    memcpy(out, job->data, bytes);
-    job->data += bytes;
 }
 
 bool png_find_size(const uint8_t *data, size_t size, uint32_t *width, uint32_t *height)
@@ -55,12 +47,11 @@ static void request_rgba(struct job *job)
     png_set_add_alpha(job->png, 0xff, PNG_FILLER_AFTER);
 }
 
-// All that may longjmp. Data after the last row is not unpacked: a bomb could be there. Checksums
-// are not compared: pixels that can be unpacked are used.
+// All that may longjmp. Checksums are not compared: pixels that can be unpacked are used.
 static bool read_rows(struct job *job, uint32_t width, uint32_t height, uint8_t *rgba)
 {
     if (setjmp(job->escape)) return false;
-    png_set_read_fn(job->png, job, on_read);
+    png_set_read_fn(job->png, &job->input, png_read_input);
     png_limit(job->png, width > height ? width : height);
     png_set_crc_action(job->png, PNG_CRC_QUIET_USE, PNG_CRC_QUIET_USE);
     png_set_option(job->png, PNG_IGNORE_ADLER32, PNG_OPTION_ON);
@@ -80,9 +71,10 @@ static bool read_rows(struct job *job, uint32_t width, uint32_t height, uint8_t 
 const char *png_decode(const uint8_t *data, size_t size, uint32_t width, uint32_t height,
                        uint8_t *rgba, char why[DECODE_WHY_SIZE])
 {
-    struct job job = { .data = data, .end = data + size, .why = why };
+    struct job job = { .input = { .at = data, .end = data + size }, .why = why };
     job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
     job.info = job.png ? png_create_info_struct(job.png) : NULL;
+    job.input.info = job.info;
     snprintf(why, DECODE_WHY_SIZE, "there is no memory to decode it");
     const bool ok = job.info && read_rows(&job, width, height, rgba);
     png_destroy_read_struct(&job.png, &job.info, NULL);

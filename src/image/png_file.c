@@ -20,7 +20,7 @@ struct png_job {
     char message[160];
     enum fail_kind kind;       // of the failure
     struct file_bytes bytes;   // reading
-    size_t position;           // read position in `bytes`
+    struct png_input input;    // of `bytes`
     struct file_writer writer; // writing
     uint8_t *pixels;           // encoded, interleaved
     png_bytep *rows;
@@ -61,14 +61,6 @@ static void on_free(png_structp png, png_voidp pointer)
 {
     struct png_job *job = png_get_mem_ptr(png);
     host_free(job->host, pointer);
-}
-
-static void on_read(png_structp png, png_bytep out, size_t bytes)
-{
-    struct png_job *job = png_get_io_ptr(png);
-    if (bytes > job->bytes.size - job->position) png_error(png, "the file ends too early");
-    memcpy(out, job->bytes.data + job->position, bytes);
-    job->position += bytes;
 }
 
 static void on_write(png_structp png, png_bytep data, size_t bytes)
@@ -133,7 +125,9 @@ static bool job_read(struct png_job *job)
     job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, on_error, on_warning, job,
                                         on_malloc, on_free);
     if (!job_started(job)) return false;
-    png_set_read_fn(job->png, job, on_read);
+    job->input =
+        (struct png_input){ job->bytes.data, job->bytes.data + job->bytes.size, .info = job->info };
+    png_set_read_fn(job->png, &job->input, png_read_input);
     png_limit(job->png, IMAGE_MAX_SIZE);
     png_read_info(job->png, job->info);
     request_rgb(job->png, job->info);
@@ -141,6 +135,7 @@ static bool job_read(struct png_job *job)
                            png_get_image_height(job->png, job->info)))
         return false;
     png_read_image(job->png, job->rows);
+    job->input.info = NULL;       // texts may be large
     png_read_end(job->png, NULL); // a missing end chunk means a truncated file
     return true;
 }

@@ -225,6 +225,49 @@ TEST(a_png_that_ends_too_early_is_refused)
     file_bytes_finish(test_host(), &file);
 }
 
+// A file of 8192 x `rows` black pixels, whose header says one row.
+static struct file_bytes png_with_rows_behind_its_last(int interlace, int rows)
+{
+    enum { HEIGHT_AT = 20 };
+    static png_byte row[8192];
+    const char *path = test_path("behind.png");
+    struct file_bytes file;
+    FILE *stream = fopen(path, "wb");
+    CHECK(stream);
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, stream);
+    png_set_IHDR(png, info, 8192, (png_uint_32)rows, 8, PNG_COLOR_TYPE_GRAY, interlace,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_filter(png, 0, PNG_FILTER_NONE);
+    png_write_info(png, info);
+    const int passes = png_set_interlace_handling(png);
+    for (int i = 0; i < passes * rows; i++) png_write_row(png, row);
+    png_write_end(png, info);
+    png_destroy_write_struct(&png, &info);
+    fclose(stream);
+    CHECK(file_read(test_host(), path, 0, &file));
+    memcpy(file.data + HEIGHT_AT, "\0\0\0\1", 4);
+    return file;
+}
+
+// libpng unpacks them, and one byte unpacks to a thousand.
+TEST(a_png_with_much_data_behind_its_last_row_is_refused)
+{
+    for (int interlace = 0; interlace < 2; interlace++) {
+        struct file_bytes file = png_with_rows_behind_its_last(interlace, 2);
+        int width, height;
+        uint8_t *rgba;
+        const char *why = decode(file, &width, &height, &rgba);
+        if (why) fail_msg("interlace %d: %s", interlace, why);
+        free(rgba);
+        file_bytes_finish(test_host(), &file);
+        file = png_with_rows_behind_its_last(interlace, 20000);
+        check_refused(file, "it has data behind its last row");
+        file_bytes_finish(test_host(), &file);
+    }
+}
+
 TEST(a_png_of_a_size_beyond_the_limit_is_refused)
 {
     struct file_bytes file = png_file(&(struct form){ PNG_COLOR_TYPE_GRAY, 8, 0, false });
@@ -343,19 +386,22 @@ TEST(jpeg_pixels_are_those_of_the_file_within_its_loss)
     }
 }
 
-// What follows the last row is not needed; in a progressive file all is.
+// The last two bytes are the end marker, which libjpeg does without.
 TEST(a_jpeg_that_ends_too_early_is_refused)
 {
-    struct file_bytes file = jpeg_file(&(struct jpeg_form){ JCS_RGB, true, false });
-    const size_t whole = file.size;
-    for (size_t size = 3; size < whole - 2; size++) {
-        int width, height;
-        uint8_t *rgba;
-        file.size = size;
-        CHECK(decode(file, &width, &height, &rgba));
-        free(rgba);
+    for (int progressive = 0; progressive < 2; progressive++) {
+        struct file_bytes file = jpeg_file(&(struct jpeg_form){ JCS_RGB, progressive, false });
+        const size_t whole = file.size;
+        for (size_t size = 3; size < whole - 2; size++) {
+            int width, height;
+            uint8_t *rgba;
+            file.size = size;
+            if (!decode(file, &width, &height, &rgba))
+                fail_msg("progressive %d: %zu of %zu bytes are enough", progressive, size, whole);
+            free(rgba);
+        }
+        free(file.data);
     }
-    free(file.data);
 }
 
 TEST(a_jpeg_of_more_than_100_scans_is_refused)
