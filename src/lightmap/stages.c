@@ -2,7 +2,6 @@
 #include "lightmap/lightmap.h"
 
 #include "bake/scene_key.h"
-#include "core/host.h"
 #include "lightmap/gather.h"
 #include "scene/statics.h"
 

@@ -164,19 +164,3 @@ TEST(the_wall_of_a_texel_is_its_own)
     }
     finish(&l);
 }
-
-TEST(a_surface_that_faces_its_way_has_the_same_wall_in_a_warped_and_turned_block)
-{
-    struct mrt_block block;
-    mrt_block_init(&block, "b", MRT_BLOCK_CUBE);
-    for (int o = 0; o < MRT_ORIENTATIONS; o++) {
-        mrt_block_set_box(&block, (struct box3){ vec3_of(-1, -2, -3), vec3_of(1, 2, 3) });
-        for (int c = 4; c < 8; c++) block.corner[c].x += 0.5f; // sheared
-        mrt_turn_block(&block, o);
-        struct wall_point point;
-        CHECK(wall_of_surface(&block, vec3_of(0.1f, 0.3f, 0), vec3_of(0, 1, 0), 0.1f, &point));
-        vec3s wall = mrt_warp_point(block.corner, cube_face_point(point.face, point.s, point.t));
-        CHECK_NEAR(glms_vec3_distance(wall, vec3_of(0.1f, -2, 0)), 0, 1e-4);
-        CHECK(!wall_of_surface(&block, vec3_of(0, 5, 0), vec3_of(0, 1, 0), 0.1f, &point));
-    }
-}

@@ -73,22 +73,13 @@ static bool split(struct mrt_clutter *out, const struct scene_pose *pose, const 
     return true;
 }
 
-static float mean_edge(const struct mrt_block_map *map)
-{
-    double volume = 0.0;
-    for (int b = 0; b < map->count; b++)
-        volume += fabs((double)glms_mat3_det(
-            mrt_warp_jacobian(map->blocks[b].corner, vec3_of(0.0f, 0.0f, 0.0f))));
-    return (float)cbrt(volume / map->count);
-}
-
 // Four texels for each of a block's walls at the same density bound the atlas.
 static bool make_charts(struct mrt_clutter *out, const struct mrt_block_map *map,
                         const struct mrt_clutter_options *options)
 {
     const float side = options->texels_per_edge;
     const struct charts_options charts = {
-        .texels_per_m = side / mean_edge(map),
+        .texels_per_m = side / mrt_block_map_mean_edge(map),
         .max_texels = (uint32_t)fminf(24.0f * side * side * (float)map->count, 4194304.0f) + 65536u,
     };
     return charts_init(&out->charts, out->host, &out->objects.pose, &charts);

@@ -112,6 +112,15 @@ bool mrt_block_map_check(const char *what, const struct mrt_block_map *map)
 
 // ---- maps for dictionaries of the plane
 
+float mrt_block_map_mean_edge(const struct mrt_block_map *map)
+{
+    double volume = 0.0;
+    for (int b = 0; b < map->count; b++)
+        volume += (double)glms_mat3_det(
+            mrt_warp_jacobian(map->blocks[b].corner, vec3_of(0.0f, 0.0f, 0.0f)));
+    return (float)cbrt(volume / map->count);
+}
+
 static bool is_in_plane(const struct mrt_block *block, int face)
 {
     if (!mrt_block_is_open(block, face)) return true;

@@ -39,6 +39,9 @@ int mrt_meeting_face(const struct mrt_block *block, int face, const struct mrt_b
 // are not finite or a warp that folds over, openings that its shape lacks or a cube without walls.
 bool mrt_block_map_check(const char *what, const struct mrt_block_map *map);
 
+// Edge of a cube of the blocks' mean volume, in metres.
+float mrt_block_map_mean_edge(const struct mrt_block_map *map);
+
 // Whether a dictionary for two-dimensional mazes has all cubes: no opening at the bottom or top of
 // a cell, no neighbours that are tilted against each other.
 bool mrt_block_map_is_plane(const struct mrt_block_map *map);

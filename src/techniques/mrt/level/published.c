@@ -14,15 +14,10 @@ enum { MAX_ALONG_AXIS = 32, RAYS = 576 };
 static struct frame_probes grid_of(const struct mrt_block_map *map, int p)
 {
     struct box3 box = box3_empty();
-    float volume = 0.0f;
-    for (int b = 0; b < map->count; b++) {
-        const struct mrt_block *block = &map->blocks[b];
-        box = box3_union(box, mrt_warp_bounds(block->corner));
-        volume += glms_mat3_det(mrt_warp_jacobian(block->corner, vec3_of(0, 0, 0)));
-    }
-    const float edge = cbrtf(volume / (float)map->count);
-    return probe_grid_over(box,
-                           fmaxf(edge / (float)p, glms_vec3_max(box3_size(box)) / MAX_ALONG_AXIS));
+    for (int b = 0; b < map->count; b++)
+        box = box3_union(box, mrt_warp_bounds(map->blocks[b].corner));
+    return probe_grid_over(box, fmaxf(mrt_block_map_mean_edge(map) / (float)p,
+                                      glms_vec3_max(box3_size(box)) / MAX_ALONG_AXIS));
 }
 
 struct job {
