@@ -4,6 +4,7 @@
 // bounces between clusters, and the light map. Pixels look it up. Surfaces send diffuse light only.
 #include "techniques/radiosity/radiosity.h"
 
+#include "techniques/radiosity/probes/probes_shared.h"
 #include "techniques/radiosity/radiosity_state.h"
 #include "scene/statics.h"
 
@@ -57,6 +58,7 @@ static struct gpu_image_desc table(enum gpu_format format, size_t count)
 
 #define TABLE(thing)    offsetof(struct radiosity, tables.thing)
 #define PIPELINE(thing) #thing, offsetof(struct radiosity, pipelines.thing)
+#define PROBES(thing)   offsetof(struct radiosity, probes.thing)
 
 static void list_tables(const struct radiosity *s, struct gpu_objects *out)
 {
@@ -105,15 +107,32 @@ static void list_pipelines(const struct radiosity *s, struct gpu_objects *out)
             { GPU_PIPELINE, PIPELINE(apply[1][1]), .shader = apply, .consts = moved | 1u << 4 });
 }
 
-// What radiosity_upload creates.
+static void list_probes(const struct radiosity *s, struct gpu_objects *out)
+{
+    const struct gpu_shader *apply = s->options.specular
+                                         ? &shader_radiosity_probes_apply_specular_comp
+                                         : &shader_radiosity_probes_apply_diffuse_comp;
+    const struct gpu_image_desc volume =
+        probe_volume_desc(NULL, s->probes.volume.grid, FRAME_PROBE_SLABS + 1);
+    GPU_ADD(
+        out, 0, { GPU_IMAGE, "probe_volume", PROBES(volume.image), .image = volume },
+        { GPU_SAMPLER, "probe_depth", .member = PROBES(linear) },
+        { GPU_PIPELINE, "probes", PROBES(gather), .shader = &shader_radiosity_probes_gather_comp },
+        { GPU_PIPELINE, "apply", PROBES(apply), .shader = apply });
+}
+
+// What radiosity_upload and radiosity_probes_upload create.
 static void list_uploads(struct gpu_objects *out)
 {
 #define IMAGE(thing) { GPU_IMAGE, .member = TABLE(thing) }
     GPU_ADD(out, 0, IMAGE(texels), IMAGE(neighbours), IMAGE(clusters), IMAGE(spans), IMAGE(members),
-            IMAGE(groups), IMAGE(owners), IMAGE(places), IMAGE(seams),
+            IMAGE(groups), IMAGE(owners), IMAGE(places), IMAGE(seams), IMAGE(factors.order),
+            IMAGE(factors.tiles), IMAGE(cluster_factors.order), IMAGE(cluster_factors.tiles),
             { GPU_BUFFER, .member = TABLE(surfaces.first) },
             { GPU_BUFFER, .member = TABLE(surfaces.triangles) },
-            { GPU_BUFFER, .member = TABLE(labels) });
+            { GPU_BUFFER, .member = TABLE(labels) }, { GPU_BUFFER, .member = PROBES(table) },
+            { GPU_BUFFER, .member = PROBES(factors) },
+            { GPU_IMAGE, .member = PROBES(volume.depth) });
 }
 
 static void list(const struct radiosity *s, struct gpu_objects *out)
@@ -121,18 +140,17 @@ static void list(const struct radiosity *s, struct gpu_objects *out)
     out->count = 0;
     list_tables(s, out);
     list_pipelines(s, out);
+    list_probes(s, out);
     list_uploads(out);
 }
 
 static bool load(void *state, const struct tensors *bake)
 {
     struct radiosity *s = state;
-    const struct radiosity_probes_create how = { s->host, s->gpu, &s->map, &s->options };
     struct gpu_objects objects;
-    if (!radiosity_upload(s, bake)) return false;
+    if (!radiosity_upload(s, bake) || !radiosity_probes_upload(s, bake)) return false;
     list(s, &objects);
-    return gpu_objects_create(s->gpu, &objects, 0, s) &&
-           radiosity_probes_init(&s->probes, &how, bake);
+    return gpu_objects_create(s->gpu, &objects, 0, s);
 }
 
 static void set_options(void *state, const void *options)
@@ -226,7 +244,6 @@ static void destroy(void *state)
     gpu_objects_destroy(s->gpu, &objects, s);
     radiosity_destroy_rows(s, &s->tables.factors);
     radiosity_destroy_rows(s, &s->tables.cluster_factors);
-    radiosity_probes_finish(&s->probes, s->gpu);
     radiosity_followed_finish(&s->followed);
     radiosity_map_finish(&s->map);
 }
@@ -267,7 +284,9 @@ static uint64_t memory_estimate(const void *options)
     const uint64_t of_scene =
         texels * sizeof(struct light_map_triangle) + table_bytes(1, 16) + table_bytes(1, 4);
     const uint64_t of_map = table_bytes(places, 8) + 2 * 8 * LIGHT_MAP_LAYERS * places;
-    return of_texels + of_clusters + of_scene + of_map + radiosity_probes_memory(o);
+    const uint64_t of_probes = radiosity_probes_most(o) * (sizeof(struct radiosity_gpu_probe) +
+                                                           12 * 2 * sources + PROBE_VOLUME_BYTES);
+    return of_texels + of_clusters + of_scene + of_map + of_probes;
 }
 
 const struct technique technique_radiosity = {

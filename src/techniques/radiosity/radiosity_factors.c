@@ -216,8 +216,6 @@ bool radiosity_upload_factors(struct radiosity *s, const uint32_t *source, const
 void radiosity_destroy_rows(struct radiosity *s, struct radiosity_rows *rows)
 {
     for (uint32_t i = 0; i < rows->count; i++) gpu_image_destroy(s->gpu, &rows->blocks[i].table);
-    gpu_image_destroy(s->gpu, &rows->order);
-    gpu_image_destroy(s->gpu, &rows->tiles);
     host_free(s->host, rows->blocks);
     *rows = (struct radiosity_rows){ 0 };
 }

@@ -89,7 +89,7 @@ struct radiosity {
     struct kept kept;
 };
 
-// ---- radiosity_upload.c, radiosity_factors.c, radiosity_places.c
+// ---- radiosity_upload.c, radiosity_factors.c, radiosity_places.c, probes/upload.c
 
 // Tables of the light map and of a bake on the GPU.
 bool radiosity_upload(struct radiosity *state, const struct tensors *bake);
@@ -105,6 +105,8 @@ bool radiosity_buffer_upload(struct radiosity *state, const char *name, void *it
 // Where light is shown. shown: [texels] whose light each one shows.
 bool radiosity_upload_owners(struct radiosity *state, const uint32_t *shown);
 bool radiosity_upload_triangles(struct radiosity *state);
+// The grid of probes, and its tables. After radiosity_upload.
+bool radiosity_probes_upload(struct radiosity *state, const struct tensors *bake);
 
 // ---- radiosity_update.c
 
