@@ -317,8 +317,10 @@ struct gpu_objects {
     int count;
     struct gpu_object at[GPU_MAX_OBJECTS];
     struct gpu_constant constants[GPU_MAX_CONSTANTS]; // that pipelines choose from
+    int left_out;                                     // rows beyond GPU_MAX_OBJECTS
 };
 
+void gpu_objects_clear(struct gpu_objects *table); // constants stay
 // Adds rows whose members are those of a struct at this offset of the state.
 void gpu_objects_add(struct gpu_objects *table, size_t base, const struct gpu_object *rows,
                      size_t count);
@@ -326,8 +328,8 @@ void gpu_objects_add(struct gpu_objects *table, size_t base, const struct gpu_ob
     gpu_objects_add(table, base, (const struct gpu_object[]){ __VA_ARGS__ },                       \
                     sizeof((const struct gpu_object[]){ __VA_ARGS__ }) /                           \
                         sizeof(struct gpu_object))
-// Those from the row `first` on. false: gpu_objects_destroy frees what was created; it accepts any
-// half-built state.
+// Those from the row `first` on; false, too, where rows were left out. gpu_objects_destroy then
+// frees what was created; it accepts any half-built state.
 bool gpu_objects_create(struct gpu *gpu, const struct gpu_objects *table, int first, void *state);
 void gpu_objects_destroy(struct gpu *gpu, const struct gpu_objects *table, void *state);
 // Bytes of buffers and texels, without what a driver pads.

@@ -1,13 +1,19 @@
 // Tables of the objects of a state: creation, destruction and size by one list.
-#include "gpu/gpu.h"
+#include "gpu/vk.h"
 
-#include <assert.h>
+void gpu_objects_clear(struct gpu_objects *table)
+{
+    table->count = table->left_out = 0;
+}
 
 void gpu_objects_add(struct gpu_objects *table, size_t base, const struct gpu_object *rows,
                      size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        assert(table->count < GPU_MAX_OBJECTS);
+        if (table->count == GPU_MAX_OBJECTS) {
+            table->left_out++;
+            continue;
+        }
         table->at[table->count] = rows[i];
         table->at[table->count++].member += base;
     }
@@ -72,6 +78,9 @@ static bool create(struct gpu *gpu, const struct gpu_objects *table, const struc
 
 bool gpu_objects_create(struct gpu *gpu, const struct gpu_objects *table, int first, void *state)
 {
+    if (table->left_out > 0)
+        return host_fail(gpu->host, FAIL_UNSUPPORTED, "gpu objects: %d, the limit is %d",
+                         table->count + table->left_out, GPU_MAX_OBJECTS);
     for (int i = first; i < table->count; i++)
         if (!create(gpu, table, &table->at[i], (char *)state + table->at[i].member)) return false;
     return true;

@@ -4,7 +4,7 @@
 static void list(const struct technique *technique, const void *options, int view, uint32_t width,
                  uint32_t height, struct gpu_objects *out)
 {
-    out->count = 0;
+    gpu_objects_clear(out);
     if (technique->objects) technique->objects(options, view, width, height, out);
 }
 

@@ -137,7 +137,7 @@ static void list_uploads(struct gpu_objects *out)
 
 static void list(const struct radiosity *s, struct gpu_objects *out)
 {
-    out->count = 0;
+    gpu_objects_clear(out);
     list_tables(s, out);
     list_pipelines(s, out);
     list_probes(s, out);

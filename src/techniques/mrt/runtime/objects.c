@@ -10,7 +10,8 @@ static bool add(struct mrt_runtime *runtime, struct gpu_object row, const void *
     row.member = (size_t)((const char *)member - (const char *)runtime);
     assert(row.member < sizeof *runtime);
     gpu_objects_add(table, 0, &row, 1);
-    return runtime->plan || gpu_objects_create(runtime->gpu, table, table->count - 1, runtime);
+    return runtime->plan ? table->left_out == 0
+                         : gpu_objects_create(runtime->gpu, table, table->count - 1, runtime);
 }
 
 static bool keep(struct mrt_plan *plan, int row, const void *data, size_t bytes)
