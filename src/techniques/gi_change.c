@@ -3,18 +3,17 @@
 
 #include "techniques/gi_spec.h"
 
-// Whether a running technique can take these options: set_options knows LIVE and INVALIDATE.
+// Whether a running technique can take these options.
 static bool may_continue(const struct technique *technique, const void *now, const void *next)
 {
-    const int effect = option_difference(&technique->options, now, next);
-    return effect < 0 || (effect <= INVALIDATE && technique->set_options);
+    return option_difference(&technique->options, now, next) <= INVALIDATE;
 }
 
 static void apply_options(const struct technique *technique, void *state, const void *options,
                           int effect)
 {
     if (!state) return;
-    technique->set_options(state, options);
+    technique_set_options(technique, state, options);
     if (effect == INVALIDATE && technique->invalidate)
         technique->invalidate(state, CHANGED_OPTIONS);
 }

@@ -1,6 +1,8 @@
 // The objects of a technique's table around its functions.
 #include "techniques/technique.h"
 
+#include <string.h>
+
 static void list(const struct technique *technique, const void *options, int view, uint32_t width,
                  uint32_t height, struct gpu_objects *out)
 {
@@ -22,8 +24,19 @@ bool technique_create(const struct technique *technique, void *state,
                       const struct technique_create *how)
 {
     struct gpu_objects table;
+    if (technique->options.size > 0) memcpy(state, how->options, technique->options.size);
     list(technique, how->options, 0, how->width, how->height, &table);
-    return gpu_objects_create(how->gpu, &table, 0, state) && technique->create(state, how);
+    return gpu_objects_create(how->gpu, &table, 0, state) &&
+           (!technique->create || technique->create(state, how));
+}
+
+void technique_set_options(const struct technique *technique, void *state, const void *options)
+{
+    if (technique->set_options)
+        technique->set_options(state, options);
+    else if (technique->invalidate)
+        technique->invalidate(state, CHANGED_OPTIONS);
+    option_copy_live(&technique->options, options, state);
 }
 
 bool technique_resize(const struct technique *technique, struct gpu *gpu, void *state,

@@ -74,9 +74,11 @@ struct technique {
     struct option_table options;
     const struct technique_preset *presets; // by ascending cost; ends with a NULL name; may be NULL
     const struct technique_debug_view *debug_views; // ends with a NULL name; may be NULL
-    size_t state_size; // of the private state, allocated zeroed by the host
+    // Of the private state, allocated zeroed by the host. The state begins with the options, which
+    // technique.c writes: before `create`, and after `set_options`.
+    size_t state_size;
 
-    // All but create and record may be NULL. `state` is the private state. Objects and scopes are
+    // All but record may be NULL. `state` is the private state. Objects and scopes are
     // named without the technique's name: gi.c has it pushed as their owner.
     // The GPU objects of a state whose view `number` has this size, 0 × 0: none. Those before
     // `create` are of view 0; of further views only rows `of_view` count. Options of effect LIVE
@@ -103,8 +105,10 @@ struct technique {
     // A view has this size, and objects for it: view 0 that of `create` until then. 0 × 0: the view
     // has ended.
     bool (*resize)(void *state, int view, uint32_t width, uint32_t height);
-    void (*set_options)(void *state, const void *options); // only effects LIVE and INVALIDATE
-    void (*invalidate)(void *state, uint32_t changes);     // technique_change bits
+    // Those of the state are about to become these: only effects LIVE and INVALIDATE. NULL:
+    // `invalidate` with CHANGED_OPTIONS.
+    void (*set_options)(void *state, const void *options);
+    void (*invalidate)(void *state, uint32_t changes); // technique_change bits
     // Before each frame is recorded, with the pose that it shows: follows changes of surfaces,
     // which techniques without it or CAN_MOVE_GEOMETRY do not, with a warning of gi.c. `wait`: the
     // frame shows them, however long it takes.
@@ -138,6 +142,7 @@ struct technique {
 
 bool technique_create(const struct technique *technique, void *state,
                       const struct technique_create *how);
+void technique_set_options(const struct technique *technique, void *state, const void *options);
 bool technique_resize(const struct technique *technique, struct gpu *gpu, void *state,
                       const void *options, int view, uint32_t width, uint32_t height);
 // Accepts any half-built state.

@@ -38,7 +38,7 @@ bool technique_is_sound(const struct technique *technique)
         return false;
     if (strspn(technique->name, "abcdefghijklmnopqrstuvwxyz0123456789") != strlen(technique->name))
         return false;
-    if (!technique->create || !technique->record) return false;
+    if (!technique->record || technique->state_size < technique->options.size) return false;
     if (!views_are_sound(technique)) return false;
     if ((technique->bake_version != 0) != ((technique->capabilities & NEEDS_BAKE) != 0))
         return false;

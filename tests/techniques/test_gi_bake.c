@@ -18,6 +18,7 @@ static const struct option_row rows[] = { ROW(int32, modes, 4, 1, 64, "", REBAKE
                                                   "a number") };
 
 struct fake_state {
+    struct fake_options options;
     float sum; // of the loaded modes
 };
 static struct fake_state newest;
@@ -44,7 +45,7 @@ static bool fake_bake(struct bake_plan *plan, const struct technique_bake *how)
 static bool fake_create(void *state, const struct technique_create *how)
 {
     (void)how;
-    newest = (struct fake_state){ 0 };
+    newest = (struct fake_state){ .sum = 0.0f };
     return state != NULL;
 }
 

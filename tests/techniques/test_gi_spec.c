@@ -36,7 +36,7 @@ static const struct technique_preset fake_presets[] = { { "low", "bias=0.5" },
 #define FAKE(name_, role_)                                                                         \
     {                                                                                              \
         .name = name_, .title = "fake", .paper = "none", .role = role_, .create = fake_create,     \
-        .record = fake_record, .destroy = fake_destroy,                                            \
+        .record = fake_record, .destroy = fake_destroy, .state_size = sizeof(struct fake_options), \
         .options = OPTION_TABLE(struct fake_options, fake_rows, NULL)                              \
     }
 static const struct technique still = FAKE("still", ROLE_SOURCE),
@@ -50,6 +50,7 @@ static const struct technique graded = {
     .create = fake_create,
     .record = fake_record,
     .destroy = fake_destroy,
+    .state_size = sizeof(struct fake_options),
     .options = OPTION_TABLE(struct fake_options, fake_rows, fake_aliases),
     .presets = fake_presets,
 };
@@ -231,6 +232,9 @@ TEST(registry_refuses_incomplete_techniques)
     CHECK(!technique_is_sound(&bad));
     bad = light;
     bad.record = NULL;
+    CHECK(!technique_is_sound(&bad));
+    bad = light;
+    bad.state_size--;
     CHECK(!technique_is_sound(&bad));
     bad = light;
     bad.bake_version = 1;

@@ -45,7 +45,7 @@ float *vo_fixture_estimate(struct vo_fixture *fixture)
 {
     fixture_render(fixture->frame_fixture);
     const struct screen_ao *ao = &fixture->vo->ao;
-    const size_t pixels = (size_t)ao->work_width * ao->work_height;
+    const size_t pixels = (size_t)ao->params.work_width * ao->params.work_height;
     float *both = malloc(pixels * 2 * sizeof *both);
     CHECK(gpu_image_download_float(fixture->frame_fixture->gpu, ao->estimate, 0, 0, both, 2,
                                    2 * pixels));

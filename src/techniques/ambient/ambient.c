@@ -50,17 +50,6 @@ static void ambient_objects(const void *options, int view, uint32_t width, uint3
             { GPU_PIPELINE, "fill", MEMBER(fill), .shader = &shader_ambient_fill_comp });
 }
 
-static bool ambient_create(void *state, const struct technique_create *how)
-{
-    ((struct ambient *)state)->options = *(const struct ambient_options *)how->options;
-    return true;
-}
-
-static void ambient_set_options(void *state, const void *options)
-{
-    ((struct ambient *)state)->options = *(const struct ambient_options *)options;
-}
-
 // 1/m³; 0 for a flat or empty box, which has no mean path.
 static float per_path(struct box3 box)
 {
@@ -131,8 +120,6 @@ const struct technique technique_ambient = {
     .options = OPTION_TABLE(struct ambient_options, option_rows, NULL),
     .state_size = sizeof(struct ambient),
     .objects = ambient_objects,
-    .create = ambient_create,
-    .set_options = ambient_set_options,
     .update = ambient_update,
     .record = ambient_record,
 };

@@ -64,24 +64,9 @@ void screen_ao_objects(const struct screen_ao_options *o, size_t base, uint32_t 
 #undef MEMBER
 }
 
-void screen_ao_init(struct screen_ao *ao, const struct screen_ao_options *options, uint32_t width,
-                    uint32_t height)
-{
-    ao->options = *options;
-    screen_ao_resize(ao, width, height);
-}
-
-void screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height)
-{
-    ao->width = width;
-    ao->height = height;
-    ao->work_width = work_size(&ao->options, width);
-    ao->work_height = work_size(&ao->options, height);
-    ao->previous_near_m = 0.0f;
-}
-
 // ---- a frame
 
+// A new size begins with a cut of the camera.
 static void use_history(struct screen_ao *ao, const struct frame_view *view)
 {
     struct screen_ao_params *p = &ao->params;
@@ -99,11 +84,12 @@ void screen_ao_invalidate(struct screen_ao *ao)
     ao->previous_near_m = 0.0f;
 }
 
-void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float radius_m,
-                     float reach)
+void screen_ao_begin(struct screen_ao *ao, struct screen_ao_options options,
+                     const struct frame_view *view, float radius_m, float reach)
 {
     const struct world_camera *camera = &view->camera;
     const float width = (float)view->width, height = (float)view->height;
+    ao->options = options;
     ao->params = (struct screen_ao_params){
         .right = glms_vec3_cross(camera->forward, camera->up),
         .down = glms_vec3_negate(camera->up),
@@ -116,10 +102,10 @@ void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float 
         .center_y = 0.5f * height,
         .width = view->width,
         .height = view->height,
-        .work_width = ao->work_width,
-        .work_height = ao->work_height,
+        .work_width = work_size(&options, view->width),
+        .work_height = work_size(&options, view->height),
     };
-    if (ao->options.temporal) use_history(ao, view);
+    if (options.temporal) use_history(ao, view);
 }
 
 struct gpu_binding screen_ao_binding(const struct screen_ao *ao, struct gpu_cmd *cmd)
@@ -142,8 +128,8 @@ void screen_ao_estimate(struct screen_ao *ao, struct gpu_cmd *cmd, const struct 
     gpu_scope_begin(cmd, name);
     gpu_clear_image(cmd, ao->estimate, (const float[4]){ 1.0f }); // pixels without a surface
     gpu_dispatch(cmd, pipeline, bindings, 4 + extra_count, NULL, 0,
-                 gpu_groups(ao->work_width, LOCAL),
-                 gpu_groups(ao->work_height, LOCAL * SCREEN_AO_ROWS), 1);
+                 gpu_groups(ao->params.work_width, LOCAL),
+                 gpu_groups(ao->params.work_height, LOCAL * SCREEN_AO_ROWS), 1);
     gpu_scope_end(cmd);
 }
 
@@ -161,7 +147,8 @@ static void record_temporal(const struct screen_ao *ao, struct gpu_cmd *cmd,
                           { .name = "motion", .image = view->layers[FRAME_MOTION] },
                           { .name = "history", .image = ao->history[1 - ao->newest] },
                           { .name = "target", .image = ao->history[ao->newest] }),
-                 NULL, 0, gpu_groups(ao->work_width, LOCAL), gpu_groups(ao->work_height, LOCAL), 1);
+                 NULL, 0, gpu_groups(ao->params.work_width, LOCAL),
+                 gpu_groups(ao->params.work_height, LOCAL), 1);
     gpu_scope_end(cmd);
 }
 
@@ -172,14 +159,14 @@ static void record_blur(const struct screen_ao *ao, struct gpu_cmd *cmd, gpu_ima
     gpu_dispatch(cmd, ao->blur_x,
                  GPU_BIND(params, { .name = "source", .image = estimate_to_filter(ao) },
                           { .name = "target", .image = ao->scratch }),
-                 NULL, 0, gpu_groups(ao->work_width, LOCAL * BLUR_ROW),
-                 gpu_groups(ao->work_height, LOCAL), 1);
+                 NULL, 0, gpu_groups(ao->params.work_width, LOCAL * BLUR_ROW),
+                 gpu_groups(ao->params.work_height, LOCAL), 1);
     gpu_dispatch(cmd, ao->blur_y,
                  GPU_BIND(params, { .name = "source", .image = ao->scratch },
                           { .name = "target", .image = ao->estimate },
                           { .name = "visibility", .image = visibility }),
-                 NULL, 0, gpu_groups(ao->work_width, LOCAL),
-                 gpu_groups(ao->work_height, LOCAL * BLUR_ROW), 1);
+                 NULL, 0, gpu_groups(ao->params.work_width, LOCAL),
+                 gpu_groups(ao->params.work_height, LOCAL * BLUR_ROW), 1);
     gpu_scope_end(cmd);
 }
 
@@ -192,7 +179,8 @@ static void record_upsample(const struct screen_ao *ao, struct gpu_cmd *cmd,
                  GPU_BIND(screen_ao_binding(ao, cmd), { .name = "source", .image = source },
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "visibility", .image = view->layers[FRAME_VISIBILITY] }),
-                 NULL, 0, gpu_groups(ao->width, LOCAL), gpu_groups(ao->height, LOCAL), 1);
+                 NULL, 0, gpu_groups(ao->params.width, LOCAL), gpu_groups(ao->params.height, LOCAL),
+                 1);
     gpu_scope_end(cmd);
 }
 

@@ -13,10 +13,9 @@ struct screen_ao_options {
 };
 
 struct screen_ao {
-    struct screen_ao_options options;
-    uint32_t width, height, work_width, work_height;
-    gpu_image estimate;   // RG32F: visibility, depth; (1, 0) without a surface
-    gpu_image scratch;    // RG32F
+    struct screen_ao_options options; // of the frame being recorded, as params
+    gpu_image estimate;               // RG32F: visibility, depth; (1, 0) without a surface
+    gpu_image scratch;                // RG32F
     gpu_image history[2]; // RGBA32F: visibility, depth, frame count; previous and current alternate
     int newest;           // index into history
     float previous_near_m; // of the previous camera; 0: no valid history
@@ -30,15 +29,12 @@ void screen_ao_objects(const struct screen_ao_options *options, size_t base, uin
                        uint32_t height, struct gpu_objects *out);
 // The constant SCREEN_AO_CONSTANT_STEP, which every shader of the estimate has.
 #define SCREEN_AO_STEP (1u << SCREEN_AO_CONSTANT_STEP)
-void screen_ao_init(struct screen_ao *ao, const struct screen_ao_options *options, uint32_t width,
-                    uint32_t height);
-void screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height);
 
 void screen_ao_invalidate(struct screen_ao *ao); // discards the history
-// Once a frame, before the estimate. radius_m: of the sphere; reach: its largest radius on the
-// screen, in image heights.
-void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float radius_m,
-                     float reach);
+// Once a frame, before the estimate. options: those of the objects; radius_m: of the sphere; reach:
+// its largest radius on the screen, in image heights.
+void screen_ao_begin(struct screen_ao *ao, struct screen_ao_options options,
+                     const struct frame_view *view, float radius_m, float reach);
 // The block "screen_ao".
 struct gpu_binding screen_ao_binding(const struct screen_ao *ao, struct gpu_cmd *cmd);
 // The estimate: `pipeline` has a shader that includes screen_ao_estimate.glsl. extra: its own

@@ -54,7 +54,6 @@ static bool create(void *state, const struct technique_create *how)
     struct dnrt *s = state;
     s->host = how->host;
     s->gpu = how->gpu;
-    s->options = *(const struct dnrt_options *)how->options;
     if (!how->pose) return true;
     s->animation = how->pose->animation;
     if (!dnrt_objects_init(&s->baked, s->host, how->pose, s->options.keys)) return false;
@@ -111,12 +110,6 @@ static bool load(void *state, const struct tensors *bake)
     return s->baked.count == 0 ||
            (dnrt_upload(s, bake) && (s->options.intrusion != DNRT_INTRUSION_SHADOW ||
                                      shadow_casters_init(&s->casters, s->gpu)));
-}
-
-static void set_options(void *state, const void *options)
-{
-    struct dnrt *s = state;
-    option_copy_live(&technique_dnrt.options, options, &s->options);
 }
 
 // ---- frames
@@ -384,7 +377,6 @@ const struct technique technique_dnrt = {
     .create = create,
     .load = load,
     .resize = resize,
-    .set_options = set_options,
     .follow = dnrt_follow,
     .take_probes = take_probes,
     .update = update,

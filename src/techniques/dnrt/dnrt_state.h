@@ -34,9 +34,9 @@ struct dnrt_patch_range {
 };
 
 struct dnrt {
+    struct dnrt_options options;
     struct host *host;
     struct gpu *gpu;
-    struct dnrt_options options;
     struct dnrt_objects baked;   // of the pose of `create`: their shapes are in the bake
     struct dnrt_objects objects; // of the newest pose; shape: in `baked`, −1: none
     struct scene_revisions seen; // of the scene when `objects` were found

@@ -49,27 +49,6 @@ static void hbao_objects(const void *options, int view, uint32_t width, uint32_t
               .shader = &shader_hbao_horizons_comp, .consts = SCREEN_AO_STEP });
 }
 
-static bool hbao_create(void *state, const struct technique_create *how)
-{
-    struct hbao *hbao = state;
-    hbao->options = *(const struct hbao_options *)how->options;
-    const struct screen_ao_options options = ao_options(&hbao->options);
-    screen_ao_init(&hbao->ao, &options, how->width, how->height);
-    return true;
-}
-
-static bool hbao_resize(void *state, int view, uint32_t width, uint32_t height)
-{
-    (void)view;
-    screen_ao_resize(&((struct hbao *)state)->ao, width, height);
-    return true;
-}
-
-static void hbao_set_options(void *state, const void *options)
-{
-    ((struct hbao *)state)->options = *(const struct hbao_options *)options;
-}
-
 static struct hbao_params params_of(const struct hbao_options *options)
 {
     return (struct hbao_params){ .directions = options->directions,
@@ -81,7 +60,8 @@ static struct hbao_params params_of(const struct hbao_options *options)
 static void hbao_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct hbao *hbao = state;
-    screen_ao_begin(&hbao->ao, view, hbao->options.radius, hbao->options.reach);
+    screen_ao_begin(&hbao->ao, ao_options(&hbao->options), view, hbao->options.radius,
+                    hbao->options.reach);
     const struct hbao_params params = params_of(&hbao->options);
     screen_ao_estimate(&hbao->ao, cmd, view, "horizons", hbao->horizons,
                        GPU_BIND(gpu_transient(cmd, "hbao_table", &params, sizeof params)));
@@ -98,8 +78,5 @@ const struct technique technique_hbao = {
     .options = OPTION_TABLE(struct hbao_options, option_rows, aliases),
     .state_size = sizeof(struct hbao),
     .objects = hbao_objects,
-    .create = hbao_create,
-    .resize = hbao_resize,
-    .set_options = hbao_set_options,
     .record = hbao_record,
 };

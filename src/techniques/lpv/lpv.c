@@ -91,7 +91,6 @@ static bool create(struct lpv_cascades *cascades, const char *owner,
     struct lpv *finest = &cascades->levels[0];
     if (how->pose) lpv_diagnose(how->host, owner, how->options, how->pose);
     finest->gpu = how->gpu;
-    finest->options = *(const struct lpv_options *)how->options;
     lpv_cascades_create(cascades);
     return true;
 }
@@ -109,14 +108,6 @@ static bool holpv_create(void *state, const struct technique_create *how)
 static void forget_light(struct lpv *lpv)
 {
     for (; lpv; lpv = lpv->coarser) lpv->kept.known = false;
-}
-
-static void lpv_set_options(void *state, const void *options)
-{
-    struct lpv *lpv = state;
-    // Both techniques have the same effects.
-    option_copy_live(&technique_lpv.options, options, &lpv->options);
-    forget_light(lpv);
 }
 
 static void lpv_invalidate(void *state, uint32_t changes)
@@ -191,9 +182,8 @@ static uint32_t lpv_more_needs(const void *options)
     .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,                     \
     .more_needs = lpv_more_needs, .options = OPTION_TABLE(struct lpv_options, rows_, aliases),     \
     .presets = presets_, .debug_views = debug_views, .state_size = sizeof(struct lpv_cascades),    \
-    .set_options = lpv_set_options, .invalidate = lpv_invalidate, .update = lpv_update,            \
-    .record = lpv_record, .debug_view = lpv_debug_view, .probes = lpv_probes,                      \
-    .objects = lpv_objects
+    .invalidate = lpv_invalidate, .update = lpv_update, .record = lpv_record,                      \
+    .debug_view = lpv_debug_view, .probes = lpv_probes, .objects = lpv_objects
 
 const struct technique technique_lpv = {
     LPV_TECHNIQUE("lpv", "light propagation volumes",

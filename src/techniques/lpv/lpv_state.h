@@ -61,8 +61,8 @@ struct lpv_surface_cache {
 // One grid, or one of several cascades. Coarser cascades share the pipelines and all volumes of the
 // finest that are not of one cascade.
 struct lpv {
-    struct gpu *gpu;
     struct lpv_options options;
+    struct gpu *gpu;
     gpu_sampler linear;
     struct lpv_pipelines pipelines;
     struct lpv_volumes volumes;

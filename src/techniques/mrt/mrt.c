@@ -93,7 +93,6 @@ static bool mrt_create(void *state, const struct technique_create *how)
     struct mrt *mrt = state;
     mrt->host = how->host;
     mrt->gpu = how->gpu;
-    mrt->options = *(const struct mrt_options *)how->options;
     return !how->pose || mrt_make_map(mrt, how->pose);
 }
 
@@ -121,10 +120,8 @@ static bool mrt_load(void *state, const struct tensors *bake)
 
 static void mrt_set_options(void *state, const void *options)
 {
-    struct mrt *mrt = state;
-    option_copy_live(mrt->delta ? &technique_drt.options : &technique_mrt.options, options,
-                     &mrt->options);
-    mrt->kept.known = false;
+    (void)options;
+    ((struct mrt *)state)->kept.known = false;
 }
 
 static void mrt_invalidate(void *state, uint32_t changes)

@@ -39,9 +39,9 @@ struct mrt_parts {
 };
 
 struct mrt {
+    struct mrt_options options;
     struct host *host;
     struct gpu *gpu;
-    struct mrt_options options;
     bool delta; // drt
     // The level.
     struct mrt_block_map map; // no blocks: an empty scene

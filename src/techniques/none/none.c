@@ -1,13 +1,6 @@
 // Irradiance 0 at every pixel: direct light alone, the baseline of comparisons.
 #include "techniques/none/none.h"
 
-static bool none_create(void *state, const struct technique_create *how)
-{
-    (void)state;
-    (void)how;
-    return true;
-}
-
 static void none_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     (void)state;
@@ -24,6 +17,5 @@ const struct technique technique_none = {
     .role = ROLE_SOURCE,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
     .needs = FRAME_WRITES_IRRADIANCE,
-    .create = none_create,
     .record = none_record,
 };

@@ -31,7 +31,6 @@ static bool create(void *state, const struct technique_create *how)
     struct radiosity *s = state;
     s->host = how->host;
     s->gpu = how->gpu;
-    s->options = *(const struct radiosity_options *)how->options;
     // Rows of pixels suit the caches of a processor, squares those of a GPU.
     const bool rows = gpu_info(s->gpu)->type == GPU_CPU;
     s->pipelines.apply_width = rows ? 64 : RADIOSITY_LOCAL_2D;
@@ -151,13 +150,6 @@ static bool load(void *state, const struct tensors *bake)
     if (!radiosity_upload(s, bake) || !radiosity_probes_upload(s, bake)) return false;
     list(s, &objects);
     return gpu_objects_create(s->gpu, &objects, 0, s);
-}
-
-static void set_options(void *state, const void *options)
-{
-    struct radiosity *s = state;
-    option_copy_live(&technique_radiosity.options, options, &s->options);
-    s->kept.known = false;
 }
 
 static void invalidate(void *state, uint32_t changes)
@@ -306,7 +298,6 @@ const struct technique technique_radiosity = {
     .bake = radiosity_bake,
     .create = create,
     .load = load,
-    .set_options = set_options,
     .invalidate = invalidate,
     .follow = follow,
     .update = update,

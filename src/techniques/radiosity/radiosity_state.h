@@ -71,9 +71,9 @@ struct radiosity_update {
 };
 
 struct radiosity {
+    struct radiosity_options options;
     struct host *host;
     struct gpu *gpu;
-    struct radiosity_options options;
     struct radiosity_map map; // without texels: an empty scene
     uint32_t instances;
     uint32_t owner_places, seam_places; // of the light map

@@ -66,31 +66,11 @@ static void ssao_objects(const void *options, int view, uint32_t width, uint32_t
               .consts = SCREEN_AO_STEP | 1u << SSAO_CONSTANT_COUNT | 1u << SSAO_CONSTANT_NORMAL });
 }
 
-static bool ssao_create(void *state, const struct technique_create *how)
-{
-    struct ssao *ssao = state;
-    ssao->options = *(const struct ssao_options *)how->options;
-    const struct screen_ao_options options = ao_options(&ssao->options);
-    screen_ao_init(&ssao->ao, &options, how->width, how->height);
-    return true;
-}
-
-static bool ssao_resize(void *state, int view, uint32_t width, uint32_t height)
-{
-    (void)view;
-    screen_ao_resize(&((struct ssao *)state)->ao, width, height);
-    return true;
-}
-
-static void ssao_set_options(void *state, const void *options)
-{
-    ((struct ssao *)state)->options = *(const struct ssao_options *)options;
-}
-
 static void ssao_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct ssao *ssao = state;
-    screen_ao_begin(&ssao->ao, view, ssao->options.radius, ssao->options.reach);
+    screen_ao_begin(&ssao->ao, ao_options(&ssao->options), view, ssao->options.radius,
+                    ssao->options.reach);
     fill_table(&ssao->options, &ssao->table);
     screen_ao_estimate(
         &ssao->ao, cmd, view, "points", ssao->points,
@@ -109,8 +89,5 @@ const struct technique technique_ssao = {
     .options = OPTION_TABLE(struct ssao_options, option_rows, aliases),
     .state_size = sizeof(struct ssao),
     .objects = ssao_objects,
-    .create = ssao_create,
-    .resize = ssao_resize,
-    .set_options = ssao_set_options,
     .record = ssao_record,
 };

@@ -180,16 +180,16 @@ static void invalidate_voxels(struct vct *vct)
 static void vct_set_options(void *state, const void *options)
 {
     struct vct *vct = state;
-    const struct vct_options previous = vct->options;
-    option_copy_live(vct->options.occlusion ? &technique_vctao.options : &technique_vct.options,
-                     options, &vct->options);
-    const bool emitters = vct->options.small_emitters != previous.small_emitters;
+    const struct vct_options *now = &vct->options;
+    const struct vct_options next =
+        now->occlusion ? vct_occlusion_options(options) : vct_light_options(options);
+    const bool emitters = next.small_emitters != now->small_emitters;
     if (emitters) invalidate_voxels(vct);
     // Options of the light of voxels; those of the pixels' cones alone keep bounced light.
-    if (emitters || vct->options.bounces != previous.bounces ||
-        vct->options.offset != previous.offset || vct->options.step_size != previous.step_size)
+    if (emitters || next.bounces != now->bounces || next.offset != now->offset ||
+        next.step_size != now->step_size)
         vct->light_valid = vct->bounced_valid = false;
-    vct_cone_axes(vct->options.cones, vct->cone_axes);
+    vct_cone_axes(next.cones, vct->cone_axes);
     forget_histories(vct);
 }
 

@@ -48,10 +48,10 @@ struct vct_view {
 };
 
 struct vct {
+    struct vct_options options;
     const char *name; // of the technique, for messages
     struct host *host;
     struct gpu *gpu;
-    struct vct_options options;
 
     // Pipelines.
     struct vct_voxelize_pipelines mark, outermost[2]; // opaque, masked

@@ -41,35 +41,17 @@ static void vo_objects(const void *options, int view, uint32_t width, uint32_t h
     vo_estimate_objects(options, out);
 }
 
-static bool vo_create(void *state, const struct technique_create *how)
-{
-    struct vo *vo = state;
-    vo->gpu = how->gpu;
-    vo->options = *(const struct vo_options *)how->options;
-    const struct screen_ao_options options = ao_options(&vo->options);
-    screen_ao_init(&vo->ao, &options, how->width, how->height);
-    return true;
-}
-
-static bool vo_resize(void *state, int view, uint32_t width, uint32_t height)
-{
-    (void)view;
-    screen_ao_resize(&((struct vo *)state)->ao, width, height);
-    return true;
-}
-
 static void vo_set_options(void *state, const void *options)
 {
-    struct vo *vo = state;
-    vo->options = *(const struct vo_options *)options;
-    screen_ao_invalidate(&vo->ao);
+    (void)options;
+    screen_ao_invalidate(&((struct vo *)state)->ao);
 }
 
 static void vo_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct vo *vo = state;
     const float radius_m = fmaxf(vo->options.radius, vo->options.radius2);
-    screen_ao_begin(&vo->ao, view, radius_m, vo->options.reach);
+    screen_ao_begin(&vo->ao, ao_options(&vo->options), view, radius_m, vo->options.reach);
     if (vo->options.mode == VO_MODE_AREAS) vo_record_pyramid(vo, cmd, view);
     vo_record_estimate(vo, cmd, view);
     screen_ao_record(&vo->ao, cmd, view);
@@ -93,8 +75,6 @@ const struct technique technique_vo = {
     .presets = presets,
     .state_size = sizeof(struct vo),
     .objects = vo_objects,
-    .create = vo_create,
-    .resize = vo_resize,
     .set_options = vo_set_options,
     .record = vo_record,
 };

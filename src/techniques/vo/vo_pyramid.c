@@ -45,11 +45,12 @@ void vo_pyramid_objects(const struct vo_options *options, uint32_t width, uint32
 
 void vo_record_pyramid(struct vo *vo, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    const struct gpu_image_desc *info = gpu_image_info(vo->gpu, vo->moments);
+    const uint32_t width = half_of(view->width), height = half_of(view->height);
+    const int levels = (int)levels_of(view->width, view->height);
     // A single area sample covers the whole disk, π radius².
     const float widest_px = vo->ao.params.max_radius_px * sqrtf(GLM_PIf);
     const int needed = (int)ceilf(log2f(fmaxf(widest_px, 2.0f)));
-    vo->table.level_count = needed < (int)info->mips ? needed : (int)info->mips;
+    vo->table.level_count = needed < levels ? needed : levels;
     gpu_scope_begin(cmd, "pyramid");
     for (int i = 0; i < vo->table.level_count; i++) {
         struct gpu_binding source = { .name = "source", .image = view->layers[FRAME_DEPTH] };
@@ -60,8 +61,8 @@ void vo_record_pyramid(struct vo *vo, struct gpu_cmd *cmd, const struct frame_vi
         gpu_dispatch(
             cmd, vo->pyramid,
             GPU_BIND(source, { .name = "target", .image = vo->moments, .mip = (uint32_t)i }), NULL,
-            0, gpu_groups(level_size(info->width, (uint32_t)i), LOCAL),
-            gpu_groups(level_size(info->height, (uint32_t)i), LOCAL), 1);
+            0, gpu_groups(level_size(width, (uint32_t)i), LOCAL),
+            gpu_groups(level_size(height, (uint32_t)i), LOCAL), 1);
     }
     gpu_scope_end(cmd);
 }

@@ -15,7 +15,6 @@ struct vo_options {
 };
 
 struct vo {
-    struct gpu *gpu;
     struct vo_options options;
     struct screen_ao ao;
     gpu_pipeline estimate;

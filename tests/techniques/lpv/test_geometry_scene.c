@@ -88,7 +88,7 @@ TEST_GPU(lpv_occlusion_applies_to_the_cached_volume)
     mesh_fixture_render(&set.meshes, lpv);
     struct lpv_options options = lpv->options;
     options.occlusion = 2;
-    technique_lpv.set_options(lpv, &options);
+    technique_set_options(&technique_lpv, lpv, &options);
     mesh_fixture_render(&set.meshes, lpv);
     struct geometry_twin twin;
     twin_of(&twin, lpv, &set.meshes);

@@ -86,7 +86,7 @@ static void set_options(struct run *run, const struct event *event)
     struct lpv_options options = run->lpv->options;
     if (event->steps == 0) return;
     options.steps = event->steps;
-    technique_lpv.set_options(run->lpv, &options);
+    technique_set_options(&technique_lpv, run->lpv, &options);
 }
 
 static void change(struct run *run, const struct event *event)
@@ -116,7 +116,7 @@ static void forget(struct run *run)
     struct gpu *gpu = run->s.gpu;
     lpv_fixture_destroy(run->lpv);
     run->lpv = lpv_fixture_create(gpu, run->options);
-    technique_lpv.set_options(run->lpv, &options);
+    technique_set_options(&technique_lpv, run->lpv, &options);
 }
 
 static float brightest(const float *e, size_t count)

@@ -160,7 +160,7 @@ TEST_GPU(cone_options_change_at_run_time)
     struct vct_options options = fixture.vct->options;
     options.cones = VCT_CONES_9;
     options.interleave = 3;
-    technique_vct.set_options(fixture.vct, &options);
+    technique_set_options(&technique_vct, fixture.vct, &options);
     fixture_render(&fixture.frame_fixture);
     float *got = fixture_read(&fixture.frame_fixture, READ_IRRADIANCE);
     assert_memory_equal(got, due.irradiance, VALUES * sizeof *got);

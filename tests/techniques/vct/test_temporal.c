@@ -390,13 +390,13 @@ TEST_GPU(a_camera_cut_resets_history)
     free(vct_fixture_irradiance_after(&fixture, 3));
     struct vct_options options = fixture.vct->options;
     options.gain = 2.0f;
-    technique_vct.set_options(fixture.vct, &options);
+    technique_set_options(&technique_vct, fixture.vct, &options);
     float *gained = vct_fixture_irradiance_after(&fixture, 1);
     for (size_t i = 0; i < floats_of(&fixture); i++)
         CHECK_NEAR(gained[i], 2.0f * fresh[i], 1e-3f * gained[i]);
     free(gained);
     options.gain = 1.0f;
-    technique_vct.set_options(fixture.vct, &options);
+    technique_set_options(&technique_vct, fixture.vct, &options);
     free(vct_fixture_irradiance_after(&fixture, 3));
     technique_vct.invalidate(fixture.vct, CHANGED_CAMERA);
     cut = vct_fixture_irradiance_after(&fixture, 1);

@@ -132,7 +132,7 @@ TEST_GPU(a_closed_room_is_fully_occluded)
     // With this decay an occluder hides a thousandth only within a millimetre.
     struct vct_options options = fixture.vct->options;
     options.decay = 1e6f;
-    technique_vctao.set_options(fixture.vct, &options);
+    technique_set_options(&technique_vctao, fixture.vct, &options);
     CHECK(span_now(&fixture).least == 1.0);
     vct_fixture_finish(&fixture);
 }
@@ -454,7 +454,7 @@ TEST_GPU(occlusion_options_change_at_run_time)
     options.step_size = 0.4f;
     options.cones = VCT_CONES_9;
     options.interleave = 3;
-    technique_vctao.set_options(fixture.vct, &options);
+    technique_set_options(&technique_vctao, fixture.vct, &options);
     float *got = visibility(&fixture);
     courtyard(&fresh, gpu);
     vct_fixture_open(&fresh,
