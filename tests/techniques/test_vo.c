@@ -2,6 +2,8 @@
 // set.
 #include "techniques/vo_fixture.h"
 
+#include "techniques/vo/vo.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -183,5 +185,28 @@ TEST_GPU(vo_beside_a_wall_is_the_closed_form_up_to_the_sets_bias)
         }
         CHECK(before < 0.02); // 33
     }
+    fixture_finish(&s);
+}
+
+// ---- frames
+
+TEST_GPU(a_new_size_ends_the_history)
+{
+    struct frame_fixture s;
+    floor_seen(&s, gpu, 1, 30);
+    struct vo_fixture fixture = vo_fixture_create(&s, "temporal=true");
+    s.indirect.needs |= FRAME_NEEDS_MOTION;
+    const struct screen_ao *ao = &fixture.vo->ao;
+    for (uint32_t frame = 0; frame < 6; frame++) {
+        if (frame == 3) {
+            fixture_resize(&s, WIDTH, HEIGHT); // the images of this size are new ones
+            CHECK(technique_resize(&technique_vo, gpu, fixture.vo, &fixture.vo->options, 0, WIDTH,
+                                   HEIGHT));
+        }
+        fixture_render(&s);
+        assert_int_equal(ao->number, frame % 3);
+        assert_int_equal(ao->params.previous_near_m > 0.0f, frame % 3 > 0);
+    }
+    vo_fixture_destroy(&fixture);
     fixture_finish(&s);
 }
