@@ -9,7 +9,7 @@ struct state {
 
 static void add_empty(struct gpu_objects *table, int count)
 {
-    for (int i = 0; i < count; i++) GPU_ADD(table, 0, { GPU_BUFFER, "test.empty" });
+    for (int i = 0; i < count; i++) GPU_ADD(table, 0, { GPU_BUFFER, "test.empty", .bytes = 0 });
 }
 
 TEST_GPU(a_table_beyond_its_limit_is_refused)
