@@ -54,7 +54,9 @@ static bool read_rows(struct job *job, uint32_t width, uint32_t height, uint8_t 
     png_set_read_fn(job->png, &job->input, png_read_input);
     png_limit(job->png, width > height ? width : height);
     png_set_crc_action(job->png, PNG_CRC_QUIET_USE, PNG_CRC_QUIET_USE);
+#ifdef PNG_IGNORE_ADLER32 // not of each build of libpng; it is compared behind the last row
     png_set_option(job->png, PNG_IGNORE_ADLER32, PNG_OPTION_ON);
+#endif
     png_read_info(job->png, job->info);
     request_rgba(job);
     const int passes = png_set_interlace_handling(job->png);
