@@ -45,16 +45,6 @@ static bool create(void *state, const struct technique_create *how)
     return ok;
 }
 
-// What shaders write, of `count` entries.
-static struct gpu_image_desc table(enum gpu_format format, size_t count)
-{
-    const size_t rows = radiosity_table_room(count) / RADIOSITY_TABLE_WIDTH;
-    return (struct gpu_image_desc){ .format = format,
-                                    .width = RADIOSITY_TABLE_WIDTH,
-                                    .height = (uint32_t)rows,
-                                    .usage = GPU_SAMPLED | GPU_STORAGE };
-}
-
 #define TABLE(thing)    offsetof(struct radiosity, tables.thing)
 #define PIPELINE(thing) #thing, offsetof(struct radiosity, pipelines.thing)
 #define PROBES(thing)   offsetof(struct radiosity, probes.thing)
@@ -64,16 +54,17 @@ static void list_tables(const struct radiosity *s, struct gpu_objects *out)
     const size_t texels = s->map.texel_count, nodes = s->map.tree.count;
     struct gpu_image_desc map = light_map_image(&s->map.charts, "light_map");
     if (texels == 0) map.width = 0;
-    GPU_ADD(out, 0, { GPU_IMAGE, "flux", TABLE(flux), .image = table(GPU_RGBA32F, texels) },
-            { GPU_IMAGE, "light", TABLE(light), .image = table(GPU_RG32U, 3 * texels) },
-            { GPU_IMAGE, "smoothed", TABLE(smoothed), .image = table(GPU_RG32U, 3 * texels) },
-            { GPU_IMAGE, "sent", TABLE(sent), .image = table(GPU_RG32U, nodes) },
-            { GPU_IMAGE, "radiosity", TABLE(radiosity[0]), .image = table(GPU_RG32U, nodes) },
-            { GPU_IMAGE, "radiosity", TABLE(radiosity[1]), .image = table(GPU_RG32U, nodes) },
-            { GPU_IMAGE, "solution", TABLE(solution), .image = table(GPU_RG32U, nodes) },
-            { GPU_IMAGE, "light_map", TABLE(light_maps[0]), .image = map },
-            { GPU_IMAGE, "light_map", TABLE(light_maps[1]), .image = map },
-            { GPU_SAMPLER, "light_map", .member = offsetof(struct radiosity, linear) });
+    GPU_ADD(
+        out, 0, { GPU_IMAGE, "flux", TABLE(flux), .image = light_map_table(GPU_RGBA32F, texels) },
+        { GPU_IMAGE, "light", TABLE(light), .image = light_map_table(GPU_RG32U, 3 * texels) },
+        { GPU_IMAGE, "smoothed", TABLE(smoothed), .image = light_map_table(GPU_RG32U, 3 * texels) },
+        { GPU_IMAGE, "sent", TABLE(sent), .image = light_map_table(GPU_RG32U, nodes) },
+        { GPU_IMAGE, "radiosity", TABLE(radiosity[0]), .image = light_map_table(GPU_RG32U, nodes) },
+        { GPU_IMAGE, "radiosity", TABLE(radiosity[1]), .image = light_map_table(GPU_RG32U, nodes) },
+        { GPU_IMAGE, "solution", TABLE(solution), .image = light_map_table(GPU_RG32U, nodes) },
+        { GPU_IMAGE, "light_map", TABLE(light_maps[0]), .image = map },
+        { GPU_IMAGE, "light_map", TABLE(light_maps[1]), .image = map },
+        { GPU_SAMPLER, "light_map", .member = offsetof(struct radiosity, linear) });
 }
 
 static void list_pipelines(const struct radiosity *s, struct gpu_objects *out)
@@ -248,7 +239,7 @@ static uint32_t more_needs(const void *options)
 
 static uint64_t table_bytes(uint64_t entries, uint64_t bytes)
 {
-    return radiosity_table_room((size_t)entries) * bytes;
+    return light_map_table_room((size_t)entries) * bytes;
 }
 
 // Of rows: entries, order and tiles.

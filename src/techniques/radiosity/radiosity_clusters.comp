@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "techniques/radiosity/radiosity_table.glsl"
+#include "techniques/radiosity/radiosity_pack.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
 
@@ -21,13 +21,13 @@ void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.clusters) return;
-    float area = texelFetch(radiosity_clusters, radiosity_at(i), 0).w;
-    uvec2 span = texelFetch(radiosity_spans, radiosity_at(i), 0).xy;
+    float area = texelFetch(radiosity_clusters, light_map_at(i), 0).w;
+    uvec2 span = texelFetch(radiosity_spans, light_map_at(i), 0).xy;
     vec3 sum = vec3(0.0);
     for (uint k = 0; k < span.y; k++) {
-        uint texel = texelFetch(radiosity_members, radiosity_at(span.x + k), 0).x;
-        sum += imageLoad(radiosity_flux, radiosity_at(texel)).rgb;
+        uint texel = texelFetch(radiosity_members, light_map_at(span.x + k), 0).x;
+        sum += imageLoad(radiosity_flux, light_map_at(texel)).rgb;
     }
     vec3 sent = area > 0.0 ? sum / area : vec3(0.0);
-    imageStore(radiosity_sent, radiosity_at(i), uvec4(radiosity_pack(sent), 0u, 0u));
+    imageStore(radiosity_sent, light_map_at(i), uvec4(radiosity_pack(sent), 0u, 0u));
 }

@@ -51,5 +51,5 @@ void main()
                 reflectance.w * texel_irradiance(place.xyz, normal, place.w, frame_light_table[k],
                                                  push.shadow_radius);
     }
-    imageStore(radiosity_flux, radiosity_at(i), vec4(place.w * reflectance.rgb * irradiance, 0.0));
+    imageStore(radiosity_flux, light_map_at(i), vec4(place.w * reflectance.rgb * irradiance, 0.0));
 }

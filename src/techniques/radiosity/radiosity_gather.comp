@@ -21,7 +21,7 @@ layout(set = 0, binding = 3) uniform usampler2D radiosity_tiles; // first texel,
 // Pairs of source and form factor; components along the tangents (halves).
 layout(set = 0, binding = 4, rgba32ui) uniform readonly uimage2D radiosity_factors;
 layout(set = 0, binding = 5, rg32ui) uniform readonly uimage2D radiosity_sent;
-layout(set = 0, binding = 6, rg32ui) uniform writeonly uimage2D radiosity_light; // [colour][texel]
+layout(set = 0, binding = 6, rg32ui) uniform writeonly uimage2D texel_light; // [colour][texel]
 
 // Of clusters: irradiance, and the vector irradiance along the tangents.
 struct received {
@@ -31,7 +31,7 @@ received sum = received(vec3(0.0), vec3(0.0), vec3(0.0));
 
 void add_entry(uvec2 word)
 {
-    uvec2 sent = imageLoad(radiosity_sent, radiosity_at(radiosity_source(word.x))).xy;
+    uvec2 sent = imageLoad(radiosity_sent, light_map_at(radiosity_source(word.x))).xy;
     vec3 light = radiosity_form_factor(word.x) * radiosity_unpack(sent);
     vec2 along = unpackHalf2x16(word.y);
     sum.irradiance += light;
@@ -47,8 +47,8 @@ void store_light(uint texel, float emitters)
         vec4 light = vec4(sum.irradiance[c], sum.irradiance[c] * basis[2] + sum.by_u[c] * basis[0] +
                                                  sum.by_v[c] * basis[1]) +
                      radiosity_unbounced(texel, push.texels, c, environment_mean(), emitters);
-        imageStore(radiosity_light, radiosity_at(c * push.texels + texel),
-                   uvec4(radiosity_pack_light(light), 0u, 0u));
+        imageStore(texel_light, light_map_at(c * push.texels + texel),
+                   uvec4(light_map_pack(light), 0u, 0u));
     }
 }
 
@@ -56,13 +56,13 @@ void main()
 {
     if (gl_GlobalInvocationID.x >= push.count) return;
     uint row = push.first + gl_GlobalInvocationID.x;
-    uvec2 tile = texelFetch(radiosity_tiles, radiosity_at(row / RADIOSITY_TILE), 0).xy;
+    uvec2 tile = texelFetch(radiosity_tiles, light_map_at(row / RADIOSITY_TILE), 0).xy;
     for (uint k = 0; k < tile.y; k++) {
         uvec4 pair =
-            imageLoad(radiosity_factors, radiosity_at(radiosity_row_texel(tile.x, k, row)));
+            imageLoad(radiosity_factors, light_map_at(radiosity_row_texel(tile.x, k, row)));
         add_entry(pair.xy);
         add_entry(pair.zw);
     }
-    uint i = texelFetch(radiosity_order, radiosity_at(row), 0).x;
+    uint i = texelFetch(radiosity_order, light_map_at(row), 0).x;
     store_light(i, push.emitters * frame.radiance_scale);
 }

@@ -4,8 +4,9 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "techniques/common/light_map/place.glsl"
-#define RADIOSITY_LIGHT_BINDING 1
-#include "techniques/radiosity/radiosity_table.glsl"
+#define TEXEL_LIGHT_BINDING 1
+#include "techniques/common/light_map/table.glsl"
+#include "techniques/radiosity/radiosity_shared.h"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
 
@@ -20,9 +21,9 @@ void main()
 {
     if (gl_GlobalInvocationID.x >= push.count) return;
     uint i = push.first + gl_GlobalInvocationID.x;
-    uvec2 owner = texelFetch(radiosity_owners, radiosity_at(i), 0).xy;
+    uvec2 owner = texelFetch(radiosity_owners, light_map_at(i), 0).xy;
     uvec3 at = light_map_place(owner.x);
     for (int c = 0; c < 3; c++)
         imageStore(light_map, ivec3(at.xy, LIGHT_MAP_LAYERS * at.z + c),
-                   radiosity_light_of(owner.y, push.texels, c));
+                   texel_light_of(owner.y, push.texels, c));
 }

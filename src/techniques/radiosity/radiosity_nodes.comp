@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "techniques/radiosity/radiosity_table.glsl"
+#include "techniques/radiosity/radiosity_pack.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
 
@@ -19,15 +19,15 @@ void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.groups) return;
-    uvec2 group = texelFetch(radiosity_groups, radiosity_at(i), 0).xy;
+    uvec2 group = texelFetch(radiosity_groups, light_map_at(i), 0).xy;
     uint first = group.y & ((1u << RADIOSITY_GROUP_SHIFT) - 1u);
     vec3 sum = vec3(0.0);
     float area = 0.0;
     for (uint c = first; c < first + (group.y >> RADIOSITY_GROUP_SHIFT); c++) {
-        float weight = imageLoad(radiosity_clusters, radiosity_at(c)).w;
-        sum += weight * radiosity_unpack(imageLoad(radiosity_sent, radiosity_at(c)).xy);
+        float weight = imageLoad(radiosity_clusters, light_map_at(c)).w;
+        sum += weight * radiosity_unpack(imageLoad(radiosity_sent, light_map_at(c)).xy);
         area += weight;
     }
     vec3 mean = area > 0.0 ? sum / area : vec3(0.0);
-    imageStore(radiosity_sent, radiosity_at(group.x), uvec4(radiosity_pack(mean), 0u, 0u));
+    imageStore(radiosity_sent, light_map_at(group.x), uvec4(radiosity_pack(mean), 0u, 0u));
 }

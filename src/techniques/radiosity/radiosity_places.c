@@ -9,14 +9,14 @@ struct pair {
 bool radiosity_upload_owners(struct radiosity *s, const uint32_t *shown)
 {
     const size_t places = light_map_place_count(&s->map.charts);
-    struct pair *owners = host_alloc(s->host, radiosity_table_room(places), sizeof *owners);
+    struct pair *owners = host_alloc(s->host, light_map_table_room(places), sizeof *owners);
     for (size_t i = 0; owners && i < places; i++) {
         const uint32_t texel = chart_texel_of_place(&s->map.charts, i);
         if (texel == CHART_NONE) continue;
         owners[s->owner_places++] =
             (struct pair){ light_map_place_word(&s->map.charts, i), shown[texel] };
     }
-    return radiosity_table_upload(s->host, s->gpu, "owners", GPU_RG32U, owners, s->owner_places,
+    return light_map_table_upload(s->host, s->gpu, "owners", GPU_RG32U, owners, s->owner_places,
                                   &s->tables.owners);
 }
 

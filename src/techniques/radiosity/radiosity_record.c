@@ -105,7 +105,7 @@ static void record_gather_of(struct radiosity *s, struct gpu_cmd *cmd,
                           { .name = "radiosity_tiles", .image = s->tables.factors.tiles },
                           { .name = "radiosity_factors", .image = block->table },
                           { .name = "radiosity_sent", .image = s->tables.solution },
-                          { .name = "radiosity_light", .image = s->tables.light }),
+                          { .name = "texel_light", .image = s->tables.light }),
                  &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
@@ -124,7 +124,7 @@ static void record_smooth(struct radiosity *s, struct gpu_cmd *cmd, struct span 
     const struct radiosity_smooth_push push = { rows.first, rows.count, s->map.texel_count };
     gpu_dispatch(cmd, s->pipelines.smooth,
                  GPU_BIND({ .name = "radiosity_neighbours", .image = s->tables.neighbours },
-                          { .name = "radiosity_light", .image = s->tables.light },
+                          { .name = "texel_light", .image = s->tables.light },
                           { .name = "radiosity_smoothed", .image = s->tables.smoothed }),
                  &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
@@ -146,7 +146,7 @@ static void record_map(struct radiosity *s, struct gpu_cmd *cmd, struct span row
     const struct radiosity_map_push push = { rows.first, rows.count, s->map.texel_count };
     gpu_dispatch(cmd, s->pipelines.map,
                  GPU_BIND({ .name = "radiosity_owners", .image = s->tables.owners },
-                          { .name = "radiosity_light", .image = shown_light(s) },
+                          { .name = "texel_light", .image = shown_light(s) },
                           { .name = "light_map", .image = next_map(s) }),
                  &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
@@ -159,7 +159,7 @@ static void record_seams(struct radiosity *s, struct gpu_cmd *cmd, struct span r
     gpu_dispatch(cmd, s->pipelines.seams,
                  GPU_BIND({ .name = "radiosity_places", .image = s->tables.places },
                           { .name = "radiosity_seam_rows", .image = s->tables.seams },
-                          { .name = "radiosity_light", .image = shown_light(s) },
+                          { .name = "texel_light", .image = shown_light(s) },
                           { .name = "light_map", .image = next_map(s) }),
                  &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }

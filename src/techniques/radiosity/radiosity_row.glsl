@@ -3,7 +3,7 @@
 #ifndef AG_RADIOSITY_ROW_GLSL
 #define AG_RADIOSITY_ROW_GLSL
 
-#include "techniques/radiosity/radiosity_table.glsl"
+#include "techniques/radiosity/radiosity_pack.glsl"
 
 uint radiosity_source(uint word)
 {

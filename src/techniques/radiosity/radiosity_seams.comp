@@ -5,8 +5,9 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "techniques/common/light_map/place.glsl"
-#define RADIOSITY_LIGHT_BINDING 2
-#include "techniques/radiosity/radiosity_table.glsl"
+#define TEXEL_LIGHT_BINDING 2
+#include "techniques/common/light_map/table.glsl"
+#include "techniques/radiosity/radiosity_shared.h"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
 
@@ -25,15 +26,15 @@ void main()
     uint i = push.first + gl_GlobalInvocationID.x;
     vec4 light[3] = vec4[](vec4(0.0), vec4(0.0), vec4(0.0));
     for (uint k = 0; k < push.pairs; k++) {
-        uvec4 pair = imageLoad(radiosity_seam_rows, radiosity_at(k * push.places + i));
+        uvec4 pair = imageLoad(radiosity_seam_rows, light_map_at(k * push.places + i));
         vec2 weight = uintBitsToFloat(pair.yw);
         if (weight.x == 0.0) break;
         for (int c = 0; c < 3; c++) {
-            light[c] += weight.x * radiosity_light_of(pair.x, push.texels, c);
-            light[c] += weight.y * radiosity_light_of(pair.z, push.texels, c);
+            light[c] += weight.x * texel_light_of(pair.x, push.texels, c);
+            light[c] += weight.y * texel_light_of(pair.z, push.texels, c);
         }
     }
-    uvec3 at = light_map_place(texelFetch(radiosity_places, radiosity_at(i), 0).x);
+    uvec3 at = light_map_place(texelFetch(radiosity_places, light_map_at(i), 0).x);
     for (int c = 0; c < 3; c++)
         imageStore(light_map, ivec3(at.xy, LIGHT_MAP_LAYERS * at.z + c),
                    clamp(light[c], -HALF_MAX, HALF_MAX));

@@ -13,9 +13,6 @@
 // upper two bits are zero: it is below 2.
 #define RADIOSITY_NODE_BITS 18
 
-// Tables are images of this width (radiosity_table.h).
-#define RADIOSITY_TABLE_WIDTH 4096u
-
 // Of a texel in the table of texels: entry part · texels + texel.
 #define RADIOSITY_POSITION    0 // world; w: area, m²; 0: hidden inside of something
 #define RADIOSITY_NORMAL      1 // unit, of its side

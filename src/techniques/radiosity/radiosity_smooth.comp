@@ -5,8 +5,9 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#define RADIOSITY_LIGHT_BINDING 1
-#include "techniques/radiosity/radiosity_table.glsl"
+#define TEXEL_LIGHT_BINDING 1
+#include "techniques/common/light_map/table.glsl"
+#include "techniques/radiosity/radiosity_shared.h"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
 
@@ -23,20 +24,20 @@ void main()
     if (gl_GlobalInvocationID.x >= push.count) return;
     uint i = push.first + gl_GlobalInvocationID.x;
     vec4 sum[3];
-    for (int c = 0; c < 3; c++) sum[c] = radiosity_light_of(i, push.texels, c);
+    for (int c = 0; c < 3; c++) sum[c] = texel_light_of(i, push.texels, c);
     float weights = 1.0;
     for (uint k = 0; k < RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR; k++) {
-        uvec4 pair = imageLoad(radiosity_neighbours, radiosity_at(k * push.texels + i));
+        uvec4 pair = imageLoad(radiosity_neighbours, light_map_at(k * push.texels + i));
         if (pair.y == 0u) break;
         vec2 weight = uintBitsToFloat(pair.yw);
         weights += weight.x;
         weights += weight.y;
         for (int c = 0; c < 3; c++) {
-            sum[c] += weight.x * radiosity_light_of(pair.x, push.texels, c);
-            sum[c] += weight.y * radiosity_light_of(pair.z, push.texels, c);
+            sum[c] += weight.x * texel_light_of(pair.x, push.texels, c);
+            sum[c] += weight.y * texel_light_of(pair.z, push.texels, c);
         }
     }
     for (int c = 0; c < 3; c++)
-        imageStore(radiosity_smoothed, radiosity_at(c * push.texels + i),
-                   uvec4(radiosity_pack_light(sum[c] / weights), 0u, 0u));
+        imageStore(radiosity_smoothed, light_map_at(c * push.texels + i),
+                   uvec4(light_map_pack(sum[c] / weights), 0u, 0u));
 }

@@ -22,7 +22,7 @@ layout(set = 0, binding = 6, rg32ui) uniform uimage2D radiosity_next; // B_befor
 
 vec3 light_of(uint word)
 {
-    uvec2 sent = imageLoad(radiosity_last, radiosity_at(radiosity_source(word))).xy;
+    uvec2 sent = imageLoad(radiosity_last, light_map_at(radiosity_source(word))).xy;
     return radiosity_form_factor(word) * radiosity_unpack(sent);
 }
 
@@ -30,14 +30,14 @@ void main()
 {
     if (gl_GlobalInvocationID.x >= push.count) return;
     uint row = push.first + gl_GlobalInvocationID.x;
-    uvec2 tile = texelFetch(radiosity_tiles, radiosity_at(row / RADIOSITY_TILE), 0).xy;
+    uvec2 tile = texelFetch(radiosity_tiles, light_map_at(row / RADIOSITY_TILE), 0).xy;
     vec3 sum = vec3(0.0);
     for (uint k = 0; k < tile.y; k++) {
         uvec4 words =
-            imageLoad(radiosity_factors, radiosity_at(radiosity_row_texel(tile.x, k, row)));
+            imageLoad(radiosity_factors, light_map_at(radiosity_row_texel(tile.x, k, row)));
         for (int j = 0; j < RADIOSITY_QUAD; j++) sum += light_of(words[j]);
     }
-    ivec2 at = radiosity_at(texelFetch(radiosity_order, radiosity_at(row), 0).x);
+    ivec2 at = light_map_at(texelFetch(radiosity_order, light_map_at(row), 0).x);
     vec3 reflectance = texelFetch(radiosity_clusters, at, 0).rgb;
     vec3 bounced = radiosity_unpack(texelFetch(radiosity_sent, at, 0).xy) + reflectance * sum;
     vec3 before = push.over == 1.0 ? vec3(0.0) : radiosity_unpack(imageLoad(radiosity_next, at).xy);

@@ -7,7 +7,7 @@
 #include "techniques/radiosity/radiosity_follow.h"
 #include "techniques/radiosity/radiosity_seams.h"
 #include "techniques/radiosity/radiosity_shared.h"
-#include "techniques/radiosity/radiosity_table.h"
+#include "techniques/common/light_map/table.h"
 #include "techniques/radiosity/radiosity_tensors.h"
 
 // Tiles of rows of form factors in one table: all may be more than a table has.

@@ -127,9 +127,9 @@ static void fill_texel(const struct radiosity *s, const struct content *c, uint3
 static bool upload_texels(struct radiosity *s, const struct content *c)
 {
     const size_t count = (size_t)s->map.texel_count * RADIOSITY_TEXEL_PARTS;
-    vec4s *parts = host_alloc(s->host, radiosity_table_room(count), sizeof *parts);
+    vec4s *parts = host_alloc(s->host, light_map_table_room(count), sizeof *parts);
     for (uint32_t i = 0; parts && i < s->map.texel_count; i++) fill_texel(s, c, i, parts);
-    return radiosity_table_upload(s->host, s->gpu, "texels", GPU_RGBA32F, parts, count,
+    return light_map_table_upload(s->host, s->gpu, "texels", GPU_RGBA32F, parts, count,
                                   &s->tables.texels);
 }
 
@@ -179,9 +179,9 @@ static bool upload_neighbours(struct radiosity *s, const struct content *c)
 {
     const size_t count = (size_t)s->map.texel_count * RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR;
     struct share *table =
-        host_alloc(s->host, radiosity_table_room(count), RADIOSITY_PAIR * sizeof *table);
+        host_alloc(s->host, light_map_table_room(count), RADIOSITY_PAIR * sizeof *table);
     for (uint32_t i = 0; table && i < s->map.texel_count; i++) fill_neighbours(s, c, i, table);
-    return radiosity_table_upload(s->host, s->gpu, "neighbours", GPU_RGBA32U, table, count,
+    return light_map_table_upload(s->host, s->gpu, "neighbours", GPU_RGBA32U, table, count,
                                   &s->tables.neighbours);
 }
 
@@ -278,14 +278,14 @@ static bool upload_groups(struct radiosity *s)
 {
     const struct radiosity_tree *tree = &s->map.tree;
     const size_t most = tree->count - tree->leaves;
-    struct pair *groups = host_alloc(s->host, radiosity_table_room(most), sizeof *groups);
+    struct pair *groups = host_alloc(s->host, light_map_table_room(most), sizeof *groups);
     for (uint32_t i = tree->leaves; groups && i < tree->count; i++) {
         const struct radiosity_node *node = &tree->nodes[i];
         if (node->count > RADIOSITY_GROUP) continue;
         groups[s->group_count++] =
             (struct pair){ i, node->first | node->count << RADIOSITY_GROUP_SHIFT };
     }
-    return radiosity_table_upload(s->host, s->gpu, "groups", GPU_RG32U, groups, most,
+    return light_map_table_upload(s->host, s->gpu, "groups", GPU_RG32U, groups, most,
                                   &s->tables.groups);
 }
 
@@ -293,14 +293,14 @@ static bool upload_members(struct radiosity *s)
 {
     const struct radiosity_map *map = &s->map;
     const size_t texels = map->texel_count, clusters = map->cluster_count;
-    uint32_t *members = host_alloc(s->host, radiosity_table_room(texels), sizeof *members);
-    struct pair *spans = host_alloc(s->host, radiosity_table_room(clusters), sizeof *spans);
+    uint32_t *members = host_alloc(s->host, light_map_table_room(texels), sizeof *members);
+    struct pair *spans = host_alloc(s->host, light_map_table_room(clusters), sizeof *spans);
     if (members) memcpy(members, map->members, texels * sizeof *members);
     for (size_t i = 0; spans && i < clusters; i++)
         spans[i] = (struct pair){ map->first[i], map->first[i + 1] - map->first[i] };
-    const bool ok = radiosity_table_upload(s->host, s->gpu, "members", GPU_R32U, members, texels,
+    const bool ok = light_map_table_upload(s->host, s->gpu, "members", GPU_R32U, members, texels,
                                            &s->tables.members);
-    return radiosity_table_upload(s->host, s->gpu, "spans", GPU_RG32U, spans, clusters,
+    return light_map_table_upload(s->host, s->gpu, "spans", GPU_RG32U, spans, clusters,
                                   &s->tables.spans) &&
            ok;
 }
@@ -308,10 +308,10 @@ static bool upload_members(struct radiosity *s)
 static bool upload_clusters(struct radiosity *s, const struct content *c)
 {
     const uint32_t count = s->map.cluster_count;
-    vec4s *clusters = host_alloc(s->host, radiosity_table_room(count), sizeof *clusters);
+    vec4s *clusters = host_alloc(s->host, light_map_table_room(count), sizeof *clusters);
     for (uint32_t i = 0; clusters && i < count; i++) clusters[i] = cluster_of(s, c, i);
     const bool ok = clusters && find_spectral_radius(s, c, clusters);
-    return radiosity_table_upload(s->host, s->gpu, "clusters", GPU_RGBA32F, clusters, count,
+    return light_map_table_upload(s->host, s->gpu, "clusters", GPU_RGBA32F, clusters, count,
                                   &s->tables.clusters) &&
            ok && upload_members(s) && upload_groups(s);
 }
@@ -323,22 +323,22 @@ static bool upload_seam_rows(struct radiosity *s, const struct content *c)
     const size_t places = c->seams.count, entries = RADIOSITY_SEAM_ENTRIES;
     const size_t count = places * entries / RADIOSITY_PAIR;
     struct share *rows =
-        host_alloc(s->host, radiosity_table_room(count), RADIOSITY_PAIR * sizeof *rows);
+        host_alloc(s->host, light_map_table_room(count), RADIOSITY_PAIR * sizeof *rows);
     for (size_t i = 0; rows && i < places * entries; i++)
         *share_at(rows, places, i / entries, i % entries) =
             (struct share){ c->shown[c->seam_texel[i]], c->seam_weight[i] };
-    return radiosity_table_upload(s->host, s->gpu, "seams", GPU_RGBA32U, rows, count,
+    return light_map_table_upload(s->host, s->gpu, "seams", GPU_RGBA32U, rows, count,
                                   &s->tables.seams);
 }
 
 static bool upload_seams(struct radiosity *s, const struct content *c)
 {
     const size_t count = c->seams.count;
-    uint32_t *places = host_alloc(s->host, radiosity_table_room(count), sizeof *places);
+    uint32_t *places = host_alloc(s->host, light_map_table_room(count), sizeof *places);
     for (size_t i = 0; places && i < count; i++)
         places[i] = light_map_place_word(&s->map.charts, c->seams.places[i]);
     s->seam_places = (uint32_t)count;
-    return radiosity_table_upload(s->host, s->gpu, "places", GPU_R32U, places, count,
+    return light_map_table_upload(s->host, s->gpu, "places", GPU_R32U, places, count,
                                   &s->tables.places) &&
            upload_seam_rows(s, c);
 }

@@ -14,7 +14,7 @@
 #include "frame/environment.glsl"
 #include "frame/frame.glsl"
 #include "frame/probes.glsl"
-#include "techniques/radiosity/radiosity_table.glsl"
+#include "techniques/radiosity/radiosity_pack.glsl"
 #include "techniques/radiosity/probes/probes_shared.h"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
@@ -41,7 +41,7 @@ void add_entry(uvec3 word)
 {
     vec2 first = unpackHalf2x16(word.y), second = unpackHalf2x16(word.z);
     vec3 light =
-        4.0 * first.x * radiosity_unpack(texelFetch(radiosity_sent, radiosity_at(word.x), 0).xy);
+        4.0 * first.x * radiosity_unpack(texelFetch(radiosity_sent, light_map_at(word.x), 0).xy);
     float x = first.y, y = second.x, z = second.y, r = length(vec3(x, y, z));
     coefficients[0] += SH_Y0 * light;
     coefficients[1] += SH_Y1 * y * light;

@@ -1,0 +1,17 @@
+// Tables of the GPU in 2D images: entry i is the texel (i mod LIGHT_MAP_TABLE_WIDTH, i /
+// LIGHT_MAP_TABLE_WIDTH). A driver on a processor loads the words of a storage buffer one after
+// another, for each invocation, but a texel of 16 bytes at once.
+#pragma once
+
+#include "gpu/gpu.h"
+
+#include "techniques/common/light_map/map_shared.h"
+
+// Entries that the image has, at least `count` and 1: whole rows of it.
+size_t light_map_table_room(size_t count);
+// The image, without a name.
+struct gpu_image_desc light_map_table(enum gpu_format format, size_t count);
+// A table with these entries, in memory for light_map_table_room(count), which is freed with
+// host_free in any case. NULL: false, as beyond the limits of the device.
+bool light_map_table_upload(struct host *host, struct gpu *gpu, const char *name,
+                            enum gpu_format format, void *entries, size_t count, gpu_image *out);
