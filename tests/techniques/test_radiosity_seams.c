@@ -3,7 +3,7 @@
 #include "framework/test.h"
 #include "techniques/gi_bake.h"
 #include "techniques/gi_spec.h"
-#include "techniques/radiosity/radiosity_seams.h"
+#include "scene/charts/seams.h"
 #include "scene/statics.h"
 #include "techniques/radiosity/radiosity_tensors.h"
 
@@ -52,12 +52,12 @@ static const void *data_of(const struct baked *b, const char *name)
 }
 
 // Light of the places of `seams`: of their texels, then as the rows of `closed` have it.
-static float *light_of(const struct baked *b, const struct radiosity_seams *seams,
-                       const struct radiosity_seams *closed)
+static float *light_of(const struct baked *b, const struct chart_seams *seams,
+                       const struct chart_seams *closed)
 {
-    enum { ENTRIES = RADIOSITY_SEAM_ENTRIES };
-    const float *sky = data_of(b, RADIOSITY_SKY), *weight = data_of(b, RADIOSITY_SEAM_WEIGHT);
-    const uint32_t *texel = data_of(b, RADIOSITY_SEAM_TEXEL);
+    enum { ENTRIES = CHART_SEAM_ENTRIES };
+    const float *sky = data_of(b, RADIOSITY_SKY), *weight = data_of(b, LIGHT_MAP_SEAM_WEIGHT);
+    const uint32_t *texel = data_of(b, LIGHT_MAP_SEAM_TEXEL);
     const size_t all = 2 * (size_t)b->map.charts.width * b->map.charts.height;
     float *map = host_alloc(test_host(), all, sizeof *map);
     float *light = host_alloc(test_host(), seams->count, sizeof *light);
@@ -91,7 +91,7 @@ static double mean_irradiance(const struct baked *b)
 }
 
 // Shares of the mean irradiance.
-static struct difference difference_of(const struct baked *b, const struct radiosity_seams *seams,
+static struct difference difference_of(const struct baked *b, const struct chart_seams *seams,
                                        const float *light)
 {
     const double scale = 1.0 / mean_irradiance(b);
@@ -99,9 +99,9 @@ static struct difference difference_of(const struct baked *b, const struct radio
     double *sum = host_alloc(test_host(), (size_t)charts->count * charts->count, 2 * sizeof *sum);
     struct difference d = { 0 };
     for (uint32_t i = 0; i < seams->point_count; i++) {
-        const struct radiosity_seam_point *p = &seams->points[i];
+        const struct chart_seam_point *p = &seams->points[i];
         double apart = 0.0;
-        for (int k = 0; k < RADIOSITY_SEAM_PLACES; k++)
+        for (int k = 0; k < CHART_SEAM_PLACES; k++)
             apart += scale * (double)(p->weight[k] * light[p->place[k]]);
         const uint32_t from = charts->triangles[p->triangle[0]].chart;
         const uint32_t to = charts->triangles[p->triangle[1]].chart;
@@ -126,10 +126,10 @@ static struct difference difference_of(const struct baked *b, const struct radio
 static void check_seams(const char *name)
 {
     struct baked b = { 0 };
-    struct radiosity_seams closed, seams;
+    struct chart_seams closed, seams;
     open_baked(&b, name);
-    CHECK(radiosity_seams_init(&closed, &b.map, RADIOSITY_SEAM_POINTS));
-    CHECK(radiosity_seams_init(&seams, &b.map, 7.0f));
+    CHECK(charts_seams_init(&closed, &b.map.charts, CHART_SEAM_POINTS));
+    CHECK(charts_seams_init(&seams, &b.map.charts, 7.0f));
     CHECK(seams.point_count > 100);
     float *open_light = light_of(&b, &seams, NULL), *light = light_of(&b, &seams, &closed);
     const struct difference before = difference_of(&b, &seams, open_light);
@@ -142,8 +142,8 @@ static void check_seams(const char *name)
     CHECK(after.border < 0.01);
     host_free(test_host(), open_light);
     host_free(test_host(), light);
-    radiosity_seams_finish(&closed);
-    radiosity_seams_finish(&seams);
+    charts_seams_finish(&closed);
+    charts_seams_finish(&seams);
     close_baked(&b);
 }
 

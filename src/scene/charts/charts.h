@@ -144,7 +144,16 @@ static inline vec3s chart_texel_normal(const struct charts *charts, uint32_t tex
 // The texel at a point of a triangle of the scene; CHART_NONE: it is in no chart, or has no back.
 uint32_t chart_texel_at(const struct charts *charts, int instance, uint32_t triangle, float u,
                         float v, bool back);
-// The texel of a place of the light map, (side · height + y) · width + x; CHART_NONE: none.
+// Places of the light map, (side · height + y) · width + x.
+static inline uint32_t charts_sides(const struct charts *charts)
+{
+    return charts->side_texel_count > charts->texel_count ? 2 : 1;
+}
+static inline size_t charts_place_count(const struct charts *charts)
+{
+    return (size_t)charts_sides(charts) * charts->width * charts->height;
+}
+// The texel of a place; CHART_NONE: none.
 uint32_t chart_texel_of_place(const struct charts *charts, size_t place);
 // [side_texel_count] the texel whose light each one shows: itself, or where `hidden` the nearest of
 // the same side of its chart that is not; itself where all are. Owned by the caller.

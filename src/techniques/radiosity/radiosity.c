@@ -73,7 +73,7 @@ static void list_pipelines(const struct radiosity *s, struct gpu_objects *out)
     const struct gpu_constant constants[] = { { RADIOSITY_APPLY_WIDTH, p->apply_width },
                                               { RADIOSITY_APPLY_HEIGHT, p->apply_height },
                                               { LIGHT_MAP_HAS_BACKS,
-                                                light_map_sides(&s->map.charts) == 2 },
+                                                charts_sides(&s->map.charts) == 2 },
                                               { RADIOSITY_APPLY_DIELECTRIC, 0 },
                                               { RADIOSITY_APPLY_DIELECTRIC, 1 },
                                               { LIGHT_MAP_HAS_MOVES, 0 } };

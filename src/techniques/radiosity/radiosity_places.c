@@ -8,7 +8,7 @@ struct pair {
 // Places that show no texel are not in the table.
 bool radiosity_upload_owners(struct radiosity *s, const uint32_t *shown)
 {
-    const size_t places = light_map_place_count(&s->map.charts);
+    const size_t places = charts_place_count(&s->map.charts);
     struct pair *owners = host_alloc(s->host, light_map_table_room(places), sizeof *owners);
     for (size_t i = 0; owners && i < places; i++) {
         const uint32_t texel = chart_texel_of_place(&s->map.charts, i);

@@ -154,7 +154,7 @@ static void record_map(struct radiosity *s, struct gpu_cmd *cmd, struct span row
 static void record_seams(struct radiosity *s, struct gpu_cmd *cmd, struct span rows)
 {
     const struct radiosity_seams_push push = { rows.first, rows.count, s->seam_places,
-                                               RADIOSITY_SEAM_ENTRIES / RADIOSITY_PAIR,
+                                               CHART_SEAM_ENTRIES / RADIOSITY_PAIR,
                                                s->map.texel_count };
     gpu_dispatch(cmd, s->pipelines.seams,
                  GPU_BIND({ .name = "radiosity_places", .image = s->tables.places },

@@ -5,7 +5,6 @@
 #include "techniques/radiosity/probes/probes.h"
 #include "techniques/common/light_map/surface.h"
 #include "techniques/radiosity/radiosity_follow.h"
-#include "techniques/radiosity/radiosity_seams.h"
 #include "techniques/radiosity/radiosity_shared.h"
 #include "techniques/common/light_map/table.h"
 #include "techniques/radiosity/radiosity_tensors.h"

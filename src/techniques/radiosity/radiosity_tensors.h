@@ -4,6 +4,7 @@
 
 #include "bake/bake.h"
 
+#include "techniques/common/light_map/tensors.h"
 #include "techniques/radiosity/radiosity_map.h"
 #include "techniques/technique.h"
 
@@ -15,8 +16,6 @@
 #define RADIOSITY_POINT          "texels/point"       // F32 [texels][4]
 #define RADIOSITY_DISTANCE       "texels/inverse_distance" // F32 [texels]
 #define RADIOSITY_PART           "texels/part"             // U8 [texels]
-#define RADIOSITY_SEAM_TEXEL     "seams/texel"             // U32 [places][RADIOSITY_SEAM_ENTRIES]
-#define RADIOSITY_SEAM_WEIGHT    "seams/weight"            // F32 [places][RADIOSITY_SEAM_ENTRIES]
 #define RADIOSITY_CLUSTER_SOURCE "clusters/source"         // U32 [clusters][2 · sources]
 #define RADIOSITY_CLUSTER_FACTOR "clusters/factor"         // F16 [clusters][2 · sources]
 #define RADIOSITY_PROBE_SOURCE   "probes/source"           // U32 [probes][2 · sources]
@@ -26,16 +25,10 @@
 #define RADIOSITY_PROBE_EMITTED  "probes/emitted"          // F32 [probes][9][3]
 #define RADIOSITY_PROBE_DEPTH    "probes/depth"            // F16 [probes][8 · 8][2]
 
-// Rows of a tensor: an empty scene has one, of zeros.
-static inline uint64_t radiosity_rows(uint32_t count)
-{
-    return count > 0 ? count : 1;
-}
-
 // Of a map whose clusters are not divided: there is room for two parts of each.
 static inline uint64_t radiosity_cluster_rows(const struct radiosity_map *map)
 {
-    return radiosity_rows(2 * map->cluster_count);
+    return light_map_rows(2 * map->cluster_count);
 }
 
 // ---- bake/stages.c

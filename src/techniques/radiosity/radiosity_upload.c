@@ -13,7 +13,7 @@ struct content {
     const float *reflectance, *sky, *emitted, *point, *inverse_distance;
     const uint32_t *seam_texel;
     const float *seam_weight;
-    struct radiosity_seams seams;
+    struct chart_seams seams;
     uint32_t *shown; // [texels] whose light each one shows
     size_t sources, cluster_sources;
     bool *hidden;
@@ -21,7 +21,7 @@ struct content {
 
 static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct content *out)
 {
-    const uint64_t n = radiosity_rows(s->map.texel_count);
+    const uint64_t n = light_map_rows(s->map.texel_count);
     const uint64_t c = radiosity_cluster_rows(&s->map);
     const uint64_t k = (uint64_t)s->options.sources;
     struct host *host = s->host;
@@ -46,16 +46,16 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
 // Rows of the places beside seams, which the charts have.
 static bool find_seams(struct radiosity *s, const struct tensors *bake, struct content *c)
 {
-    if (!radiosity_seams_init(&c->seams, &s->map, RADIOSITY_SEAM_POINTS)) return false;
-    const uint64_t shape[2] = { radiosity_rows(c->seams.count), RADIOSITY_SEAM_ENTRIES };
-    c->seam_texel = tensors_expect(s->host, bake, RADIOSITY_SEAM_TEXEL, TENSOR_U32, 2, shape);
-    c->seam_weight = tensors_expect(s->host, bake, RADIOSITY_SEAM_WEIGHT, TENSOR_F32, 2, shape);
+    if (!charts_seams_init(&c->seams, &s->map.charts, CHART_SEAM_POINTS)) return false;
+    const uint64_t shape[2] = { light_map_rows(c->seams.count), CHART_SEAM_ENTRIES };
+    c->seam_texel = tensors_expect(s->host, bake, LIGHT_MAP_SEAM_TEXEL, TENSOR_U32, 2, shape);
+    c->seam_weight = tensors_expect(s->host, bake, LIGHT_MAP_SEAM_WEIGHT, TENSOR_F32, 2, shape);
     bool ok = c->seam_texel && c->seam_weight;
-    for (size_t i = 0; ok && i < (size_t)c->seams.count * RADIOSITY_SEAM_ENTRIES; i++)
+    for (size_t i = 0; ok && i < (size_t)c->seams.count * CHART_SEAM_ENTRIES; i++)
         if (c->seam_texel[i] >= s->map.texel_count || !isfinite(c->seam_weight[i]))
             ok = host_fail(s->host, FAIL_FORMAT, "bake of radiosity: texel %u of a seam",
                            c->seam_texel[i]);
-    if (!ok) radiosity_seams_finish(&c->seams);
+    if (!ok) charts_seams_finish(&c->seams);
     return ok;
 }
 
@@ -133,14 +133,9 @@ static bool upload_texels(struct radiosity *s, const struct content *c)
                                   &s->tables.texels);
 }
 
-// An entry of a sum over texels.
-struct share {
-    uint32_t texel;
-    float weight;
-};
-
 // Entries of rows in pairs: [pair][row][2].
-static struct share *share_at(struct share *table, size_t rows, size_t row, size_t entry)
+static struct chart_share *share_at(struct chart_share *table, size_t rows, size_t row,
+                                    size_t entry)
 {
     return &table[RADIOSITY_PAIR * (entry / RADIOSITY_PAIR * rows + row) + entry % RADIOSITY_PAIR];
 }
@@ -157,7 +152,7 @@ static float weight_of(const struct content *c, uint32_t a, uint32_t b)
 }
 
 static void fill_neighbours(const struct radiosity *s, const struct content *c, uint32_t i,
-                            struct share *table)
+                            struct chart_share *table)
 {
     const struct charts *charts = &s->map.charts;
     const struct chart_texel *t = chart_texel_of(charts, i);
@@ -170,7 +165,7 @@ static void fill_neighbours(const struct radiosity *s, const struct content *c, 
         if (x >= width || y >= height) continue;
         const uint32_t texel = chart_texel_of_place(charts, (size_t)(top + y) * width + x);
         if (texel == CHART_NONE || c->shown[texel] == i) continue;
-        const struct share share = { c->shown[texel], weight_of(c, i, c->shown[texel]) };
+        const struct chart_share share = { c->shown[texel], weight_of(c, i, c->shown[texel]) };
         if (share.weight > 0.0f) *share_at(table, s->map.texel_count, i, count++) = share;
     }
 }
@@ -178,7 +173,7 @@ static void fill_neighbours(const struct radiosity *s, const struct content *c, 
 static bool upload_neighbours(struct radiosity *s, const struct content *c)
 {
     const size_t count = (size_t)s->map.texel_count * RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR;
-    struct share *table =
+    struct chart_share *table =
         host_alloc(s->host, light_map_table_room(count), RADIOSITY_PAIR * sizeof *table);
     for (uint32_t i = 0; table && i < s->map.texel_count; i++) fill_neighbours(s, c, i, table);
     return light_map_table_upload(s->host, s->gpu, "neighbours", GPU_RGBA32U, table, count,
@@ -320,13 +315,13 @@ static bool upload_clusters(struct radiosity *s, const struct content *c)
 
 static bool upload_seam_rows(struct radiosity *s, const struct content *c)
 {
-    const size_t places = c->seams.count, entries = RADIOSITY_SEAM_ENTRIES;
+    const size_t places = c->seams.count, entries = CHART_SEAM_ENTRIES;
     const size_t count = places * entries / RADIOSITY_PAIR;
-    struct share *rows =
+    struct chart_share *rows =
         host_alloc(s->host, light_map_table_room(count), RADIOSITY_PAIR * sizeof *rows);
     for (size_t i = 0; rows && i < places * entries; i++)
         *share_at(rows, places, i / entries, i % entries) =
-            (struct share){ c->shown[c->seam_texel[i]], c->seam_weight[i] };
+            (struct chart_share){ c->shown[c->seam_texel[i]], c->seam_weight[i] };
     return light_map_table_upload(s->host, s->gpu, "seams", GPU_RGBA32U, rows, count,
                                   &s->tables.seams);
 }
@@ -367,6 +362,6 @@ bool radiosity_upload(struct radiosity *s, const struct tensors *bake)
     const bool ok = c.shown && upload_all(s, &c);
     host_free(s->host, c.hidden);
     host_free(s->host, c.shown);
-    radiosity_seams_finish(&c.seams);
+    charts_seams_finish(&c.seams);
     return ok;
 }

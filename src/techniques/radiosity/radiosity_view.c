@@ -48,7 +48,7 @@ static struct radiosity_gpu_label label_of(const struct radiosity *s, const floa
 
 bool radiosity_view_init(struct radiosity *s, const float *points, const uint32_t *shown)
 {
-    const size_t places = light_map_place_count(&s->map.charts);
+    const size_t places = charts_place_count(&s->map.charts);
     struct radiosity_gpu_label *labels = host_alloc(s->host, places, sizeof *labels);
     for (size_t i = 0; labels && i < places; i++) {
         const uint32_t texel = chart_texel_of_place(&s->map.charts, i);

@@ -25,7 +25,7 @@ struct gpu_image_desc light_map_image(const struct charts *charts, const char *n
                                     .format = GPU_RGBA16F,
                                     .width = charts->width,
                                     .height = charts->height,
-                                    .depth = LIGHT_MAP_LAYERS * light_map_sides(charts),
+                                    .depth = LIGHT_MAP_LAYERS * charts_sides(charts),
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
 }
 

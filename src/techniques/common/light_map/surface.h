@@ -23,15 +23,7 @@ static inline struct light_map_instances light_map_instances(const struct light_
     return (struct light_map_instances){ s->count, s->moves ? s->count : 0 };
 }
 
-// Places of a light map, (side · height + y) · width + x; their word in tables.
-static inline uint32_t light_map_sides(const struct charts *charts)
-{
-    return charts->side_texel_count > charts->texel_count ? 2 : 1;
-}
-static inline size_t light_map_place_count(const struct charts *charts)
-{
-    return (size_t)light_map_sides(charts) * charts->width * charts->height;
-}
+// The word in tables of a place of the light map (charts_place_count).
 static inline uint32_t light_map_place_word(const struct charts *charts, size_t place)
 {
     const size_t line = place / charts->width, side = line / charts->height;

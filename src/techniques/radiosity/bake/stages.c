@@ -4,7 +4,7 @@
 
 #include "bake/scene_key.h"
 #include "core/half.h"
-#include "techniques/radiosity/bake/close.h"
+#include "trace/texels/close.h"
 #include "techniques/radiosity/bake/row.h"
 #include "techniques/radiosity/probes/stage.h"
 
@@ -14,7 +14,7 @@ enum { TEXELS_PER_TASK = 128, CLUSTERS_PER_TASK = 64 };
 
 struct job {
     struct radiosity_scene scene;
-    struct radiosity_closing closing;
+    struct seam_closing closing;
     struct radiosity_map map; // before the first run and between runs: without parts
     const struct scene_pose *pose;
     struct radiosity_options options;
@@ -24,13 +24,13 @@ static bool prepare(void *argument, struct host *host)
 {
     struct job *job = argument;
     return radiosity_scene_init(&job->scene, host, job->pose, &job->options, &job->map) &&
-           radiosity_closing_init(&job->closing, &job->scene);
+           seam_closing_init(&job->closing, host, &job->scene.map.charts, job->scene.trace);
 }
 
 static void finish(void *argument)
 {
     struct job *job = argument;
-    radiosity_closing_finish(&job->closing);
+    seam_closing_finish(&job->closing);
     job->map = job->scene.map;
     job->scene.map = (struct radiosity_map){ 0 };
     radiosity_scene_finish(&job->scene);
@@ -334,17 +334,13 @@ static bool add_stages(struct bake_plan *plan, struct job *job, const struct sce
                                                 .bytes = prepared_bytes(map) });
     bake_plan_set_light_map(
         plan, (struct bake_light_map){ map->charts.count, map->charts.texels_per_m, plan_at });
-    const uint64_t texels = radiosity_rows(map->texel_count);
+    const uint64_t texels = light_map_rows(map->texel_count);
     const uint64_t clusters = radiosity_cluster_rows(map);
-    struct radiosity_seams seams;
-    const bool ok = radiosity_seams_init(&seams, map, RADIOSITY_SEAM_POINTS);
-    const uint32_t places = seams.count;
     const struct frame_probes grid = radiosity_probe_grid(map, &job->options);
-    radiosity_seams_finish(&seams);
-    return ok && add_texels(plan, job, texels, clusters) &&
+    return add_texels(plan, job, texels, clusters) &&
            radiosity_probe_plan(plan, grid, &job->options, run_probes, room_bytes(clusters)) &&
            add_clusters(plan, job, texels, clusters) &&
-           radiosity_add_seams(plan, &job->closing, places);
+           light_map_add_seams(plan, &job->closing, &map->charts);
 }
 
 bool radiosity_bake(struct bake_plan *plan, const struct technique_bake *how)

@@ -84,7 +84,7 @@ static uint32_t list_places(const struct mrt_clutter_atlas_input *map,
 {
     uint32_t count = 0;
     const struct charts *charts = &map->clutter->charts;
-    for (size_t i = 0; i < light_map_place_count(charts); i++) {
+    for (size_t i = 0; i < charts_place_count(charts); i++) {
         const uint32_t texel = map->source[i];
         const uint32_t light = texel == CHART_NONE ? CHART_NONE : light_of(map, texel);
         if (light == CHART_NONE) continue;
@@ -122,7 +122,7 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
     const size_t tiles = tiles_of(from),
                  instances = (size_t)from->clutter->walls.scene.instance_count;
     runtime->objects.constants[MRT_CONSTANT_ROW_BACKS] =
-        (struct gpu_constant){ LIGHT_MAP_HAS_BACKS, light_map_sides(&from->clutter->charts) == 2 };
+        (struct gpu_constant){ LIGHT_MAP_HAS_BACKS, charts_sides(&from->clutter->charts) == 2 };
     map->tile_count = (uint32_t)tiles;
     map->surfaces.count = (uint32_t)instances;
     map->fill_push.places = list_places(from, NULL);

@@ -1,7 +1,5 @@
 #include "techniques/mrt/runtime/clutter/mapped.h"
 
-#include "techniques/common/light_map/surface.h"
-
 #include <string.h>
 
 bool mrt_mapped_init(struct mrt_mapped *out, struct host *host, int blocks)
@@ -70,7 +68,7 @@ static bool fill_sources(struct mrt_mapped *out, const struct mrt_clutter *clutt
         hidden[clutter->texels[i]] = out->inside[i];
     }
     uint32_t *shown = charts_fill(charts, hidden);
-    for (size_t i = 0; shown && i < light_map_place_count(charts); i++) {
+    for (size_t i = 0; shown && i < charts_place_count(charts); i++) {
         const uint32_t texel = chart_texel_of_place(charts, i);
         out->source[i] = texel == CHART_NONE ? CHART_NONE : place_of[shown[texel]];
     }
@@ -85,7 +83,7 @@ bool mrt_mapped_place(struct mrt_mapped *out, const struct mrt_clutter *clutter)
     struct host *host = out->host;
     bool *hidden = host_alloc(host, charts->side_texel_count, sizeof *hidden);
     uint32_t *place_of = host_alloc(host, charts->side_texel_count, sizeof *place_of);
-    out->source = host_alloc(host, light_map_place_count(charts), sizeof *out->source);
+    out->source = host_alloc(host, charts_place_count(charts), sizeof *out->source);
     const bool ok = hidden && place_of && out->source &&
                     (out->inside || charts->texel_count == 0) &&
                     fill_sources(out, clutter, hidden, place_of);

@@ -1,7 +1,6 @@
-#include "techniques/radiosity/radiosity_seams.h"
+#include "scene/charts/seams.h"
 
 #include "core/hash.h"
-#include "techniques/common/light_map/surface.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -71,8 +70,8 @@ static struct edge *sorted_edges(struct host *host, const struct charts *charts)
 // ---- points
 
 struct making {
-    struct radiosity_seams *out;
-    const struct radiosity_map *map;
+    struct chart_seams *out;
+    const struct charts *charts;
     const struct edge *edges;
     float per_texel;
     uint32_t *number; // [sides × height × width] of a place; CHART_NONE: none yet. NULL: count only
@@ -112,7 +111,7 @@ static bool is_seam(const struct charts *charts, uint32_t a, uint32_t b, struct 
 
 static uint32_t number_of(const struct making *m, uint32_t x, uint32_t y, bool back)
 {
-    const struct charts *charts = &m->map->charts;
+    const struct charts *charts = m->charts;
     const uint32_t place = ((back ? charts->height : 0) + y) * charts->width + x;
     if (m->number[place] == CHART_NONE) {
         m->number[place] = m->out->count;
@@ -122,8 +121,7 @@ static uint32_t number_of(const struct making *m, uint32_t x, uint32_t y, bool b
 }
 
 // The four places of a bilinear lookup, whose middles are at ½.
-static void add_lookup(const struct making *m, struct radiosity_seam_point *point, int chart,
-                       vec2s at)
+static void add_lookup(const struct making *m, struct chart_seam_point *point, int chart, vec2s at)
 {
     const float x = floorf(at.x - 0.5f), y = floorf(at.y - 0.5f);
     const float u = at.x - 0.5f - x, v = at.y - 0.5f - y;
@@ -139,9 +137,9 @@ static void add_lookup(const struct making *m, struct radiosity_seam_point *poin
 static void add_point(const struct making *m, const struct seam *seam, float along, float length,
                       bool back)
 {
-    struct radiosity_seam_point point = { .length = length,
-                                          .triangle = { seam->triangle[0], seam->triangle[1] },
-                                          .back = back };
+    struct chart_seam_point point = { .length = length,
+                                      .triangle = { seam->triangle[0], seam->triangle[1] },
+                                      .back = back };
     point.position = glms_vec3_lerp(seam->end[0][0].position, seam->end[0][1].position, along);
     for (int c = 0; m->number && c < 2; c++)
         add_lookup(m, &point, c,
@@ -152,14 +150,13 @@ static void add_point(const struct making *m, const struct seam *seam, float alo
 
 static void add_seam(const struct making *m, const struct seam *seam)
 {
-    const struct radiosity_map *map = m->map;
+    const struct charts *charts = m->charts;
     float length = 0.0f;
     bool back = true;
     for (int c = 0; c < 2; c++) {
         const struct end *end = seam->end[c];
         length = fmaxf(length, glms_vec2_distance(end[0].place, end[1].place));
-        back &= map->charts.charts[map->charts.triangles[seam->triangle[c]].chart].first_back !=
-                CHART_NONE;
+        back &= charts->charts[charts->triangles[seam->triangle[c]].chart].first_back != CHART_NONE;
     }
     const uint32_t count = (uint32_t)fmaxf(ceilf(m->per_texel * length), 1.0f);
     const float part = length / (float)count;
@@ -175,7 +172,7 @@ enum { MOST_SIDES = 4 };
 
 static void add_seams(const struct making *m)
 {
-    const struct charts *charts = &m->map->charts;
+    const struct charts *charts = m->charts;
     const uint32_t count = 3 * charts->triangle_count;
     struct seam seam;
     for (uint32_t i = 0; i < count; i++)
@@ -187,11 +184,10 @@ static void add_seams(const struct making *m)
 
 static bool make_points(struct making *m)
 {
-    struct radiosity_seams *out = m->out;
-    const struct radiosity_map *map = m->map;
-    const size_t size = light_map_place_count(&map->charts);
+    struct chart_seams *out = m->out;
+    const size_t size = charts_place_count(m->charts);
     add_seams(m);
-    const size_t places = RADIOSITY_SEAM_PLACES * (size_t)out->point_count;
+    const size_t places = CHART_SEAM_PLACES * (size_t)out->point_count;
     out->points = host_alloc(out->host, out->point_count, sizeof *out->points);
     out->places = host_alloc(out->host, places < size ? places : size, sizeof *out->places);
     uint32_t *number = host_alloc(out->host, size, sizeof *number);
@@ -206,22 +202,21 @@ static bool make_points(struct making *m)
     return ok;
 }
 
-bool radiosity_seams_init(struct radiosity_seams *out, const struct radiosity_map *map,
-                          float per_texel)
+bool charts_seams_init(struct chart_seams *out, const struct charts *charts, float per_texel)
 {
-    *out = (struct radiosity_seams){ .host = map->host };
-    struct edge *edges = sorted_edges(map->host, &map->charts);
-    struct making making = { out, map, edges, per_texel, NULL };
+    *out = (struct chart_seams){ .host = charts->host };
+    struct edge *edges = sorted_edges(charts->host, charts);
+    struct making making = { out, charts, edges, per_texel, NULL };
     const bool ok = edges && make_points(&making);
-    host_free(map->host, edges);
-    if (!ok) radiosity_seams_finish(out);
+    host_free(charts->host, edges);
+    if (!ok) charts_seams_finish(out);
     return ok;
 }
 
-void radiosity_seams_finish(struct radiosity_seams *seams)
+void charts_seams_finish(struct chart_seams *seams)
 {
     if (!seams->host) return;
     host_free(seams->host, seams->points);
     host_free(seams->host, seams->places);
-    *seams = (struct radiosity_seams){ 0 };
+    *seams = (struct chart_seams){ 0 };
 }

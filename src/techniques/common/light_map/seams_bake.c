@@ -1,39 +1,44 @@
 // The stage that closes seams.
-#include "techniques/radiosity/bake/close.h"
+#include "techniques/common/light_map/tensors.h"
 
-#include "techniques/radiosity/radiosity_tensors.h"
+#include "bake/plan.h"
+#include "trace/texels/close.h"
 
 // A place takes as long as so many rays, measured.
 enum { PLACES_PER_TASK = 512, RAYS_PER_PLACE = 50 };
 
 static bool run_seams(const struct bake_task *task)
 {
-    const struct radiosity_closing *closing = task->argument;
+    const struct seam_closing *closing = task->argument;
     uint64_t count, first = bake_task_rows(task, 0, &count);
-    struct radiosity_closing_room room;
-    bool ok = radiosity_closing_room_init(&room, task->host, closing);
+    struct seam_closing_room room;
+    bool ok = seam_closing_room_init(&room, task->host, closing);
     for (uint64_t i = 0; ok && i < count && first + i < closing->seams.count; i++) {
-        struct radiosity_closing_entry row[RADIOSITY_SEAM_ENTRIES];
+        struct chart_share row[CHART_SEAM_ENTRIES];
         ok = !bake_task_cancelled(task);
-        radiosity_close(closing, &room, (uint32_t)(first + i), row);
+        seam_close(closing, &room, (uint32_t)(first + i), row);
         uint32_t *texel = bake_row(task, 0, i);
         float *weight = bake_row(task, 1, i);
-        for (uint32_t k = 0; k < RADIOSITY_SEAM_ENTRIES; k++) {
+        for (uint32_t k = 0; k < CHART_SEAM_ENTRIES; k++) {
             texel[k] = row[k].texel;
             weight[k] = row[k].weight;
         }
     }
-    radiosity_closing_room_finish(&room);
+    seam_closing_room_finish(&room);
     return ok;
 }
 
-bool radiosity_add_seams(struct bake_plan *plan, const struct radiosity_closing *closing,
-                         uint32_t places)
+bool light_map_add_seams(struct bake_plan *plan, const struct seam_closing *closing,
+                         const struct charts *charts)
 {
-    const uint64_t rows = radiosity_rows(places), entries = RADIOSITY_SEAM_ENTRIES;
+    struct chart_seams seams;
+    if (!charts_seams_init(&seams, charts, CHART_SEAM_POINTS)) return false;
+    const uint32_t places = seams.count;
+    charts_seams_finish(&seams);
+    const uint64_t rows = light_map_rows(places), entries = CHART_SEAM_ENTRIES;
     const struct bake_output out[] = {
-        { RADIOSITY_SEAM_TEXEL, TENSOR_U32, 2, { rows, entries }, BAKE_ROWS, BAKE_SAVED },
-        { RADIOSITY_SEAM_WEIGHT, TENSOR_F32, 2, { rows, entries }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_SEAM_TEXEL, TENSOR_U32, 2, { rows, entries }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_SEAM_WEIGHT, TENSOR_F32, 2, { rows, entries }, BAKE_ROWS, BAKE_SAVED },
     };
     return bake_plan_add(plan,
                          &(struct bake_stage){

@@ -2,7 +2,7 @@
 // of both charts' lookups at a point, l its length along the edge and x₀ the light of the place's
 // texel. The solution is λ (λ I + Σ l a aᵀ)⁻¹ x₀, whose rows decay within some texels: each is
 // found by conjugate gradients on the places around.
-#include "techniques/radiosity/bake/close.h"
+#include "trace/texels/close.h"
 
 #include "core/parallel.h"
 
@@ -17,15 +17,16 @@ enum { MOST_LOCAL = 96, STEPS = 64 };
 // ---- points
 
 struct opening {
-    const struct radiosity_scene *scene;
-    struct radiosity_seams *seams;
+    const struct charts *charts;
+    const struct trace_scene *trace;
+    struct chart_seams *seams;
     bool *open;
 };
 
 // Into the triangle of one chart, along its surface: half a texel.
-static vec3s beside(const struct opening *o, const struct radiosity_seam_point *point, int chart)
+static vec3s beside(const struct opening *o, const struct chart_seam_point *point, int chart)
 {
-    const struct charts *charts = &o->scene->map.charts;
+    const struct charts *charts = o->charts;
     const struct chart_triangle *t = &charts->triangles[point->triangle[chart]];
     vec3s inward = glms_vec3_add(glms_vec3_add(t->corner[0], t->corner[1]), t->corner[2]);
     inward = glms_vec3_sub(glms_vec3_scale(inward, 1.0f / 3.0f), point->position);
@@ -39,28 +40,29 @@ static void test_point(void *user, size_t i)
 {
     const struct opening *o = user;
     const vec3s from = beside(o, &o->seams->points[i], 0), to = beside(o, &o->seams->points[i], 1);
-    o->open[i] = !trace_occluded(o->scene->trace, from, glms_vec3_sub(to, from), 1.0f);
+    o->open[i] = !trace_occluded(o->trace, from, glms_vec3_sub(to, from), 1.0f);
 }
 
 // A wall that stands on a seam divides it.
-static bool remove_divided(const struct radiosity_scene *scene, struct radiosity_seams *seams)
+static bool remove_divided(struct seam_closing *c, const struct trace_scene *trace)
 {
-    struct opening o = { scene, seams,
-                         host_alloc(scene->host, seams->point_count, sizeof *o.open) };
+    struct chart_seams *seams = &c->seams;
+    struct opening o = { c->charts, trace, seams,
+                         host_alloc(c->host, seams->point_count, sizeof *o.open) };
     if (!o.open) return false;
     parallel_for(seams->point_count, 64, test_point, &o);
     uint32_t count = 0;
     for (uint32_t i = 0; i < seams->point_count; i++)
         if (o.open[i]) seams->points[count++] = seams->points[i];
     seams->point_count = count;
-    host_free(scene->host, o.open);
+    host_free(c->host, o.open);
     return true;
 }
 
-static bool list_points(struct radiosity_closing *c)
+static bool list_points(struct seam_closing *c)
 {
-    const struct radiosity_seams *seams = &c->seams;
-    const size_t entries = RADIOSITY_SEAM_PLACES * (size_t)seams->point_count;
+    const struct chart_seams *seams = &c->seams;
+    const size_t entries = CHART_SEAM_PLACES * (size_t)seams->point_count;
     c->first = host_alloc(c->host, (size_t)seams->count + 2, sizeof *c->first);
     c->points = host_alloc(c->host, entries, sizeof *c->points);
     if (!c->first || !c->points) return false;
@@ -72,31 +74,32 @@ static bool list_points(struct radiosity_closing *c)
     return true;
 }
 
-bool radiosity_closing_init(struct radiosity_closing *out, const struct radiosity_scene *scene)
+bool seam_closing_init(struct seam_closing *out, struct host *host, const struct charts *charts,
+                       const struct trace_scene *trace)
 {
-    *out = (struct radiosity_closing){ .host = scene->host, .map = &scene->map };
-    const bool ok = radiosity_seams_init(&out->seams, &scene->map, RADIOSITY_SEAM_POINTS) &&
-                    remove_divided(scene, &out->seams) && list_points(out);
-    if (!ok) radiosity_closing_finish(out);
+    *out = (struct seam_closing){ .host = host, .charts = charts };
+    const bool ok = charts_seams_init(&out->seams, charts, CHART_SEAM_POINTS) &&
+                    remove_divided(out, trace) && list_points(out);
+    if (!ok) seam_closing_finish(out);
     return ok;
 }
 
-void radiosity_closing_finish(struct radiosity_closing *closing)
+void seam_closing_finish(struct seam_closing *closing)
 {
     if (!closing->host) return;
     host_free(closing->host, closing->first);
     host_free(closing->host, closing->points);
-    radiosity_seams_finish(&closing->seams);
-    *closing = (struct radiosity_closing){ 0 };
+    charts_seams_finish(&closing->seams);
+    *closing = (struct seam_closing){ 0 };
 }
 
 // ---- places around one
 
-bool radiosity_closing_room_init(struct radiosity_closing_room *room, struct host *host,
-                                 const struct radiosity_closing *closing)
+bool seam_closing_room_init(struct seam_closing_room *room, struct host *host,
+                            const struct seam_closing *closing)
 {
-    const struct radiosity_seams *seams = &closing->seams;
-    *room = (struct radiosity_closing_room){
+    const struct chart_seams *seams = &closing->seams;
+    *room = (struct seam_closing_room){
         .host = host,
         .local = host_alloc(host, seams->count, sizeof *room->local),
         .has = host_alloc(host, seams->point_count, sizeof *room->has),
@@ -111,7 +114,7 @@ bool radiosity_closing_room_init(struct radiosity_closing_room *room, struct hos
     return room->local && room->has && room->place && room->point;
 }
 
-void radiosity_closing_room_finish(struct radiosity_closing_room *room)
+void seam_closing_room_finish(struct seam_closing_room *room)
 {
     if (!room->host) return;
     host_free(room->host, room->local);
@@ -119,12 +122,12 @@ void radiosity_closing_room_finish(struct radiosity_closing_room *room)
     host_free(room->host, room->place);
     host_free(room->host, room->point);
     host_free(room->host, room->x);
-    *room = (struct radiosity_closing_room){ 0 };
+    *room = (struct seam_closing_room){ 0 };
 }
 
 struct near {
-    const struct radiosity_closing *closing;
-    struct radiosity_closing_room *room;
+    const struct seam_closing *closing;
+    struct seam_closing_room *room;
     uint32_t places, points;
 };
 
@@ -138,7 +141,7 @@ static void add_place(struct near *n, uint32_t place)
 // Places that share points with it, breadth first. Farther ones keep their light.
 static void find_near(struct near *n, uint32_t place)
 {
-    const struct radiosity_closing *c = n->closing;
+    const struct seam_closing *c = n->closing;
     add_place(n, place);
     for (uint32_t i = 0; i < n->places; i++) {
         const uint32_t at = n->room->place[i];
@@ -147,7 +150,7 @@ static void find_near(struct near *n, uint32_t place)
             if (n->room->has[point]) continue;
             n->room->has[point] = true;
             n->room->point[n->points++] = point;
-            for (int j = 0; j < RADIOSITY_SEAM_PLACES; j++)
+            for (int j = 0; j < CHART_SEAM_PLACES; j++)
                 add_place(n, c->seams.points[point].place[j]);
         }
     }
@@ -168,13 +171,13 @@ static void apply(const struct near *n)
     double *q = n->room->q;
     for (uint32_t i = 0; i < n->places; i++) q[i] = LAMBDA * d[i];
     for (uint32_t i = 0; i < n->points; i++) {
-        const struct radiosity_seam_point *p = &n->closing->seams.points[n->room->point[i]];
+        const struct chart_seam_point *p = &n->closing->seams.points[n->room->point[i]];
         double sum = 0.0;
-        for (int k = 0; k < RADIOSITY_SEAM_PLACES; k++) {
+        for (int k = 0; k < CHART_SEAM_PLACES; k++) {
             const uint32_t at = n->room->local[p->place[k]];
             if (at > 0) sum += (double)p->weight[k] * d[at - 1];
         }
-        for (int k = 0; k < RADIOSITY_SEAM_PLACES; k++) {
+        for (int k = 0; k < CHART_SEAM_PLACES; k++) {
             const uint32_t at = n->room->local[p->place[k]];
             if (at > 0) q[at - 1] += (double)p->length * sum * (double)p->weight[k];
         }
@@ -191,7 +194,7 @@ static double dot(const double *a, const double *b, uint32_t count)
 // x = λ (λ I + Σ l a aᵀ)⁻¹ e, with e of the first place.
 static void solve(const struct near *n)
 {
-    struct radiosity_closing_room *m = n->room;
+    struct seam_closing_room *m = n->room;
     for (uint32_t i = 0; i < n->places; i++) m->x[i] = m->r[i] = m->d[i] = 0.0;
     m->r[0] = m->d[0] = LAMBDA;
     double square = LAMBDA * LAMBDA;
@@ -212,27 +215,26 @@ static void solve(const struct near *n)
 
 static int by_texel(const void *a, const void *b)
 {
-    const struct radiosity_closing_entry *p = a, *q = b;
+    const struct chart_share *p = a, *q = b;
     return p->texel < q->texel ? -1 : p->texel > q->texel;
 }
 
 static int by_weight(const void *a, const void *b)
 {
-    const struct radiosity_closing_entry *p = a, *q = b;
+    const struct chart_share *p = a, *q = b;
     if (fabsf(p->weight) != fabsf(q->weight)) return fabsf(p->weight) > fabsf(q->weight) ? -1 : 1;
     return by_texel(a, b);
 }
 
 // A gutter's light is that of its texel.
-static uint32_t merge(const struct near *n, struct radiosity_closing_entry *row)
+static uint32_t merge(const struct near *n, struct chart_share *row)
 {
-    const struct radiosity_closing *c = n->closing;
+    const struct seam_closing *c = n->closing;
     uint32_t count = 0, merged = 0;
     for (uint32_t i = 0; i < n->places; i++) {
         const uint32_t place = c->seams.places[n->room->place[i]];
-        const uint32_t texel = chart_texel_of_place(&c->map->charts, place);
-        if (texel != CHART_NONE)
-            row[count++] = (struct radiosity_closing_entry){ texel, (float)n->room->x[i] };
+        const uint32_t texel = chart_texel_of_place(c->charts, place);
+        if (texel != CHART_NONE) row[count++] = (struct chart_share){ texel, (float)n->room->x[i] };
     }
     qsort(row, count, sizeof *row, by_texel);
     for (uint32_t i = 0; i < count; i++) {
@@ -246,22 +248,21 @@ static uint32_t merge(const struct near *n, struct radiosity_closing_entry *row)
 }
 
 // Uniform light stays: the largest weight has what the others lack.
-static void write_row(const struct radiosity_closing_entry *row, uint32_t count,
-                      struct radiosity_closing_entry *out)
+static void write_row(const struct chart_share *row, uint32_t count, struct chart_share *out)
 {
     float rest = 1.0f;
-    for (uint32_t i = 0; i < RADIOSITY_SEAM_ENTRIES; i++) {
-        out[i] = i < count ? row[i] : (struct radiosity_closing_entry){ 0 };
+    for (uint32_t i = 0; i < CHART_SEAM_ENTRIES; i++) {
+        out[i] = i < count ? row[i] : (struct chart_share){ 0 };
         rest -= out[i].weight;
     }
     out[0].weight += rest;
 }
 
-void radiosity_close(const struct radiosity_closing *closing, struct radiosity_closing_room *room,
-                     uint32_t place, struct radiosity_closing_entry out[RADIOSITY_SEAM_ENTRIES])
+void seam_close(const struct seam_closing *closing, struct seam_closing_room *room, uint32_t place,
+                struct chart_share out[CHART_SEAM_ENTRIES])
 {
     struct near near = { closing, room, 0, 0 };
-    struct radiosity_closing_entry row[MOST_LOCAL];
+    struct chart_share row[MOST_LOCAL];
     find_near(&near, place);
     solve(&near);
     write_row(row, merge(&near, row), out);

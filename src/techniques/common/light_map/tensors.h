@@ -1,0 +1,22 @@
+// Tensors that the bakes of light maps share, and the stage that writes those of seams.
+#pragma once
+
+#include "scene/charts/seams.h"
+
+#define LIGHT_MAP_SEAM_TEXEL  "seams/texel"  // U32 [places][CHART_SEAM_ENTRIES]
+#define LIGHT_MAP_SEAM_WEIGHT "seams/weight" // F32 [places][CHART_SEAM_ENTRIES]
+
+struct bake_plan;
+struct seam_closing;
+
+// Rows of a tensor: an empty scene has one, of zeros.
+static inline uint64_t light_map_rows(uint32_t count)
+{
+    return count > 0 ? count : 1;
+}
+
+// ---- seams_bake.c
+
+// closing: made where the bake is prepared, of these charts. Outlives the bake.
+bool light_map_add_seams(struct bake_plan *plan, const struct seam_closing *closing,
+                         const struct charts *charts);
