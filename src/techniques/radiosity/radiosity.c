@@ -11,7 +11,6 @@
 #include "technique_shaders.h"
 
 #include <stddef.h>
-#include <string.h>
 
 #define OPTION(...) OPTION_ROW(struct radiosity_options, __VA_ARGS__)
 static const struct option_row option_rows[] = {
@@ -31,12 +30,8 @@ static bool create(void *state, const struct technique_create *how)
     struct radiosity *s = state;
     s->host = how->host;
     s->gpu = how->gpu;
-    // Rows of pixels suit the caches of a processor, squares those of a GPU.
-    const bool rows = gpu_info(s->gpu)->type == GPU_CPU;
-    s->pipelines.apply_width = rows ? 64 : RADIOSITY_LOCAL_2D;
-    s->pipelines.apply_height = rows ? 1 : RADIOSITY_LOCAL_2D;
+    light_map_init(&s->light_map, s->host, s->gpu, &s->map.charts);
     if (!how->pose) return true;
-    s->instances = (uint32_t)how->pose->scene->instance_count;
     struct scene_statics statics;
     const bool ok = scene_statics_init(&statics, s->host, how->pose) &&
                     radiosity_followed_init(&s->followed, s->host, how->pose, &statics) &&
@@ -52,8 +47,6 @@ static bool create(void *state, const struct technique_create *how)
 static void list_tables(const struct radiosity *s, struct gpu_objects *out)
 {
     const size_t texels = s->map.texel_count, nodes = s->map.tree.count;
-    struct gpu_image_desc map = light_map_image(&s->map.charts, "light_map");
-    if (texels == 0) map.width = 0;
     GPU_ADD(
         out, 0, { GPU_IMAGE, "flux", TABLE(flux), .image = light_map_table(GPU_RGBA32F, texels) },
         { GPU_IMAGE, "light", TABLE(light), .image = light_map_table(GPU_RG32U, 3 * texels) },
@@ -61,26 +54,11 @@ static void list_tables(const struct radiosity *s, struct gpu_objects *out)
         { GPU_IMAGE, "sent", TABLE(sent), .image = light_map_table(GPU_RG32U, nodes) },
         { GPU_IMAGE, "radiosity", TABLE(radiosity[0]), .image = light_map_table(GPU_RG32U, nodes) },
         { GPU_IMAGE, "radiosity", TABLE(radiosity[1]), .image = light_map_table(GPU_RG32U, nodes) },
-        { GPU_IMAGE, "solution", TABLE(solution), .image = light_map_table(GPU_RG32U, nodes) },
-        { GPU_IMAGE, "light_map", TABLE(light_maps[0]), .image = map },
-        { GPU_IMAGE, "light_map", TABLE(light_maps[1]), .image = map },
-        { GPU_SAMPLER, "light_map", .member = offsetof(struct radiosity, linear) });
+        { GPU_IMAGE, "solution", TABLE(solution), .image = light_map_table(GPU_RG32U, nodes) });
 }
 
 static void list_pipelines(const struct radiosity *s, struct gpu_objects *out)
 {
-    const struct radiosity_pipelines *p = &s->pipelines;
-    const struct gpu_constant constants[] = { { RADIOSITY_APPLY_WIDTH, p->apply_width },
-                                              { RADIOSITY_APPLY_HEIGHT, p->apply_height },
-                                              { LIGHT_MAP_HAS_BACKS,
-                                                charts_sides(&s->map.charts) == 2 },
-                                              { RADIOSITY_APPLY_DIELECTRIC, 0 },
-                                              { RADIOSITY_APPLY_DIELECTRIC, 1 },
-                                              { LIGHT_MAP_HAS_MOVES, 0 } };
-    const uint32_t still = 7u | 1u << 5, moved = 7u;
-    const struct gpu_shader *apply = s->options.specular ? &shader_radiosity_apply_specular_comp
-                                                         : &shader_radiosity_apply_diffuse_comp;
-    memcpy(out->constants, constants, sizeof constants);
     if (s->map.texel_count == 0) return;
     GPU_ADD(out, 0, { GPU_PIPELINE, PIPELINE(direct), .shader = &shader_radiosity_direct_comp },
             { GPU_PIPELINE, PIPELINE(clusters), .shader = &shader_radiosity_clusters_comp },
@@ -88,13 +66,7 @@ static void list_pipelines(const struct radiosity *s, struct gpu_objects *out)
             { GPU_PIPELINE, PIPELINE(solve), .shader = &shader_radiosity_solve_comp },
             { GPU_PIPELINE, PIPELINE(gather), .shader = &shader_radiosity_gather_comp },
             { GPU_PIPELINE, PIPELINE(smooth), .shader = &shader_radiosity_smooth_comp },
-            { GPU_PIPELINE, PIPELINE(map), .shader = &shader_radiosity_map_comp },
-            { GPU_PIPELINE, PIPELINE(seams), .shader = &shader_radiosity_seams_comp },
-            { GPU_PIPELINE, PIPELINE(view), .shader = &shader_radiosity_view_comp },
-            { GPU_PIPELINE, PIPELINE(apply[0][0]), .shader = apply, .consts = still | 1u << 3 },
-            { GPU_PIPELINE, PIPELINE(apply[0][1]), .shader = apply, .consts = still | 1u << 4 },
-            { GPU_PIPELINE, PIPELINE(apply[1][0]), .shader = apply, .consts = moved | 1u << 3 },
-            { GPU_PIPELINE, PIPELINE(apply[1][1]), .shader = apply, .consts = moved | 1u << 4 });
+            { GPU_PIPELINE, PIPELINE(view), .shader = &shader_radiosity_view_comp });
 }
 
 static void list_probes(const struct radiosity *s, struct gpu_objects *out)
@@ -116,12 +88,9 @@ static void list_uploads(struct gpu_objects *out)
 {
 #define IMAGE(thing) { GPU_IMAGE, .member = TABLE(thing) }
     GPU_ADD(out, 0, IMAGE(texels), IMAGE(neighbours), IMAGE(clusters), IMAGE(spans), IMAGE(members),
-            IMAGE(groups), IMAGE(owners), IMAGE(places), IMAGE(seams), IMAGE(factors.order),
-            IMAGE(factors.tiles), IMAGE(cluster_factors.order), IMAGE(cluster_factors.tiles),
-            { GPU_BUFFER, .member = TABLE(surfaces.first) },
-            { GPU_BUFFER, .member = TABLE(surfaces.triangles) },
-            { GPU_BUFFER, .member = TABLE(labels) }, { GPU_BUFFER, .member = PROBES(table) },
-            { GPU_BUFFER, .member = PROBES(factors) },
+            IMAGE(groups), IMAGE(factors.order), IMAGE(factors.tiles), IMAGE(cluster_factors.order),
+            IMAGE(cluster_factors.tiles), { GPU_BUFFER, .member = TABLE(labels) },
+            { GPU_BUFFER, .member = PROBES(table) }, { GPU_BUFFER, .member = PROBES(factors) },
             { GPU_IMAGE, .member = PROBES(volume.depth) });
 }
 
@@ -130,6 +99,7 @@ static void list(const struct radiosity *s, struct gpu_objects *out)
     gpu_objects_clear(out);
     list_tables(s, out);
     list_pipelines(s, out);
+    light_map_list(&s->light_map, offsetof(struct radiosity, light_map), s->options.specular, out);
     list_probes(s, out);
     list_uploads(out);
 }
@@ -154,7 +124,7 @@ static void follow(void *state, const struct scene_pose *pose, bool wait)
     struct radiosity *s = state;
     (void)wait;
     radiosity_followed_update(&s->followed, pose);
-    s->tables.surfaces.moves = s->followed.any_moved ? s->followed.places.moves : NULL;
+    s->light_map.surfaces.moves = s->followed.any_moved ? s->followed.places.moves : NULL;
 }
 
 static void gather_probes(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -182,7 +152,7 @@ static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
 {
     struct radiosity *s = state;
     const bool mapped = view->layers[FRAME_ID].id && s->map.texel_count > 0;
-    if (mapped) radiosity_record_apply(s, cmd, view);
+    if (mapped) light_map_record_apply(&s->light_map, cmd, view);
     if (mapped && !s->followed.any_lit) return;
     gather_probes(s, cmd, view);
     radiosity_probes_record_apply(&s->probes, cmd, view, mapped);
@@ -197,7 +167,7 @@ static bool charts(const struct scene_pose *statics, const void *options, struct
 static gpu_image light_map(void *state)
 {
     const struct radiosity *s = state;
-    return s->tables.light_maps[s->shown_map];
+    return s->light_map.images[s->light_map.shown];
 }
 
 static bool probes(void *state, struct probe_volume *out)
@@ -237,16 +207,11 @@ static uint32_t more_needs(const void *options)
     return o->specular ? FRAME_WRITES_SPECULAR : 0;
 }
 
-static uint64_t table_bytes(uint64_t entries, uint64_t bytes)
-{
-    return light_map_table_room((size_t)entries) * bytes;
-}
-
 // Of rows: entries, order and tiles.
 static uint64_t rows_bytes(uint64_t rows, uint64_t bytes)
 {
-    return table_bytes(rows * bytes / 16, 16) + table_bytes(rows, 4) +
-           table_bytes(rows / RADIOSITY_TILE, 8);
+    return light_map_table_bytes(rows * bytes / 16, 16) + light_map_table_bytes(rows, 4) +
+           light_map_table_bytes(rows / RADIOSITY_TILE, 8);
 }
 
 // Of a light map with the texels wanted, on one side, that charts fill by two thirds, with a
@@ -258,18 +223,18 @@ static uint64_t memory_estimate(const void *options)
     const uint64_t clusters = texels / (uint64_t)(o->cluster * o->cluster) + 1;
     const uint64_t nodes = 2 * clusters, sources = (uint64_t)o->sources;
     const uint64_t of_texels =
-        table_bytes(RADIOSITY_TEXEL_PARTS * texels, 16) + rows_bytes(texels, 8 * sources) +
-        table_bytes(RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR * texels, 16) + table_bytes(texels, 16) +
-        2 * table_bytes(3 * texels, 8) + places * sizeof(struct radiosity_gpu_label);
-    const uint64_t of_clusters = rows_bytes(clusters, 8 * sources) + table_bytes(clusters, 16) +
-                                 table_bytes(clusters, 8) + table_bytes(texels, 4) +
-                                 5 * table_bytes(nodes, 8);
-    const uint64_t of_scene =
-        texels * sizeof(struct light_map_triangle) + table_bytes(1, 16) + table_bytes(1, 4);
-    const uint64_t of_map = table_bytes(places, 8) + 2 * 8 * LIGHT_MAP_LAYERS * places;
+        light_map_table_bytes(RADIOSITY_TEXEL_PARTS * texels, 16) +
+        rows_bytes(texels, 8 * sources) +
+        light_map_table_bytes(RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR * texels, 16) +
+        light_map_table_bytes(texels, 16) + 2 * light_map_table_bytes(3 * texels, 8) +
+        places * sizeof(struct radiosity_gpu_label);
+    const uint64_t of_clusters =
+        rows_bytes(clusters, 8 * sources) + light_map_table_bytes(clusters, 16) +
+        light_map_table_bytes(clusters, 8) + light_map_table_bytes(texels, 4) +
+        5 * light_map_table_bytes(nodes, 8);
     const uint64_t of_probes = radiosity_probes_most(o) * (sizeof(struct radiosity_gpu_probe) +
                                                            12 * 2 * sources + PROBE_VOLUME_BYTES);
-    return of_texels + of_clusters + of_scene + of_map + of_probes;
+    return of_texels + of_clusters + light_map_bytes(texels) + of_probes;
 }
 
 const struct technique technique_radiosity = {

@@ -135,35 +135,6 @@ static gpu_image shown_light(const struct radiosity *s)
     return s->options.smooth ? s->tables.smoothed : s->tables.light;
 }
 
-// The one that is not shown: a map appears whole.
-static gpu_image next_map(const struct radiosity *s)
-{
-    return s->tables.light_maps[1 - s->shown_map];
-}
-
-static void record_map(struct radiosity *s, struct gpu_cmd *cmd, struct span rows)
-{
-    const struct radiosity_map_push push = { rows.first, rows.count, s->map.texel_count };
-    gpu_dispatch(cmd, s->pipelines.map,
-                 GPU_BIND({ .name = "radiosity_owners", .image = s->tables.owners },
-                          { .name = "texel_light", .image = shown_light(s) },
-                          { .name = "light_map", .image = next_map(s) }),
-                 &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
-}
-
-static void record_seams(struct radiosity *s, struct gpu_cmd *cmd, struct span rows)
-{
-    const struct radiosity_seams_push push = { rows.first, rows.count, s->seam_places,
-                                               CHART_SEAM_ENTRIES / RADIOSITY_PAIR,
-                                               s->map.texel_count };
-    gpu_dispatch(cmd, s->pipelines.seams,
-                 GPU_BIND({ .name = "radiosity_places", .image = s->tables.places },
-                          { .name = "radiosity_seam_rows", .image = s->tables.seams },
-                          { .name = "texel_light", .image = shown_light(s) },
-                          { .name = "light_map", .image = next_map(s) }),
-                 &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
-}
-
 uint32_t radiosity_stage_rows(const struct radiosity *s, enum radiosity_stage stage)
 {
     switch (stage) {
@@ -175,9 +146,9 @@ uint32_t radiosity_stage_rows(const struct radiosity *s, enum radiosity_stage st
     case RADIOSITY_SMOOTH:
         return s->options.smooth ? s->map.texel_count : 0;
     case RADIOSITY_LIGHT_MAP:
-        return s->owner_places;
+        return s->light_map.owner_count;
     case RADIOSITY_SEAMS:
-        return s->options.seams ? s->seam_places : 0;
+        return s->options.seams ? s->light_map.seam_count : 0;
     default:
         return 0;
     }
@@ -208,10 +179,10 @@ static void record_rows(struct radiosity *s, struct gpu_cmd *cmd, const struct f
         record_smooth(s, cmd, rows);
         break;
     case RADIOSITY_LIGHT_MAP:
-        record_map(s, cmd, rows);
+        light_map_record_show(&s->light_map, cmd, shown_light(s), rows.first, rows.count);
         break;
     default:
-        record_seams(s, cmd, rows);
+        light_map_record_seams(&s->light_map, cmd, shown_light(s), rows.first, rows.count);
     }
 }
 
@@ -236,35 +207,4 @@ void radiosity_record_part(struct radiosity *s, struct gpu_cmd *cmd, const struc
 {
     if (part->count > 0) record_rows(s, cmd, view, part);
     if (part->first + part->count == radiosity_stage_rows(s, part->stage)) record_end(s, cmd, part);
-}
-
-void radiosity_record_apply(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view)
-{
-    const gpu_image *layers = view->layers;
-    const gpu_image dielectric = layers[FRAME_DIELECTRIC];
-    const struct radiosity_pipelines *p = &s->pipelines;
-    const struct radiosity_apply_push push = { 1.0f / (float)s->map.charts.width,
-                                               1.0f / (float)s->map.charts.height,
-                                               1.0f / (float)view->width,
-                                               1.0f / (float)view->height,
-                                               light_map_instances(&s->tables.surfaces) };
-    gpu_scope_begin(cmd, "apply");
-    gpu_dispatch(cmd, p->apply[s->tables.surfaces.moves != NULL][dielectric.id != 0],
-                 GPU_BIND(view->constants_binding, view->ggx_albedo_binding,
-                          { .name = "depth", .image = layers[FRAME_DEPTH] },
-                          { .name = "normal", .image = layers[FRAME_NORMAL] },
-                          { .name = "albedo", .image = layers[FRAME_ALBEDO] },
-                          { .name = "material", .image = layers[FRAME_MATERIAL] },
-                          { .name = "dielectric",
-                            .image = dielectric.id ? dielectric : layers[FRAME_MATERIAL] },
-                          { .name = "id", .image = layers[FRAME_ID] },
-                          LIGHT_MAP_SURFACE_BINDINGS(&s->tables.surfaces, cmd),
-                          { .name = "light_map",
-                            .image = s->tables.light_maps[s->shown_map],
-                            .sampler = s->linear },
-                          { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
-                          { .name = "specular", .image = layers[FRAME_SPECULAR] }),
-                 &push, sizeof push, gpu_groups(view->width, p->apply_width),
-                 gpu_groups(view->height, p->apply_height), 1);
-    gpu_scope_end(cmd);
 }

@@ -4,10 +4,10 @@
 
 #include "core/shared.h"
 
-#include "techniques/common/light_map/surface_shared.h"
+#include "techniques/common/light_map/map_shared.h"
 
 #define RADIOSITY_LOCAL    64 // workgroup size over texels and clusters
-#define RADIOSITY_LOCAL_2D 8  // over pixels and texels of the map, in x and y
+#define RADIOSITY_LOCAL_2D 8  // over pixels, in x and y
 
 // An entry of a row: the node in the lower bits, above it the form factor as a half, of which the
 // upper two bits are zero: it is below 2.
@@ -28,7 +28,7 @@
 #define RADIOSITY_TILE 8
 
 // Entries of rows side by side in a texel of a table: of texels two words each, of clusters one.
-#define RADIOSITY_PAIR 2
+#define RADIOSITY_PAIR LIGHT_MAP_PAIR
 #define RADIOSITY_QUAD 4
 
 // Neighbours of a texel, in pairs of (texel, weight).
@@ -79,25 +79,6 @@ struct radiosity_smooth_push {
     uint32_t first, count, texels;
 };
 
-struct radiosity_map_push {
-    uint32_t first, count, texels;
-};
-
-struct radiosity_seams_push {
-    uint32_t first, count, places, pairs, texels; // pairs: of a row
-};
-
-struct radiosity_apply_push {
-    float per_width, per_height;           // 1 / size of the light map
-    float per_view_width, per_view_height; // 1 / size of the view
-    AG_STRUCT(light_map_instances) instances;
-};
-
-// Specialization constants: the size of a workgroup in pixels; whether there is FRAME_DIELECTRIC.
-#define RADIOSITY_APPLY_WIDTH      0
-#define RADIOSITY_APPLY_HEIGHT     1
-#define RADIOSITY_APPLY_DIELECTRIC 2
-
 struct radiosity_view_push {
     AG_STRUCT(light_map_instances) instances;
     uint32_t width, height; // of the light map
@@ -113,9 +94,6 @@ _Static_assert(sizeof(struct radiosity_solve_push) == 12, "layout is shared with
 _Static_assert(sizeof(struct radiosity_nodes_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gather_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_smooth_push) == 12, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_map_push) == 12, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_seams_push) == 20, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_apply_push) == 24, "layout is shared with GLSL");
 #endif
 
 #endif

@@ -26,7 +26,7 @@ void main()
     vec4 sum[3];
     for (int c = 0; c < 3; c++) sum[c] = texel_light_of(i, push.texels, c);
     float weights = 1.0;
-    for (uint k = 0; k < RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR; k++) {
+    for (uint k = 0; k < RADIOSITY_NEIGHBOURS / LIGHT_MAP_PAIR; k++) {
         uvec4 pair = imageLoad(radiosity_neighbours, light_map_at(k * push.texels + i));
         if (pair.y == 0u) break;
         vec2 weight = uintBitsToFloat(pair.yw);

@@ -3,10 +3,9 @@
 
 #include "techniques/common/kept.h"
 #include "techniques/radiosity/probes/probes.h"
-#include "techniques/common/light_map/surface.h"
+#include "techniques/common/light_map/map.h"
 #include "techniques/radiosity/radiosity_follow.h"
 #include "techniques/radiosity/radiosity_shared.h"
-#include "techniques/common/light_map/table.h"
 #include "techniques/radiosity/radiosity_tensors.h"
 
 // Tiles of rows of form factors in one table: all may be more than a table has.
@@ -27,21 +26,15 @@ struct radiosity_rows {
 struct radiosity_tables {
     gpu_image texels, neighbours;               // of texels
     gpu_image clusters, spans, members, groups; // of clusters
-    gpu_image owners;                           // of the light map
-    struct light_map_surfaces surfaces;         // of the scene
-    gpu_image places, seams;                    // beside seams
     gpu_image flux, light, smoothed;            // [texels] of the newest light
     gpu_image sent, radiosity[2];               // [clusters and nodes] likewise
     gpu_image solution;                         // [clusters and nodes] of all bounces
-    gpu_image light_maps[2];
-    gpu_buffer labels; // of places, for debug views
+    gpu_buffer labels;                          // of places, for debug views
     struct radiosity_rows factors, cluster_factors;
 };
 
 struct radiosity_pipelines {
-    gpu_pipeline direct, clusters, nodes, solve, gather, smooth, map, seams, view;
-    gpu_pipeline apply[2][2];           // [with moves][whether there is FRAME_DIELECTRIC]
-    uint32_t apply_width, apply_height; // of their workgroups
+    gpu_pipeline direct, clusters, nodes, solve, gather, smooth, view;
 };
 
 // Stages of an update, in their order.
@@ -74,21 +67,18 @@ struct radiosity {
     struct host *host;
     struct gpu *gpu;
     struct radiosity_map map; // without texels: an empty scene
-    uint32_t instances;
-    uint32_t owner_places, seam_places; // of the light map
+    struct light_map light_map;
     uint32_t group_count;
     float spectral_radius; // of ρ F, at least
     struct radiosity_tables tables;
     struct radiosity_pipelines pipelines;
-    gpu_sampler linear;
-    int shown_map; // of the light maps
     struct radiosity_update update;
     struct radiosity_probes probes;
     struct radiosity_followed followed;
     struct kept kept;
 };
 
-// ---- radiosity_upload.c, radiosity_factors.c, radiosity_places.c, probes/upload.c
+// ---- radiosity_upload.c, radiosity_factors.c, probes/upload.c
 
 // Tables of the light map and of a bake on the GPU.
 bool radiosity_upload(struct radiosity *state, const struct tensors *bake);
@@ -98,12 +88,6 @@ bool radiosity_upload_factors(struct radiosity *state, const uint32_t *source,
                               const uint16_t *cluster_factor);
 void radiosity_destroy_rows(struct radiosity *state, struct radiosity_rows *rows);
 
-// A storage buffer of these items, which are freed with host_free in any case. NULL: false.
-bool radiosity_buffer_upload(struct radiosity *state, const char *name, void *items, size_t bytes,
-                             gpu_buffer *out);
-// Where light is shown. shown: [texels] whose light each one shows.
-bool radiosity_upload_owners(struct radiosity *state, const uint32_t *shown);
-bool radiosity_upload_triangles(struct radiosity *state);
 // The grid of probes, and its tables. After radiosity_upload.
 bool radiosity_probes_upload(struct radiosity *state, const struct tensors *bake);
 
@@ -120,8 +104,6 @@ const char *radiosity_stage_name(enum radiosity_stage stage);
 // The rows of a part, and with the last ones what follows the stage or the step.
 void radiosity_record_part(struct radiosity *state, struct gpu_cmd *cmd,
                            const struct frame_view *view, const struct radiosity_part *part);
-void radiosity_record_apply(struct radiosity *state, struct gpu_cmd *cmd,
-                            const struct frame_view *view);
 
 // ---- radiosity_view.c
 

@@ -11,9 +11,6 @@ struct content {
     const uint16_t *factor, *cluster_factor;
     const uint8_t *part;
     const float *reflectance, *sky, *emitted, *point, *inverse_distance;
-    const uint32_t *seam_texel;
-    const float *seam_weight;
-    struct chart_seams seams;
     uint32_t *shown; // [texels] whose light each one shows
     size_t sources, cluster_sources;
     bool *hidden;
@@ -41,22 +38,6 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
            (out->cluster_source = EXPECT(RADIOSITY_CLUSTER_SOURCE, TENSOR_U32, c, 2 * k)) &&
            (out->cluster_factor = EXPECT(RADIOSITY_CLUSTER_FACTOR, TENSOR_F16, c, 2 * k));
 #undef EXPECT
-}
-
-// Rows of the places beside seams, which the charts have.
-static bool find_seams(struct radiosity *s, const struct tensors *bake, struct content *c)
-{
-    if (!charts_seams_init(&c->seams, &s->map.charts, CHART_SEAM_POINTS)) return false;
-    const uint64_t shape[2] = { light_map_rows(c->seams.count), CHART_SEAM_ENTRIES };
-    c->seam_texel = tensors_expect(s->host, bake, LIGHT_MAP_SEAM_TEXEL, TENSOR_U32, 2, shape);
-    c->seam_weight = tensors_expect(s->host, bake, LIGHT_MAP_SEAM_WEIGHT, TENSOR_F32, 2, shape);
-    bool ok = c->seam_texel && c->seam_weight;
-    for (size_t i = 0; ok && i < (size_t)c->seams.count * CHART_SEAM_ENTRIES; i++)
-        if (c->seam_texel[i] >= s->map.texel_count || !isfinite(c->seam_weight[i]))
-            ok = host_fail(s->host, FAIL_FORMAT, "bake of radiosity: texel %u of a seam",
-                           c->seam_texel[i]);
-    if (!ok) charts_seams_finish(&c->seams);
-    return ok;
 }
 
 // The clusters that the bake has.
@@ -133,13 +114,6 @@ static bool upload_texels(struct radiosity *s, const struct content *c)
                                   &s->tables.texels);
 }
 
-// Entries of rows in pairs: [pair][row][2].
-static struct chart_share *share_at(struct chart_share *table, size_t rows, size_t row,
-                                    size_t entry)
-{
-    return &table[RADIOSITY_PAIR * (entry / RADIOSITY_PAIR * rows + row) + entry % RADIOSITY_PAIR];
-}
-
 // With R the harmonic mean of the distances of what a texel sees, irradiance at distance d differs
 // by about d/R (Ward, Rubinstein & Clear 1988, "A Ray Tracing Solution for Diffuse
 // Interreflection"): weights fall to 0 where that is 1/4.
@@ -166,15 +140,15 @@ static void fill_neighbours(const struct radiosity *s, const struct content *c, 
         const uint32_t texel = chart_texel_of_place(charts, (size_t)(top + y) * width + x);
         if (texel == CHART_NONE || c->shown[texel] == i) continue;
         const struct chart_share share = { c->shown[texel], weight_of(c, i, c->shown[texel]) };
-        if (share.weight > 0.0f) *share_at(table, s->map.texel_count, i, count++) = share;
+        if (share.weight > 0.0f) *light_map_share_at(table, s->map.texel_count, i, count++) = share;
     }
 }
 
 static bool upload_neighbours(struct radiosity *s, const struct content *c)
 {
-    const size_t count = (size_t)s->map.texel_count * RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR;
+    const size_t count = (size_t)s->map.texel_count * RADIOSITY_NEIGHBOURS / LIGHT_MAP_PAIR;
     struct chart_share *table =
-        host_alloc(s->host, light_map_table_room(count), RADIOSITY_PAIR * sizeof *table);
+        host_alloc(s->host, light_map_table_room(count), LIGHT_MAP_PAIR * sizeof *table);
     for (uint32_t i = 0; table && i < s->map.texel_count; i++) fill_neighbours(s, c, i, table);
     return light_map_table_upload(s->host, s->gpu, "neighbours", GPU_RGBA32U, table, count,
                                   &s->tables.neighbours);
@@ -311,41 +285,14 @@ static bool upload_clusters(struct radiosity *s, const struct content *c)
            ok && upload_members(s) && upload_groups(s);
 }
 
-// ---- the light map
-
-static bool upload_seam_rows(struct radiosity *s, const struct content *c)
-{
-    const size_t places = c->seams.count, entries = CHART_SEAM_ENTRIES;
-    const size_t count = places * entries / RADIOSITY_PAIR;
-    struct chart_share *rows =
-        host_alloc(s->host, light_map_table_room(count), RADIOSITY_PAIR * sizeof *rows);
-    for (size_t i = 0; rows && i < places * entries; i++)
-        *share_at(rows, places, i / entries, i % entries) =
-            (struct chart_share){ c->shown[c->seam_texel[i]], c->seam_weight[i] };
-    return light_map_table_upload(s->host, s->gpu, "seams", GPU_RGBA32U, rows, count,
-                                  &s->tables.seams);
-}
-
-static bool upload_seams(struct radiosity *s, const struct content *c)
-{
-    const size_t count = c->seams.count;
-    uint32_t *places = host_alloc(s->host, light_map_table_room(count), sizeof *places);
-    for (size_t i = 0; places && i < count; i++)
-        places[i] = light_map_place_word(&s->map.charts, c->seams.places[i]);
-    s->seam_places = (uint32_t)count;
-    return light_map_table_upload(s->host, s->gpu, "places", GPU_R32U, places, count,
-                                  &s->tables.places) &&
-           upload_seam_rows(s, c);
-}
-
-static bool upload_all(struct radiosity *s, const struct content *c)
+static bool upload_all(struct radiosity *s, const struct content *c, const struct tensors *bake)
 {
     return upload_texels(s, c) &&
            radiosity_upload_factors(s, c->source, c->factor, c->cluster_source,
                                     c->cluster_factor) &&
            upload_neighbours(s, c) && upload_clusters(s, c) &&
-           radiosity_upload_owners(s, c->shown) && upload_seams(s, c) &&
-           radiosity_upload_triangles(s) && radiosity_view_init(s, c->point, c->shown);
+           light_map_upload(&s->light_map, s->followed.count, c->shown, bake) &&
+           radiosity_view_init(s, c->point, c->shown);
 }
 
 bool radiosity_upload(struct radiosity *s, const struct tensors *bake)
@@ -354,14 +301,12 @@ bool radiosity_upload(struct radiosity *s, const struct tensors *bake)
     if (!find_tensors(s, bake, &c)) return false;
     if (s->map.texel_count == 0) return true;
     if (!divide(s, &c) || !check_sources(s, &c) || !check_factors(s, &c)) return false;
-    if (!find_seams(s, bake, &c)) return false;
     c.hidden = host_alloc(s->host, s->map.texel_count, sizeof *c.hidden);
     for (uint32_t i = 0; c.hidden && i < s->map.texel_count; i++)
         c.hidden[i] = !(c.point[4 * (size_t)i + 3] > 0.0f);
     if (c.hidden) c.shown = charts_fill(&s->map.charts, c.hidden);
-    const bool ok = c.shown && upload_all(s, &c);
+    const bool ok = c.shown && upload_all(s, &c, bake);
     host_free(s->host, c.hidden);
     host_free(s->host, c.shown);
-    charts_seams_finish(&c.seams);
     return ok;
 }

@@ -3,8 +3,6 @@
 
 #include <string.h>
 
-#include "technique_shaders.h"
-
 const struct technique_debug_view radiosity_views[] = {
     { "charts", "a colour for each chart of the light map", NULL },
     { "texels", "a checkerboard of the light map's texels", NULL },
@@ -21,16 +19,6 @@ static uint32_t state_of(const struct chart_texel *texel, const float point[4])
     return memcmp(texel->position.raw, point, sizeof texel->position.raw) == 0
                ? RADIOSITY_SAMPLED_IN_MIDDLE
                : RADIOSITY_SAMPLED_BESIDE;
-}
-
-bool radiosity_buffer_upload(struct radiosity *s, const char *name, void *items, size_t bytes,
-                             gpu_buffer *out)
-{
-    const struct gpu_buffer_desc desc = { name, bytes, GPU_BUFFER_STORAGE };
-    const bool ok = items && gpu_buffer_create(s->gpu, &desc, out) &&
-                    gpu_buffer_upload(s->gpu, *out, 0, items, bytes);
-    host_free(s->host, items);
-    return ok;
 }
 
 static struct radiosity_gpu_label label_of(const struct radiosity *s, const float *points,
@@ -56,7 +44,8 @@ bool radiosity_view_init(struct radiosity *s, const float *points, const uint32_
                         ? (struct radiosity_gpu_label){ .state = RADIOSITY_NO_TEXEL }
                         : label_of(s, points, shown[texel], i);
     }
-    return radiosity_buffer_upload(s, "labels", labels, places * sizeof *labels, &s->tables.labels);
+    return light_map_buffer_upload(s->host, s->gpu, "labels", labels, places * sizeof *labels,
+                                   &s->tables.labels);
 }
 
 static uint32_t number_of(const char *name)
@@ -70,7 +59,7 @@ void radiosity_view_record(struct radiosity *s, struct gpu_cmd *cmd, const struc
                            const char *name, gpu_image out)
 {
     const gpu_image *layers = view->layers;
-    const struct radiosity_view_push push = { light_map_instances(&s->tables.surfaces),
+    const struct radiosity_view_push push = { light_map_instances(&s->light_map.surfaces),
                                               s->map.charts.width, s->map.charts.height,
                                               number_of(name) };
     gpu_scope_begin(cmd, "view");
@@ -79,7 +68,7 @@ void radiosity_view_record(struct radiosity *s, struct gpu_cmd *cmd, const struc
                           { .name = "depth", .image = layers[FRAME_DEPTH] },
                           { .name = "normal", .image = layers[FRAME_NORMAL] },
                           { .name = "id", .image = layers[FRAME_ID] },
-                          LIGHT_MAP_SURFACE_BINDINGS(&s->tables.surfaces, cmd),
+                          LIGHT_MAP_SURFACE_BINDINGS(&s->light_map.surfaces, cmd),
                           { .name = "radiosity_labels", .buffer = s->tables.labels },
                           { .name = "target", .image = out }),
                  &push, sizeof push, gpu_groups(view->width, RADIOSITY_LOCAL_2D),

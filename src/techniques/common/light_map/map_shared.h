@@ -4,7 +4,40 @@
 
 #include "core/shared.h"
 
+#include "techniques/common/light_map/surface_shared.h"
+
+#define LIGHT_MAP_LOCAL 64 // workgroup size over texels and places
+
 // Tables are images of this width (table.h).
 #define LIGHT_MAP_TABLE_WIDTH 4096u
+
+// Entries of a sum of texels side by side in a texel of its table: (texel, weight).
+#define LIGHT_MAP_PAIR 2
+
+// Passes over rows `first` … `first` + `count` − 1. texels: of the light.
+struct light_map_show_push {
+    uint32_t first, count, texels;
+};
+
+struct light_map_seams_push {
+    uint32_t first, count, places, pairs, texels; // pairs: of a row
+};
+
+struct light_map_apply_push {
+    float per_width, per_height;           // 1 / size of the light map
+    float per_view_width, per_view_height; // 1 / size of the view
+    AG_STRUCT(light_map_instances) instances;
+};
+
+// Specialization constants: the size of a workgroup in pixels; whether there is FRAME_DIELECTRIC.
+#define LIGHT_MAP_APPLY_WIDTH      0
+#define LIGHT_MAP_APPLY_HEIGHT     1
+#define LIGHT_MAP_APPLY_DIELECTRIC 2
+
+#ifndef AG_GLSL
+_Static_assert(sizeof(struct light_map_show_push) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct light_map_seams_push) == 20, "layout is shared with GLSL");
+_Static_assert(sizeof(struct light_map_apply_push) == 24, "layout is shared with GLSL");
+#endif
 
 #endif

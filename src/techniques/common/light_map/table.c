@@ -42,3 +42,13 @@ bool light_map_table_upload(struct host *host, struct gpu *gpu, const char *name
     host_free(host, entries);
     return ok;
 }
+
+bool light_map_buffer_upload(struct host *host, struct gpu *gpu, const char *name, void *items,
+                             size_t bytes, gpu_buffer *out)
+{
+    const struct gpu_buffer_desc desc = { name, bytes, GPU_BUFFER_STORAGE };
+    const bool ok = items && gpu_buffer_create(gpu, &desc, out) &&
+                    gpu_buffer_upload(gpu, *out, 0, items, bytes);
+    host_free(host, items);
+    return ok;
+}

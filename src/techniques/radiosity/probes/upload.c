@@ -54,7 +54,7 @@ static bool upload_table(struct radiosity *s, const struct content *c)
         memcpy(table[i].emitted, c->emitted + 3 * SH * (size_t)c->owner[i],
                sizeof table[i].emitted);
     }
-    return radiosity_buffer_upload(s, "probe_table", table, count * sizeof *table,
+    return light_map_buffer_upload(s->host, s->gpu, "probe_table", table, count * sizeof *table,
                                    &s->probes.table);
 }
 
@@ -72,8 +72,8 @@ static bool upload_factors(struct radiosity *s, const struct content *c)
             word[1] = factor[0] | (uint32_t)factor[1] << 16;
             word[2] = factor[2] | (uint32_t)factor[3] << 16;
         }
-    return radiosity_buffer_upload(s, "probe_factors", words, count * entries * sizeof *words,
-                                   &s->probes.factors);
+    return light_map_buffer_upload(s->host, s->gpu, "probe_factors", words,
+                                   count * entries * sizeof *words, &s->probes.factors);
 }
 
 bool radiosity_probes_upload(struct radiosity *s, const struct tensors *bake)

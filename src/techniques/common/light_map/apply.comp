@@ -17,17 +17,17 @@
 #include "core/half.glsl"
 #include "techniques/common/light_map/lookup.glsl"
 #include "techniques/common/light_map/surface.glsl"
-#include "techniques/radiosity/radiosity_shared.h"
+#include "techniques/common/light_map/map_shared.h"
 
 // A processor's caches fetch the next lines of memory ahead: there, a workgroup is a row of pixels.
-layout(local_size_x_id = RADIOSITY_APPLY_WIDTH, local_size_y_id = RADIOSITY_APPLY_HEIGHT) in;
-layout(constant_id = RADIOSITY_APPLY_DIELECTRIC) const bool HAS_DIELECTRIC = false;
+layout(local_size_x_id = LIGHT_MAP_APPLY_WIDTH, local_size_y_id = LIGHT_MAP_APPLY_HEIGHT) in;
+layout(constant_id = LIGHT_MAP_APPLY_DIELECTRIC) const bool HAS_DIELECTRIC = false;
 
 layout(push_constant, scalar) uniform push_block
 {
-    radiosity_apply_push push_of_all;
+    light_map_apply_push push_of_all;
 };
-radiosity_apply_push push; // a copy, as FRAME_CONSTANTS_COPIED
+light_map_apply_push push; // a copy, as FRAME_CONSTANTS_COPIED
 layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2) uniform sampler2D normal;
 layout(set = 0, binding = 3) uniform usampler2D id; // FRAME_ID

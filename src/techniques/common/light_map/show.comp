@@ -6,22 +6,21 @@
 #include "techniques/common/light_map/place.glsl"
 #define TEXEL_LIGHT_BINDING 1
 #include "techniques/common/light_map/table.glsl"
-#include "techniques/radiosity/radiosity_shared.h"
 
-layout(local_size_x = RADIOSITY_LOCAL) in;
+layout(local_size_x = LIGHT_MAP_LOCAL) in;
 
 layout(push_constant, scalar) uniform push_block
 {
-    radiosity_map_push push;
+    light_map_show_push push;
 };
-layout(set = 0, binding = 0) uniform usampler2D radiosity_owners; // places and their owners
+layout(set = 0, binding = 0) uniform usampler2D light_map_owners; // places and their owners
 layout(set = 0, binding = 2, rgba16f) uniform writeonly image2DArray light_map;
 
 void main()
 {
     if (gl_GlobalInvocationID.x >= push.count) return;
     uint i = push.first + gl_GlobalInvocationID.x;
-    uvec2 owner = texelFetch(radiosity_owners, light_map_at(i), 0).xy;
+    uvec2 owner = texelFetch(light_map_owners, light_map_at(i), 0).xy;
     uvec3 at = light_map_place(owner.x);
     for (int c = 0; c < 3; c++)
         imageStore(light_map, ivec3(at.xy, LIGHT_MAP_LAYERS * at.z + c),

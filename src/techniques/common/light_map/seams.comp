@@ -7,17 +7,16 @@
 #include "techniques/common/light_map/place.glsl"
 #define TEXEL_LIGHT_BINDING 2
 #include "techniques/common/light_map/table.glsl"
-#include "techniques/radiosity/radiosity_shared.h"
 
-layout(local_size_x = RADIOSITY_LOCAL) in;
+layout(local_size_x = LIGHT_MAP_LOCAL) in;
 
 layout(push_constant, scalar) uniform push_block
 {
-    radiosity_seams_push push;
+    light_map_seams_push push;
 };
-layout(set = 0, binding = 0) uniform usampler2D radiosity_places;
+layout(set = 0, binding = 0) uniform usampler2D light_map_seam_places;
 // [pair][place]: texels and weights; zeros at the end.
-layout(set = 0, binding = 1, rgba32ui) uniform readonly uimage2D radiosity_seam_rows;
+layout(set = 0, binding = 1, rgba32ui) uniform readonly uimage2D light_map_seam_rows;
 layout(set = 0, binding = 3, rgba16f) uniform writeonly image2DArray light_map;
 
 void main()
@@ -26,7 +25,7 @@ void main()
     uint i = push.first + gl_GlobalInvocationID.x;
     vec4 light[3] = vec4[](vec4(0.0), vec4(0.0), vec4(0.0));
     for (uint k = 0; k < push.pairs; k++) {
-        uvec4 pair = imageLoad(radiosity_seam_rows, light_map_at(k * push.places + i));
+        uvec4 pair = imageLoad(light_map_seam_rows, light_map_at(k * push.places + i));
         vec2 weight = uintBitsToFloat(pair.yw);
         if (weight.x == 0.0) break;
         for (int c = 0; c < 3; c++) {
@@ -34,7 +33,7 @@ void main()
             light[c] += weight.y * texel_light_of(pair.z, push.texels, c);
         }
     }
-    uvec3 at = light_map_place(texelFetch(radiosity_places, light_map_at(i), 0).x);
+    uvec3 at = light_map_place(texelFetch(light_map_seam_places, light_map_at(i), 0).x);
     for (int c = 0; c < 3; c++)
         imageStore(light_map, ivec3(at.xy, LIGHT_MAP_LAYERS * at.z + c),
                    clamp(light[c], -HALF_MAX, HALF_MAX));

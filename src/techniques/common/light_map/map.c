@@ -1,0 +1,227 @@
+#include "techniques/common/light_map/map.h"
+
+#include "bake/tensors.h"
+#include "frame/frame.h"
+#include "techniques/common/light_map/tensors.h"
+
+#include "technique_shaders.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+void light_map_init(struct light_map *out, struct host *host, struct gpu *gpu,
+                    const struct charts *charts)
+{
+    enum { LOCAL_2D = 8 };
+    // Rows of pixels suit the caches of a processor, squares those of a GPU.
+    const bool rows = gpu_info(gpu)->type == GPU_CPU;
+    *out = (struct light_map){ .host = host,
+                               .gpu = gpu,
+                               .charts = charts,
+                               .apply_width = rows ? 64 : LOCAL_2D,
+                               .apply_height = rows ? 1 : LOCAL_2D };
+}
+
+#define MEMBER(thing) offsetof(struct light_map, thing)
+
+static void list_pipelines(const struct light_map *map, size_t base, bool specular,
+                           struct gpu_objects *out)
+{
+    const struct gpu_constant constants[LIGHT_MAP_CONSTANTS] = {
+        { LIGHT_MAP_APPLY_WIDTH, map->apply_width },
+        { LIGHT_MAP_APPLY_HEIGHT, map->apply_height },
+        { LIGHT_MAP_HAS_BACKS, charts_sides(map->charts) == 2 },
+        { LIGHT_MAP_APPLY_DIELECTRIC, 0 },
+        { LIGHT_MAP_APPLY_DIELECTRIC, 1 },
+        { LIGHT_MAP_HAS_MOVES, 0 }
+    };
+    const uint32_t still = 7u | 1u << 5, moved = 7u;
+    const struct gpu_shader *apply = specular ? &shader_common_light_map_apply_specular_comp
+                                              : &shader_common_light_map_apply_diffuse_comp;
+    memcpy(out->constants, constants, sizeof constants);
+#define PIPELINE(thing) #thing, MEMBER(thing)
+    GPU_ADD(out, base,
+            { GPU_PIPELINE, PIPELINE(show), .shader = &shader_common_light_map_show_comp },
+            { GPU_PIPELINE, PIPELINE(seams), .shader = &shader_common_light_map_seams_comp },
+            { GPU_PIPELINE, PIPELINE(apply[0][0]), .shader = apply, .consts = still | 1u << 3 },
+            { GPU_PIPELINE, PIPELINE(apply[0][1]), .shader = apply, .consts = still | 1u << 4 },
+            { GPU_PIPELINE, PIPELINE(apply[1][0]), .shader = apply, .consts = moved | 1u << 3 },
+            { GPU_PIPELINE, PIPELINE(apply[1][1]), .shader = apply, .consts = moved | 1u << 4 });
+}
+
+void light_map_list(const struct light_map *map, size_t base, bool specular,
+                    struct gpu_objects *out)
+{
+    GPU_ADD(out, base, { GPU_SAMPLER, "light_map", .member = MEMBER(linear) });
+    if (!map->charts || map->charts->side_texel_count == 0) return;
+    const struct gpu_image_desc image = light_map_image(map->charts, "light_map");
+    GPU_ADD(out, base, { GPU_IMAGE, "light_map", MEMBER(images[0]), .image = image },
+            { GPU_IMAGE, "light_map", MEMBER(images[1]), .image = image });
+    list_pipelines(map, base, specular, out);
+    // Created by light_map_upload.
+    GPU_ADD(out, base, { GPU_IMAGE, .member = MEMBER(owners) },
+            { GPU_IMAGE, .member = MEMBER(seam_places) },
+            { GPU_IMAGE, .member = MEMBER(seam_rows) },
+            { GPU_BUFFER, .member = MEMBER(surfaces.first) },
+            { GPU_BUFFER, .member = MEMBER(surfaces.triangles) });
+}
+
+// ---- tables
+
+struct pair {
+    uint32_t x, y;
+};
+
+// Places that show no texel are not in the table.
+static bool upload_owners(struct light_map *map, const uint32_t *shown)
+{
+    const size_t places = charts_place_count(map->charts);
+    struct pair *owners = host_alloc(map->host, light_map_table_room(places), sizeof *owners);
+    for (size_t i = 0; owners && i < places; i++) {
+        const uint32_t texel = chart_texel_of_place(map->charts, i);
+        if (texel == CHART_NONE) continue;
+        owners[map->owner_count++] =
+            (struct pair){ light_map_place_word(map->charts, i), shown[texel] };
+    }
+    return light_map_table_upload(map->host, map->gpu, "owners", GPU_RG32U, owners,
+                                  map->owner_count, &map->owners);
+}
+
+static bool upload_triangles(struct light_map *map, uint32_t instances)
+{
+    const struct charts *charts = map->charts;
+    const size_t count = charts->triangle_0[instances];
+    struct light_map_triangle *triangles = host_alloc(map->host, count, sizeof *triangles);
+    uint32_t *first = host_alloc(map->host, (size_t)instances + 1, sizeof *first);
+    if (triangles) light_map_fill_triangles(charts, charts->chart_triangle, count, triangles);
+    for (uint32_t i = 0; first && i <= instances; i++) first[i] = (uint32_t)charts->triangle_0[i];
+    map->surfaces.count = instances;
+    const bool ok = light_map_buffer_upload(map->host, map->gpu, "triangles", triangles,
+                                            count * sizeof *triangles, &map->surfaces.triangles);
+    return light_map_buffer_upload(map->host, map->gpu, "first_triangles", first,
+                                   ((size_t)instances + 1) * sizeof *first, &map->surfaces.first) &&
+           ok;
+}
+
+// Rows of the places beside seams, which the charts have.
+struct rows {
+    const uint32_t *texel;
+    const float *weight;
+};
+
+static bool find_rows(const struct light_map *map, const struct tensors *bake, uint32_t places,
+                      struct rows *out)
+{
+    const uint64_t shape[2] = { light_map_rows(places), CHART_SEAM_ENTRIES };
+    out->texel = tensors_expect(map->host, bake, LIGHT_MAP_SEAM_TEXEL, TENSOR_U32, 2, shape);
+    out->weight = tensors_expect(map->host, bake, LIGHT_MAP_SEAM_WEIGHT, TENSOR_F32, 2, shape);
+    if (!out->texel || !out->weight) return false;
+    for (size_t i = 0; i < (size_t)places * CHART_SEAM_ENTRIES; i++)
+        if (out->texel[i] >= map->charts->side_texel_count || !isfinite(out->weight[i]))
+            return host_fail(map->host, FAIL_FORMAT, "bake of a light map: texel %u of a seam",
+                             out->texel[i]);
+    return true;
+}
+
+static bool upload_rows(struct light_map *map, const struct rows *from, const uint32_t *shown)
+{
+    const size_t places = map->seam_count, entries = CHART_SEAM_ENTRIES;
+    const size_t count = places * entries / LIGHT_MAP_PAIR;
+    struct chart_share *rows =
+        host_alloc(map->host, light_map_table_room(count), LIGHT_MAP_PAIR * sizeof *rows);
+    for (size_t i = 0; rows && i < places * entries; i++)
+        *light_map_share_at(rows, places, i / entries, i % entries) =
+            (struct chart_share){ shown[from->texel[i]], from->weight[i] };
+    return light_map_table_upload(map->host, map->gpu, "seams", GPU_RGBA32U, rows, count,
+                                  &map->seam_rows);
+}
+
+static bool upload_places(struct light_map *map, const struct chart_seams *seams)
+{
+    const size_t count = seams->count;
+    uint32_t *places = host_alloc(map->host, light_map_table_room(count), sizeof *places);
+    for (size_t i = 0; places && i < count; i++)
+        places[i] = light_map_place_word(map->charts, seams->places[i]);
+    map->seam_count = (uint32_t)count;
+    return light_map_table_upload(map->host, map->gpu, "places", GPU_R32U, places, count,
+                                  &map->seam_places);
+}
+
+bool light_map_upload(struct light_map *map, uint32_t instances, const uint32_t *shown,
+                      const struct tensors *bake)
+{
+    struct chart_seams seams;
+    struct rows rows;
+    if (!charts_seams_init(&seams, map->charts, CHART_SEAM_POINTS)) return false;
+    const bool ok = find_rows(map, bake, seams.count, &rows) && upload_owners(map, shown) &&
+                    upload_places(map, &seams) && upload_rows(map, &rows, shown) &&
+                    upload_triangles(map, instances);
+    charts_seams_finish(&seams);
+    return ok;
+}
+
+// Charts fill the map by two thirds, with a triangle for each texel.
+uint64_t light_map_bytes(uint64_t texels)
+{
+    const uint64_t places = texels * 3 / 2;
+    return texels * sizeof(struct light_map_triangle) + light_map_table_bytes(1, 16) +
+           light_map_table_bytes(1, 4) + light_map_table_bytes(places, 8) +
+           2 * 8 * LIGHT_MAP_LAYERS * places;
+}
+
+// ---- passes
+
+void light_map_record_show(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
+                           uint32_t first, uint32_t count)
+{
+    const struct light_map_show_push push = { first, count, map->charts->side_texel_count };
+    gpu_dispatch(cmd, map->show,
+                 GPU_BIND({ .name = "light_map_owners", .image = map->owners },
+                          { .name = "texel_light", .image = light },
+                          { .name = "light_map", .image = map->images[1 - map->shown] }),
+                 &push, sizeof push, gpu_groups(count, LIGHT_MAP_LOCAL), 1, 1);
+}
+
+void light_map_record_seams(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
+                            uint32_t first, uint32_t count)
+{
+    const struct light_map_seams_push push = { first, count, map->seam_count,
+                                               CHART_SEAM_ENTRIES / LIGHT_MAP_PAIR,
+                                               map->charts->side_texel_count };
+    gpu_dispatch(cmd, map->seams,
+                 GPU_BIND({ .name = "light_map_seam_places", .image = map->seam_places },
+                          { .name = "light_map_seam_rows", .image = map->seam_rows },
+                          { .name = "texel_light", .image = light },
+                          { .name = "light_map", .image = map->images[1 - map->shown] }),
+                 &push, sizeof push, gpu_groups(count, LIGHT_MAP_LOCAL), 1, 1);
+}
+
+void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
+                            const struct frame_view *view)
+{
+    const gpu_image *layers = view->layers;
+    const gpu_image dielectric = layers[FRAME_DIELECTRIC];
+    const struct light_map_apply_push push = {
+        1.0f / (float)map->charts->width, 1.0f / (float)map->charts->height,
+        1.0f / (float)view->width, 1.0f / (float)view->height, light_map_instances(&map->surfaces)
+    };
+    gpu_scope_begin(cmd, "apply");
+    gpu_dispatch(
+        cmd, map->apply[map->surfaces.moves != NULL][dielectric.id != 0],
+        GPU_BIND(
+            view->constants_binding, view->ggx_albedo_binding,
+            { .name = "depth", .image = layers[FRAME_DEPTH] },
+            { .name = "normal", .image = layers[FRAME_NORMAL] },
+            { .name = "albedo", .image = layers[FRAME_ALBEDO] },
+            { .name = "material", .image = layers[FRAME_MATERIAL] },
+            { .name = "dielectric", .image = dielectric.id ? dielectric : layers[FRAME_MATERIAL] },
+            { .name = "id", .image = layers[FRAME_ID] },
+            LIGHT_MAP_SURFACE_BINDINGS(&map->surfaces, cmd),
+            { .name = "light_map", .image = map->images[map->shown], .sampler = map->linear },
+            { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
+            { .name = "specular", .image = layers[FRAME_SPECULAR] }),
+        &push, sizeof push, gpu_groups(view->width, map->apply_width),
+        gpu_groups(view->height, map->apply_height), 1);
+    gpu_scope_end(cmd);
+}

@@ -1,0 +1,50 @@
+// A light map on the GPU, from the light of texels (table.glsl) to pixels: places show the light of
+// texels, those beside seams weighted sums, and pixels look it up.
+#pragma once
+
+#include "techniques/common/light_map/surface.h"
+#include "techniques/common/light_map/table.h"
+
+struct frame_view;
+struct tensors;
+
+struct light_map {
+    struct host *host;
+    struct gpu *gpu;
+    const struct charts *charts; // stay where they are
+    struct light_map_surfaces surfaces;
+    gpu_image owners;                 // places and the texels whose light they show
+    gpu_image seam_places, seam_rows; // places beside seams and their sums
+    uint32_t owner_count, seam_count; // of places
+    gpu_image images[2];              // a map appears whole: one is shown, the other is written
+    int shown;                        // of the images
+    gpu_sampler linear;
+    gpu_pipeline show, seams;
+    gpu_pipeline apply[2][2];           // [with moves][whether there is FRAME_DIELECTRIC]
+    uint32_t apply_width, apply_height; // of their workgroups
+};
+
+// charts: may be empty yet; made before the other functions are called.
+void light_map_init(struct light_map *out, struct host *host, struct gpu *gpu,
+                    const struct charts *charts);
+// Adds the objects of a map at this offset of the state, none of an empty scene but the sampler.
+// The constants 0 … LIGHT_MAP_CONSTANTS − 1 of the table are the map's.
+enum { LIGHT_MAP_CONSTANTS = 6 };
+void light_map_list(const struct light_map *map, size_t base, bool specular,
+                    struct gpu_objects *out);
+// Tables of the charts and of the seams of a bake, which is untrusted. instances: of the scene.
+// shown: [side_texel_count] whose light each texel shows (charts_fill).
+bool light_map_upload(struct light_map *map, uint32_t instances, const uint32_t *shown,
+                      const struct tensors *bake);
+// About, with so many texels on one side.
+uint64_t light_map_bytes(uint64_t texels);
+
+// Rows first … first + count − 1, of owner_count and seam_count, of the map that is not shown.
+// light: [colour][texel]. The seams overwrite what their places show.
+void light_map_record_show(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
+                           uint32_t first, uint32_t count);
+void light_map_record_seams(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
+                            uint32_t first, uint32_t count);
+// Irradiance and specular light of a view's pixels, from the map that is shown. Needs FRAME_ID.
+void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
+                            const struct frame_view *view);
