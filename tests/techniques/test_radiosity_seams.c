@@ -56,7 +56,7 @@ static float *light_of(const struct baked *b, const struct chart_seams *seams,
                        const struct chart_seams *closed)
 {
     enum { ENTRIES = CHART_SEAM_ENTRIES };
-    const float *sky = data_of(b, RADIOSITY_SKY), *weight = data_of(b, LIGHT_MAP_SEAM_WEIGHT);
+    const float *sky = data_of(b, LIGHT_MAP_SKY), *weight = data_of(b, LIGHT_MAP_SEAM_WEIGHT);
     const uint32_t *texel = data_of(b, LIGHT_MAP_SEAM_TEXEL);
     const size_t all = 2 * (size_t)b->map.charts.width * b->map.charts.height;
     float *map = host_alloc(test_host(), all, sizeof *map);
@@ -80,7 +80,7 @@ struct difference {
 
 static double mean_irradiance(const struct baked *b)
 {
-    const float *sky = data_of(b, RADIOSITY_SKY);
+    const float *sky = data_of(b, LIGHT_MAP_SKY);
     double sum = 0.0, area = 0.0;
     for (uint32_t i = 0; i < b->map.texel_count; i++) {
         const double a = (double)chart_texel_of(&b->map.charts, i)->area_m2;

@@ -33,9 +33,10 @@ static bool create(void *state, const struct technique_create *how)
     light_map_init(&s->light_map, s->host, s->gpu, &s->map.charts);
     if (!how->pose) return true;
     struct scene_statics statics;
-    const bool ok = scene_statics_init(&statics, s->host, how->pose) &&
-                    radiosity_followed_init(&s->followed, s->host, how->pose, &statics) &&
-                    radiosity_map_init(&s->map, s->host, &statics.pose, &s->options);
+    const bool ok =
+        scene_statics_init(&statics, s->host, how->pose) &&
+        light_map_followed_init(&s->followed, s->host, "radiosity", how->pose, &statics) &&
+        radiosity_map_init(&s->map, s->host, &statics.pose, &s->options);
     scene_statics_finish(&statics);
     return ok;
 }
@@ -123,7 +124,7 @@ static void follow(void *state, const struct scene_pose *pose, bool wait)
 {
     struct radiosity *s = state;
     (void)wait;
-    radiosity_followed_update(&s->followed, pose);
+    light_map_followed_update(&s->followed, pose);
     s->light_map.surfaces.moves = s->followed.any_moved ? s->followed.places.moves : NULL;
 }
 
@@ -197,7 +198,7 @@ static void destroy(void *state)
     gpu_objects_destroy(s->gpu, &objects, s);
     radiosity_destroy_rows(s, &s->tables.factors);
     radiosity_destroy_rows(s, &s->tables.cluster_factors);
-    radiosity_followed_finish(&s->followed);
+    light_map_followed_finish(&s->followed);
     radiosity_map_finish(&s->map);
 }
 
@@ -223,8 +224,7 @@ static uint64_t memory_estimate(const void *options)
     const uint64_t clusters = texels / (uint64_t)(o->cluster * o->cluster) + 1;
     const uint64_t nodes = 2 * clusters, sources = (uint64_t)o->sources;
     const uint64_t of_texels =
-        light_map_table_bytes(RADIOSITY_TEXEL_PARTS * texels, 16) +
-        rows_bytes(texels, 8 * sources) +
+        light_map_table_bytes(TEXEL_PARTS * texels, 16) + rows_bytes(texels, 8 * sources) +
         light_map_table_bytes(RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR * texels, 16) +
         light_map_table_bytes(texels, 16) + 2 * light_map_table_bytes(3 * texels, 8) +
         places * sizeof(struct radiosity_gpu_label);

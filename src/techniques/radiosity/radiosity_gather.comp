@@ -4,11 +4,10 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#define RADIOSITY_TEXELS_BINDING 1
+#define LIGHT_MAP_TEXELS_BINDING 1
 #include "core/basis.glsl"
-#include "frame/environment.glsl"
 #include "techniques/radiosity/radiosity_row.glsl"
-#include "techniques/radiosity/radiosity_texels.glsl"
+#include "techniques/common/light_map/texels.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
 
@@ -40,13 +39,13 @@ void add_entry(uvec2 word)
 }
 
 // Of clusters, the sky and emissive surfaces.
-void store_light(uint texel, float emitters)
+void store_light(uint texel)
 {
-    mat3 basis = basis_of(radiosity_texel_part(texel, push.texels, RADIOSITY_NORMAL).xyz);
+    mat3 basis = basis_of(light_map_texel_part(texel, push.texels, TEXEL_NORMAL).xyz);
     for (int c = 0; c < 3; c++) {
         vec4 light = vec4(sum.irradiance[c], sum.irradiance[c] * basis[2] + sum.by_u[c] * basis[0] +
                                                  sum.by_v[c] * basis[1]) +
-                     radiosity_unbounced(texel, push.texels, c, environment_mean(), emitters);
+                     light_map_unbounced(texel, push.texels, c, push.emitters);
         imageStore(texel_light, light_map_at(c * push.texels + texel),
                    uvec4(light_map_pack(light), 0u, 0u));
     }
@@ -64,5 +63,5 @@ void main()
         add_entry(pair.zw);
     }
     uint i = texelFetch(radiosity_order, light_map_at(row), 0).x;
-    store_light(i, push.emitters * frame.radiance_scale);
+    store_light(i);
 }

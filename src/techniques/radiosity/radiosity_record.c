@@ -14,7 +14,7 @@ static void record_direct(struct radiosity *s, struct gpu_cmd *cmd, const struct
                                                 s->options.emitters ? 1.0f : 0.0f };
     gpu_dispatch(cmd, s->pipelines.direct,
                  GPU_BIND(FRAME_LIGHT_BINDINGS(view),
-                          { .name = "radiosity_texels", .image = s->tables.texels },
+                          { .name = "light_map_texels", .image = s->tables.texels },
                           { .name = "radiosity_flux", .image = s->tables.flux }),
                  &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
@@ -100,7 +100,7 @@ static void record_gather_of(struct radiosity *s, struct gpu_cmd *cmd,
                                                 s->options.emitters ? 1.0f : 0.0f };
     gpu_dispatch(cmd, s->pipelines.gather,
                  GPU_BIND(view->constants_binding,
-                          { .name = "radiosity_texels", .image = s->tables.texels },
+                          { .name = "light_map_texels", .image = s->tables.texels },
                           { .name = "radiosity_order", .image = s->tables.factors.order },
                           { .name = "radiosity_tiles", .image = s->tables.factors.tiles },
                           { .name = "radiosity_factors", .image = block->table },

@@ -13,14 +13,6 @@
 // upper two bits are zero: it is below 2.
 #define RADIOSITY_NODE_BITS 18
 
-// Of a texel in the table of texels: entry part · texels + texel.
-#define RADIOSITY_POSITION    0 // world; w: area, m²; 0: hidden inside of something
-#define RADIOSITY_NORMAL      1 // unit, of its side
-#define RADIOSITY_REFLECTANCE 2 // w: mean cosine between shading normals and the normal
-#define RADIOSITY_SKY_LIGHT   3 // irradiance along the normal, vector irradiance: radiance 1
-#define RADIOSITY_EMITTED_0   4 // the same by colour, lux
-#define RADIOSITY_TEXEL_PARTS 7
-
 // Clusters of a group: their number is above the first one.
 #define RADIOSITY_GROUP_SHIFT RADIOSITY_NODE_BITS
 

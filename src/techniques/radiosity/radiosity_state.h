@@ -4,7 +4,8 @@
 #include "techniques/common/kept.h"
 #include "techniques/radiosity/probes/probes.h"
 #include "techniques/common/light_map/map.h"
-#include "techniques/radiosity/radiosity_follow.h"
+#include "techniques/common/light_map/texels.h"
+#include "techniques/common/light_map/follow.h"
 #include "techniques/radiosity/radiosity_shared.h"
 #include "techniques/radiosity/radiosity_tensors.h"
 
@@ -74,7 +75,7 @@ struct radiosity {
     struct radiosity_pipelines pipelines;
     struct radiosity_update update;
     struct radiosity_probes probes;
-    struct radiosity_followed followed;
+    struct light_map_followed followed;
     struct kept kept;
 };
 

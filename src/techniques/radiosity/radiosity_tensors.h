@@ -8,12 +8,8 @@
 #include "techniques/radiosity/radiosity_map.h"
 #include "techniques/technique.h"
 
-#define RADIOSITY_SOURCE         "texels/source"      // U32 [texels][sources]: nodes of the tree
-#define RADIOSITY_FACTOR         "texels/factor"      // F16 [texels][sources][3]
-#define RADIOSITY_ALBEDO         "texels/reflectance" // F32 [texels][4]
-#define RADIOSITY_SKY            "texels/sky"         // F32 [texels][4]
-#define RADIOSITY_EMITTED        "texels/emitted"     // F32 [texels][3][4]
-#define RADIOSITY_POINT          "texels/point"       // F32 [texels][4]
+#define RADIOSITY_SOURCE         "texels/source" // U32 [texels][sources]: nodes of the tree
+#define RADIOSITY_FACTOR         "texels/factor" // F16 [texels][sources][3]
 #define RADIOSITY_DISTANCE       "texels/inverse_distance" // F32 [texels]
 #define RADIOSITY_PART           "texels/part"             // U8 [texels]
 #define RADIOSITY_CLUSTER_SOURCE "clusters/source"         // U32 [clusters][2 · sources]

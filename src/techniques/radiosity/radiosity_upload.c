@@ -10,10 +10,10 @@ struct content {
     const uint32_t *source, *cluster_source;
     const uint16_t *factor, *cluster_factor;
     const uint8_t *part;
-    const float *reflectance, *sky, *emitted, *point, *inverse_distance;
+    struct light_map_texels texels;
+    const float *inverse_distance;
     uint32_t *shown; // [texels] whose light each one shows
     size_t sources, cluster_sources;
-    bool *hidden;
 };
 
 static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct content *out)
@@ -29,12 +29,9 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
     *out = (struct content){ .sources = k, .cluster_sources = 2 * k };
     return (out->source = EXPECT(RADIOSITY_SOURCE, TENSOR_U32, n, k)) &&
            (out->factor = EXPECT(RADIOSITY_FACTOR, TENSOR_F16, n, k, 3)) &&
-           (out->reflectance = EXPECT(RADIOSITY_ALBEDO, TENSOR_F32, n, 4)) &&
-           (out->sky = EXPECT(RADIOSITY_SKY, TENSOR_F32, n, 4)) &&
-           (out->emitted = EXPECT(RADIOSITY_EMITTED, TENSOR_F32, n, 3, 4)) &&
            (out->part = EXPECT(RADIOSITY_PART, TENSOR_U8, n)) &&
            (out->inverse_distance = EXPECT(RADIOSITY_DISTANCE, TENSOR_F32, n)) &&
-           (out->point = EXPECT(RADIOSITY_POINT, TENSOR_F32, n, 4)) &&
+           light_map_find_texels(&out->texels, host, &s->map.charts, bake) &&
            (out->cluster_source = EXPECT(RADIOSITY_CLUSTER_SOURCE, TENSOR_U32, c, 2 * k)) &&
            (out->cluster_factor = EXPECT(RADIOSITY_CLUSTER_FACTOR, TENSOR_F16, c, 2 * k));
 #undef EXPECT
@@ -85,41 +82,12 @@ static bool check_sources(struct radiosity *s, const struct content *c)
 
 // ---- texels
 
-static float area_of(const struct radiosity *s, const struct content *c, uint32_t texel)
-{
-    return c->point[4 * (size_t)texel + 3] * chart_texel_of(&s->map.charts, texel)->area_m2;
-}
-
-static void fill_texel(const struct radiosity *s, const struct content *c, uint32_t i, vec4s *parts)
-{
-    const size_t count = s->map.texel_count;
-    const float *point = c->point + 4 * (size_t)i, *reflectance = c->reflectance + 4 * (size_t)i;
-    parts[RADIOSITY_POSITION * count + i] =
-        vec4_of(vec3_of(point[0], point[1], point[2]), area_of(s, c, i));
-    parts[RADIOSITY_NORMAL * count + i] = vec4_of(chart_texel_normal(&s->map.charts, i), 0.0f);
-    parts[RADIOSITY_REFLECTANCE * count + i] =
-        vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), reflectance[3]);
-    memcpy(&parts[RADIOSITY_SKY_LIGHT * count + i], c->sky + 4 * (size_t)i, sizeof *parts);
-    for (size_t k = 0; k < 3; k++)
-        memcpy(&parts[(RADIOSITY_EMITTED_0 + k) * count + i], c->emitted + 12 * (size_t)i + 4 * k,
-               sizeof *parts);
-}
-
-static bool upload_texels(struct radiosity *s, const struct content *c)
-{
-    const size_t count = (size_t)s->map.texel_count * RADIOSITY_TEXEL_PARTS;
-    vec4s *parts = host_alloc(s->host, light_map_table_room(count), sizeof *parts);
-    for (uint32_t i = 0; parts && i < s->map.texel_count; i++) fill_texel(s, c, i, parts);
-    return light_map_table_upload(s->host, s->gpu, "texels", GPU_RGBA32F, parts, count,
-                                  &s->tables.texels);
-}
-
 // With R the harmonic mean of the distances of what a texel sees, irradiance at distance d differs
 // by about d/R (Ward, Rubinstein & Clear 1988, "A Ray Tracing Solution for Diffuse
 // Interreflection"): weights fall to 0 where that is 1/4.
 static float weight_of(const struct content *c, uint32_t a, uint32_t b)
 {
-    const float *p = c->point + 4 * (size_t)a, *q = c->point + 4 * (size_t)b;
+    const float *p = c->texels.point + 4 * (size_t)a, *q = c->texels.point + 4 * (size_t)b;
     const float distance = hypotf(hypotf(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
     const float per_m = fmaxf(c->inverse_distance[a], c->inverse_distance[b]);
     return fmaxf(1.0f - 4.0f * distance * per_m, 0.0f);
@@ -164,8 +132,8 @@ static vec4s cluster_of(const struct radiosity *s, const struct content *c, uint
     float sum = 0.0f;
     for (uint32_t m = map->first[cluster]; m < map->first[cluster + 1]; m++) {
         const uint32_t texel = map->members[m];
-        const float area = area_of(s, c, texel);
-        const float *reflectance = c->reflectance + 4 * (size_t)texel;
+        const float area = light_map_texel_area(&c->texels, texel);
+        const float *reflectance = c->texels.reflectance + 4 * (size_t)texel;
         sum += area;
         const float diffuse = 0.5f + 0.5f * reflectance[3]; // radiosity_direct.comp
         for (int k = 0; k < 3; k++) reflected.raw[k] += area * diffuse * reflectance[k];
@@ -287,12 +255,12 @@ static bool upload_clusters(struct radiosity *s, const struct content *c)
 
 static bool upload_all(struct radiosity *s, const struct content *c, const struct tensors *bake)
 {
-    return upload_texels(s, c) &&
+    return light_map_upload_texels(&c->texels, s->host, s->gpu, &s->tables.texels) &&
            radiosity_upload_factors(s, c->source, c->factor, c->cluster_source,
                                     c->cluster_factor) &&
            upload_neighbours(s, c) && upload_clusters(s, c) &&
            light_map_upload(&s->light_map, s->followed.count, c->shown, bake) &&
-           radiosity_view_init(s, c->point, c->shown);
+           radiosity_view_init(s, c->texels.point, c->shown);
 }
 
 bool radiosity_upload(struct radiosity *s, const struct tensors *bake)
@@ -301,12 +269,8 @@ bool radiosity_upload(struct radiosity *s, const struct tensors *bake)
     if (!find_tensors(s, bake, &c)) return false;
     if (s->map.texel_count == 0) return true;
     if (!divide(s, &c) || !check_sources(s, &c) || !check_factors(s, &c)) return false;
-    c.hidden = host_alloc(s->host, s->map.texel_count, sizeof *c.hidden);
-    for (uint32_t i = 0; c.hidden && i < s->map.texel_count; i++)
-        c.hidden[i] = !(c.point[4 * (size_t)i + 3] > 0.0f);
-    if (c.hidden) c.shown = charts_fill(&s->map.charts, c.hidden);
+    c.shown = light_map_shown(&c.texels, s->host);
     const bool ok = c.shown && upload_all(s, &c, bake);
-    host_free(s->host, c.hidden);
     host_free(s->host, c.shown);
     return ok;
 }

@@ -11,6 +11,14 @@
 // Tables are images of this width (table.h).
 #define LIGHT_MAP_TABLE_WIDTH 4096u
 
+// Parts of a texel in the table of texels: entry part · texels + texel.
+#define TEXEL_POSITION    0 // world; w: area, m²; 0: hidden inside of something
+#define TEXEL_NORMAL      1 // unit, of its side
+#define TEXEL_REFLECTANCE 2 // w: mean cosine between shading normals and the normal
+#define TEXEL_SKY_LIGHT   3 // irradiance along the normal, vector irradiance: radiance 1
+#define TEXEL_EMITTED_0   4 // the same by colour, lux
+#define TEXEL_PARTS       7
+
 // Entries of a sum of texels side by side in a texel of its table: (texel, weight).
 #define LIGHT_MAP_PAIR 2
 

@@ -144,10 +144,10 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
     const struct bake_output out[OUT_COUNT] = {
         { RADIOSITY_SOURCE, TENSOR_U32, 2, { texels, sources }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_FACTOR, TENSOR_F16, 3, { texels, sources, 3 }, BAKE_ROWS, BAKE_SAVED },
-        { RADIOSITY_ALBEDO, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
-        { RADIOSITY_SKY, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
-        { RADIOSITY_EMITTED, TENSOR_F32, 3, { texels, 3, 4 }, BAKE_ROWS, BAKE_SAVED },
-        { RADIOSITY_POINT, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_ALBEDO, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_SKY, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_EMITTED, TENSOR_F32, 3, { texels, 3, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_POINT, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_PART, TENSOR_U8, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_DISTANCE, TENSOR_F32, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
     };
@@ -258,7 +258,7 @@ static bool run_clusters(const struct bake_task *task)
     const struct job *job = task->job;
     const struct tensor *source = bake_task_input(task, RADIOSITY_SOURCE);
     const struct tensor *factor = bake_task_input(task, RADIOSITY_FACTOR);
-    const struct tensor *points = bake_task_input(task, RADIOSITY_POINT);
+    const struct tensor *points = bake_task_input(task, LIGHT_MAP_POINT);
     if (!source || !factor || !points) return false;
     const struct radiosity_map *map = &job->scene.map;
     const struct clusters of = { map,

@@ -1,9 +1,9 @@
-#include "techniques/radiosity/radiosity_follow.h"
+#include "techniques/common/light_map/follow.h"
 
 #include "core/hash.h"
 
 // In the bake.
-static bool is_static(const struct radiosity_followed *f, uint32_t i)
+static bool is_static(const struct light_map_followed *f, uint32_t i)
 {
     return i < f->count && f->places.at[i].mesh >= 0;
 }
@@ -15,11 +15,13 @@ static uint64_t deformed_hash(const struct scene_pose *pose, int i)
     return positions ? hash_bytes(positions, count * sizeof *positions, 0) : 0;
 }
 
-bool radiosity_followed_init(struct radiosity_followed *out, struct host *host,
-                             const struct scene_pose *pose, const struct scene_statics *statics)
+bool light_map_followed_init(struct light_map_followed *out, struct host *host,
+                             const char *technique, const struct scene_pose *pose,
+                             const struct scene_statics *statics)
 {
     const uint32_t count = (uint32_t)pose->scene->instance_count;
-    *out = (struct radiosity_followed){ .host = host,
+    *out = (struct light_map_followed){ .host = host,
+                                        .technique = technique,
                                         .count = count,
                                         .started = pose->scene->revisions.newest,
                                         .revision = UINT64_MAX };
@@ -27,35 +29,35 @@ bool radiosity_followed_init(struct radiosity_followed *out, struct host *host,
     if (!out->deformed || !light_map_places_init(&out->places, host, &statics->pose)) return false;
     for (uint32_t i = 0; i < count; i++)
         if (is_static(out, i)) out->deformed[i] = deformed_hash(pose, (int)i);
-    radiosity_followed_update(out, pose);
+    light_map_followed_update(out, pose);
     return true;
 }
 
-void radiosity_followed_finish(struct radiosity_followed *f)
+void light_map_followed_finish(struct light_map_followed *f)
 {
     if (!f->host) return;
     host_free(f->host, f->deformed);
     light_map_places_finish(&f->places, f->host);
-    *f = (struct radiosity_followed){ 0 };
+    *f = (struct light_map_followed){ 0 };
 }
 
 // ---- changes
 
 // Whether its triangles are those of the light map, wherever they are.
-static bool has_map(const struct radiosity_followed *f, const struct scene_pose *pose, uint32_t i)
+static bool has_map(const struct light_map_followed *f, const struct scene_pose *pose, uint32_t i)
 {
     if (light_map_is_gone(&f->places, (int)i)) return false;
     return scene_mesh_of(pose->scene, (int)i)->revision <= f->started &&
            deformed_hash(pose, (int)i) == f->deformed[i];
 }
 
-static void say(struct radiosity_followed *f, bool *said, const char *what)
+static void say(struct light_map_followed *f, bool *said, const char *what)
 {
-    if (!*said) host_log(f->host, LOG_WARNING, "radiosity: %s", what);
+    if (!*said) host_log(f->host, LOG_WARNING, "%s: %s", f->technique, what);
     *said = true;
 }
 
-static void check_static(struct radiosity_followed *f, const struct scene_pose *pose, uint32_t i)
+static void check_static(struct light_map_followed *f, const struct scene_pose *pose, uint32_t i)
 {
     const bool mapped = has_map(f, pose, i);
     if (!mapped) {
@@ -65,8 +67,8 @@ static void check_static(struct radiosity_followed *f, const struct scene_pose *
     }
     if (!mapped || f->places.at[i].moved)
         say(f, &f->said_moved,
-            "static geometry changed: what moved keeps the light of the bake, probes light the "
-            "rest, but the light that both block and reflect stays; mark as movable what moves");
+            "static geometry changed: what moved keeps the light of the bake, and the light that "
+            "it blocks and reflects stays; mark as movable what moves");
     else if (pose->scene->materials[scene_mesh_of(pose->scene, (int)i)->material].revision >
              f->started)
         say(f, &f->said_material,
@@ -74,17 +76,17 @@ static void check_static(struct radiosity_followed *f, const struct scene_pose *
             "that of the bake");
 }
 
-static void check_other(struct radiosity_followed *f, const struct scene *scene, uint32_t i)
+static void check_other(struct light_map_followed *f, const struct scene *scene, uint32_t i)
 {
     const struct instance *it = &scene->instances[i];
     f->any_lit |= it->mesh >= 0;
     if (it->mesh >= 0 && it->added > f->started && !it->movable)
         say(f, &f->said_added,
-            "static instances were added: probes light them, but they block and reflect no "
-            "indirect light without another bake");
+            "static instances were added: they block and reflect no indirect light without "
+            "another bake");
 }
 
-void radiosity_followed_update(struct radiosity_followed *f, const struct scene_pose *pose)
+void light_map_followed_update(struct light_map_followed *f, const struct scene_pose *pose)
 {
     const struct scene *scene = pose->scene;
     if (scene->revisions.newest == f->revision) return;

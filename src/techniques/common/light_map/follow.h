@@ -1,12 +1,13 @@
-// Which instances are those that were baked, and where. The others have the light of probes.
+// Which instances are those that were baked, and where.
 #pragma once
 
 #include "scene/statics.h"
 
 #include "techniques/common/light_map/moves.h"
 
-struct radiosity_followed {
+struct light_map_followed {
     struct host *host;
+    const char *technique;          // in messages
     struct light_map_places places; // at the start, of static ones
     uint64_t *deformed;             // [count] hashes of their vertices where these are deformed
     uint32_t count;
@@ -17,10 +18,11 @@ struct radiosity_followed {
     bool said_moved, said_added, said_material;
 };
 
-// statics: of the same pose. radiosity_followed_finish accepts zero.
-bool radiosity_followed_init(struct radiosity_followed *out, struct host *host,
-                             const struct scene_pose *pose, const struct scene_statics *statics);
-void radiosity_followed_finish(struct radiosity_followed *followed);
+// statics: of the same pose. light_map_followed_finish accepts zero.
+bool light_map_followed_init(struct light_map_followed *out, struct host *host,
+                             const char *technique, const struct scene_pose *pose,
+                             const struct scene_statics *statics);
+void light_map_followed_finish(struct light_map_followed *followed);
 // Compares with a later pose of the scene; warns once for each kind of change that a bake cannot
 // follow.
-void radiosity_followed_update(struct radiosity_followed *followed, const struct scene_pose *pose);
+void light_map_followed_update(struct light_map_followed *followed, const struct scene_pose *pose);

@@ -1,0 +1,59 @@
+#include "techniques/common/light_map/texels.h"
+
+#include "bake/tensors.h"
+#include "techniques/common/light_map/tensors.h"
+
+#include <string.h>
+
+bool light_map_find_texels(struct light_map_texels *out, struct host *host,
+                           const struct charts *charts, const struct tensors *bake)
+{
+    const uint64_t n = light_map_rows(charts->side_texel_count), shape[] = { n, 4 };
+    *out = (struct light_map_texels){ .charts = charts };
+    return (out->reflectance =
+                tensors_expect(host, bake, LIGHT_MAP_ALBEDO, TENSOR_F32, 2, shape)) &&
+           (out->sky = tensors_expect(host, bake, LIGHT_MAP_SKY, TENSOR_F32, 2, shape)) &&
+           (out->emitted = tensors_expect(host, bake, LIGHT_MAP_EMITTED, TENSOR_F32, 3,
+                                          (const uint64_t[]){ n, 3, 4 })) &&
+           (out->point = tensors_expect(host, bake, LIGHT_MAP_POINT, TENSOR_F32, 2, shape));
+}
+
+float light_map_texel_area(const struct light_map_texels *t, uint32_t texel)
+{
+    return t->point[4 * (size_t)texel + 3] * chart_texel_of(t->charts, texel)->area_m2;
+}
+
+uint32_t *light_map_shown(const struct light_map_texels *t, struct host *host)
+{
+    const uint32_t count = t->charts->side_texel_count;
+    bool *hidden = host_alloc(host, count, sizeof *hidden);
+    for (uint32_t i = 0; hidden && i < count; i++)
+        hidden[i] = !(t->point[4 * (size_t)i + 3] > 0.0f);
+    uint32_t *shown = hidden ? charts_fill(t->charts, hidden) : NULL;
+    host_free(host, hidden);
+    return shown;
+}
+
+static void fill_texel(const struct light_map_texels *t, uint32_t i, vec4s *parts)
+{
+    const size_t count = t->charts->side_texel_count;
+    const float *point = t->point + 4 * (size_t)i, *reflectance = t->reflectance + 4 * (size_t)i;
+    parts[TEXEL_POSITION * count + i] =
+        vec4_of(vec3_of(point[0], point[1], point[2]), light_map_texel_area(t, i));
+    parts[TEXEL_NORMAL * count + i] = vec4_of(chart_texel_normal(t->charts, i), 0.0f);
+    parts[TEXEL_REFLECTANCE * count + i] =
+        vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), reflectance[3]);
+    memcpy(&parts[TEXEL_SKY_LIGHT * count + i], t->sky + 4 * (size_t)i, sizeof *parts);
+    for (size_t k = 0; k < 3; k++)
+        memcpy(&parts[(TEXEL_EMITTED_0 + k) * count + i], t->emitted + 12 * (size_t)i + 4 * k,
+               sizeof *parts);
+}
+
+bool light_map_upload_texels(const struct light_map_texels *t, struct host *host, struct gpu *gpu,
+                             gpu_image *out)
+{
+    const size_t count = (size_t)t->charts->side_texel_count * TEXEL_PARTS;
+    vec4s *parts = host_alloc(host, light_map_table_room(count), sizeof *parts);
+    for (uint32_t i = 0; parts && i < t->charts->side_texel_count; i++) fill_texel(t, i, parts);
+    return light_map_table_upload(host, gpu, "texels", GPU_RGBA32F, parts, count, out);
+}
