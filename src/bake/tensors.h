@@ -42,3 +42,7 @@ const char *tensors_metadata(const struct tensors *set, const char *key);
 // the tensor and the difference. For `load` of a technique.
 const void *tensors_expect(struct host *host, const struct tensors *set, const char *name,
                            enum tensor_type type, int rank, const uint64_t *shape);
+// Its shape is the last arguments.
+#define TENSORS_EXPECT(host, set, name, type, ...)                                                 \
+    tensors_expect(host, set, name, type, sizeof((const uint64_t[]){ __VA_ARGS__ }) / 8,           \
+                   (const uint64_t[]){ __VA_ARGS__ })

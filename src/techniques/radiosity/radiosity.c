@@ -159,12 +159,6 @@ static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     radiosity_probes_record_apply(&s->probes, cmd, view, mapped);
 }
 
-static bool charts(const struct scene_pose *statics, const void *options, struct host *host,
-                   struct charts *out)
-{
-    return radiosity_charts_init(out, host, statics, options);
-}
-
 static gpu_image light_map(void *state)
 {
     const struct radiosity *s = state;
@@ -259,7 +253,7 @@ const struct technique technique_radiosity = {
     .update = update,
     .record = record,
     .debug_view = debug_view,
-    .charts = charts,
+    .charts = radiosity_charts,
     .light_map = light_map,
     .probes = probes,
     .destroy = destroy,

@@ -6,7 +6,7 @@
 
 #define LIGHT_MAP_TEXELS_BINDING 1
 #include "core/basis.glsl"
-#include "techniques/radiosity/radiosity_row.glsl"
+#include "techniques/radiosity/radiosity_pack.glsl"
 #include "techniques/common/light_map/texels.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;

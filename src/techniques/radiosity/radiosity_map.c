@@ -98,12 +98,13 @@ static bool make_hierarchy(struct radiosity_map *map)
 
 // ----
 
-bool radiosity_charts_init(struct charts *out, struct host *host, const struct scene_pose *pose,
-                           const struct radiosity_options *options)
+bool radiosity_charts(const struct scene_pose *statics, const void *options, struct host *host,
+                      struct charts *out)
 {
-    const struct charts_wish wish = { "radiosity", (uint32_t)options->texels, options->density,
+    const struct radiosity_options *o = options;
+    const struct charts_wish wish = { "radiosity", (uint32_t)o->texels, o->density,
                                       RADIOSITY_MAX_CLUSTERS / 2 };
-    return charts_init_wanted(out, host, pose, &wish);
+    return charts_init_wanted(out, host, statics, &wish);
 }
 
 static bool refuse(const struct radiosity_map *map)
@@ -131,7 +132,7 @@ bool radiosity_map_init(struct radiosity_map *out, struct host *host, const stru
                         const struct radiosity_options *options)
 {
     *out = (struct radiosity_map){ .host = host };
-    bool ok = radiosity_charts_init(&out->charts, host, pose, options);
+    bool ok = radiosity_charts(pose, options, host, &out->charts);
     out->texel_count = out->charts.side_texel_count;
     out->cluster_of = host_alloc(host, out->texel_count, sizeof *out->cluster_of);
     ok = ok && out->cluster_of && make_sources(out, options);

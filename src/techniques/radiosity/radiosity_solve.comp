@@ -4,7 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "techniques/radiosity/radiosity_row.glsl"
+#include "techniques/radiosity/radiosity_pack.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
 

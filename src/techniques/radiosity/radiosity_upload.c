@@ -21,17 +21,13 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
     const uint64_t n = light_map_rows(s->map.texel_count);
     const uint64_t c = radiosity_cluster_rows(&s->map);
     const uint64_t k = (uint64_t)s->options.sources;
-    struct host *host = s->host;
-#define EXPECT(name, type, ...)                                                                    \
-    tensors_expect(host, bake, name, type,                                                         \
-                   (int)(sizeof((const uint64_t[]){ __VA_ARGS__ }) / sizeof(uint64_t)),            \
-                   (const uint64_t[]){ __VA_ARGS__ })
+#define EXPECT(...) TENSORS_EXPECT(s->host, bake, __VA_ARGS__)
     *out = (struct content){ .sources = k, .cluster_sources = 2 * k };
     return (out->source = EXPECT(RADIOSITY_SOURCE, TENSOR_U32, n, k)) &&
            (out->factor = EXPECT(RADIOSITY_FACTOR, TENSOR_F16, n, k, 3)) &&
            (out->part = EXPECT(RADIOSITY_PART, TENSOR_U8, n)) &&
            (out->inverse_distance = EXPECT(RADIOSITY_DISTANCE, TENSOR_F32, n)) &&
-           light_map_find_texels(&out->texels, host, &s->map.charts, bake) &&
+           light_map_find_texels(&out->texels, s->host, &s->map.charts, bake) &&
            (out->cluster_source = EXPECT(RADIOSITY_CLUSTER_SOURCE, TENSOR_U32, c, 2 * k)) &&
            (out->cluster_factor = EXPECT(RADIOSITY_CLUSTER_FACTOR, TENSOR_F16, c, 2 * k));
 #undef EXPECT
@@ -259,7 +255,7 @@ static bool upload_all(struct radiosity *s, const struct content *c, const struc
            radiosity_upload_factors(s, c->source, c->factor, c->cluster_source,
                                     c->cluster_factor) &&
            upload_neighbours(s, c) && upload_clusters(s, c) &&
-           light_map_upload(&s->light_map, s->followed.count, c->shown, bake) &&
+           light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c->shown, bake) &&
            radiosity_view_init(s, c->texels.point, c->shown);
 }
 

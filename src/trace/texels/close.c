@@ -95,34 +95,37 @@ void seam_closing_finish(struct seam_closing *closing)
 
 // ---- places around one
 
-bool seam_closing_room_init(struct seam_closing_room *room, struct host *host,
-                            const struct seam_closing *closing)
+struct seam_closing_room {
+    struct host *host;
+    uint32_t *local;            // [places] number in `place`, from 1; all 0 between the calls
+    bool *has;                  // [points] it is in `point`; likewise
+    uint32_t *point;            // [points] those at near places
+    uint32_t place[MOST_LOCAL]; // near ones, the nearest first
+    double x[MOST_LOCAL], r[MOST_LOCAL], d[MOST_LOCAL], q[MOST_LOCAL]; // of conjugate gradients
+};
+
+struct seam_closing_room *seam_closing_room_create(struct host *host,
+                                                   const struct seam_closing *closing)
 {
     const struct chart_seams *seams = &closing->seams;
-    *room = (struct seam_closing_room){
-        .host = host,
-        .local = host_alloc(host, seams->count, sizeof *room->local),
-        .has = host_alloc(host, seams->point_count, sizeof *room->has),
-        .place = host_alloc(host, MOST_LOCAL, sizeof *room->place),
-        .point = host_alloc(host, seams->point_count, sizeof *room->point),
-        .x = host_alloc(host, 4 * MOST_LOCAL, sizeof *room->x),
-    };
-    if (!room->x) return false;
-    room->r = room->x + MOST_LOCAL;
-    room->d = room->r + MOST_LOCAL;
-    room->q = room->d + MOST_LOCAL;
-    return room->local && room->has && room->place && room->point;
+    struct seam_closing_room *room = host_alloc(host, 1, sizeof *room);
+    if (!room) return NULL;
+    room->host = host;
+    room->local = host_alloc(host, seams->count, sizeof *room->local);
+    room->has = host_alloc(host, seams->point_count, sizeof *room->has);
+    room->point = host_alloc(host, seams->point_count, sizeof *room->point);
+    if (room->local && room->has && room->point) return room;
+    seam_closing_room_destroy(room);
+    return NULL;
 }
 
-void seam_closing_room_finish(struct seam_closing_room *room)
+void seam_closing_room_destroy(struct seam_closing_room *room)
 {
-    if (!room->host) return;
+    if (!room) return;
     host_free(room->host, room->local);
     host_free(room->host, room->has);
-    host_free(room->host, room->place);
     host_free(room->host, room->point);
-    host_free(room->host, room->x);
-    *room = (struct seam_closing_room){ 0 };
+    host_free(room->host, room);
 }
 
 struct near {

@@ -4,6 +4,8 @@
 #include "scene/charts/seams.h"
 #include "trace/trace_scene.h"
 
+struct seam_closing_room;
+
 // seam_closing_finish accepts zero.
 struct seam_closing {
     struct host *host;
@@ -17,18 +19,10 @@ bool seam_closing_init(struct seam_closing *out, struct host *host, const struct
                        const struct trace_scene *trace);
 void seam_closing_finish(struct seam_closing *closing);
 
-// What a task needs. seam_closing_room_finish accepts zero.
-struct seam_closing_room {
-    struct host *host;
-    uint32_t *local;       // [places] number in `place`, from 1; all 0 between the calls
-    bool *has;             // [points] it is in `point`; likewise
-    uint32_t *place;       // near ones, the nearest first
-    uint32_t *point;       // [points] those at near places
-    double *x, *r, *d, *q; // of the conjugate gradients
-};
-bool seam_closing_room_init(struct seam_closing_room *room, struct host *host,
-                            const struct seam_closing *closing);
-void seam_closing_room_finish(struct seam_closing_room *room);
+// What a task needs. NULL: no memory; seam_closing_room_destroy accepts it.
+struct seam_closing_room *seam_closing_room_create(struct host *host,
+                                                   const struct seam_closing *closing);
+void seam_closing_room_destroy(struct seam_closing_room *room);
 
 // Weights of a place, which sum to 1; unused entries have weight 0.
 void seam_close(const struct seam_closing *closing, struct seam_closing_room *room, uint32_t place,

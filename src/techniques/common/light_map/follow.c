@@ -5,7 +5,7 @@
 // In the bake.
 static bool is_static(const struct light_map_followed *f, uint32_t i)
 {
-    return i < f->count && f->places.at[i].mesh >= 0;
+    return i < (uint32_t)f->places.count && f->places.at[i].mesh >= 0;
 }
 
 static uint64_t deformed_hash(const struct scene_pose *pose, int i)
@@ -22,7 +22,6 @@ bool light_map_followed_init(struct light_map_followed *out, struct host *host,
     const uint32_t count = (uint32_t)pose->scene->instance_count;
     *out = (struct light_map_followed){ .host = host,
                                         .technique = technique,
-                                        .count = count,
                                         .started = pose->scene->revisions.newest,
                                         .revision = UINT64_MAX };
     out->deformed = host_alloc(host, count, sizeof *out->deformed);

@@ -9,11 +9,10 @@ struct light_map_followed {
     struct host *host;
     const char *technique;          // in messages
     struct light_map_places places; // at the start, of static ones
-    uint64_t *deformed;             // [count] hashes of their vertices where these are deformed
-    uint32_t count;
-    bool any_moved;   // of those that are
-    bool any_lit;     // one that is not in the light map
-    uint64_t started; // revisions of the scene
+    uint64_t *deformed;             // [instances] hashes of their vertices where these are deformed
+    bool any_moved;                 // of those that are
+    bool any_lit;                   // one that is not in the light map
+    uint64_t started;               // revisions of the scene
     uint64_t revision;
     bool said_moved, said_added, said_material;
 };

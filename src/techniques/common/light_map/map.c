@@ -6,7 +6,6 @@
 
 #include "technique_shaders.h"
 
-#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -118,7 +117,7 @@ static bool find_rows(const struct light_map *map, const struct tensors *bake, u
     out->weight = tensors_expect(map->host, bake, LIGHT_MAP_SEAM_WEIGHT, TENSOR_F32, 2, shape);
     if (!out->texel || !out->weight) return false;
     for (size_t i = 0; i < (size_t)places * CHART_SEAM_ENTRIES; i++)
-        if (out->texel[i] >= map->charts->side_texel_count || !isfinite(out->weight[i]))
+        if (out->texel[i] >= map->charts->side_texel_count)
             return host_fail(map->host, FAIL_FORMAT, "bake of a light map: texel %u of a seam",
                              out->texel[i]);
     return true;

@@ -8,14 +8,14 @@
 bool light_map_find_texels(struct light_map_texels *out, struct host *host,
                            const struct charts *charts, const struct tensors *bake)
 {
-    const uint64_t n = light_map_rows(charts->side_texel_count), shape[] = { n, 4 };
+    const uint64_t n = light_map_rows(charts->side_texel_count);
     *out = (struct light_map_texels){ .charts = charts };
-    return (out->reflectance =
-                tensors_expect(host, bake, LIGHT_MAP_ALBEDO, TENSOR_F32, 2, shape)) &&
-           (out->sky = tensors_expect(host, bake, LIGHT_MAP_SKY, TENSOR_F32, 2, shape)) &&
-           (out->emitted = tensors_expect(host, bake, LIGHT_MAP_EMITTED, TENSOR_F32, 3,
-                                          (const uint64_t[]){ n, 3, 4 })) &&
-           (out->point = tensors_expect(host, bake, LIGHT_MAP_POINT, TENSOR_F32, 2, shape));
+#define EXPECT(...) TENSORS_EXPECT(host, bake, __VA_ARGS__)
+    return (out->reflectance = EXPECT(LIGHT_MAP_ALBEDO, TENSOR_F32, n, 4)) &&
+           (out->sky = EXPECT(LIGHT_MAP_SKY, TENSOR_F32, n, 4)) &&
+           (out->emitted = EXPECT(LIGHT_MAP_EMITTED, TENSOR_F32, n, 3, 4)) &&
+           (out->point = EXPECT(LIGHT_MAP_POINT, TENSOR_F32, n, 4));
+#undef EXPECT
 }
 
 float light_map_texel_area(const struct light_map_texels *t, uint32_t texel)

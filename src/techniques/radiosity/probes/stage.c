@@ -12,30 +12,30 @@
 enum { PROBES_PER_TASK = 32 };
 enum { OUT_SOURCE, OUT_FACTOR, OUT_PLACE, OUT_SKY, OUT_EMITTED, OUT_DEPTH, OUT_COUNT };
 
-enum { RADIOSITY_SH = 9 };
+enum { SH = 9, DEPTHS = PROBE_DEPTHS };
 
 struct probe {
-    vec3s position;                 // moved out of geometry, within its cell
-    float valid;                    // 1; 0: all of the cell is inside of something
-    float sky[RADIOSITY_SH];        // irradiance of a sky of radiance 1, Σ c_i Y_i
-    float emitted[RADIOSITY_SH][3]; // of emissive surfaces, lux
+    vec3s position;       // moved out of geometry, within its cell
+    float valid;          // 1; 0: all of the cell is inside of something
+    float sky[SH];        // irradiance of a sky of radiance 1, Σ c_i Y_i
+    float emitted[SH][3]; // of emissive surfaces, lux
     uint16_t depth[PROBE_DEPTHS][2];
 };
 
 static void add_sh(vec3s direction, float weight, float *sum, int stride)
 {
-    float basis[RADIOSITY_SH];
+    float basis[SH];
     sh_eval(3, direction, basis);
-    for (int i = 0; i < RADIOSITY_SH; i++) sum[i * stride] += weight * basis[i];
+    for (int i = 0; i < SH; i++) sum[i * stride] += weight * basis[i];
 }
 
 // From radiance to irradiance.
 static void finish_sh(float *sh, int stride)
 {
-    float radiance[RADIOSITY_SH], irradiance[RADIOSITY_SH];
-    for (int i = 0; i < RADIOSITY_SH; i++) radiance[i] = sh[i * stride];
+    float radiance[SH], irradiance[SH];
+    for (int i = 0; i < SH; i++) radiance[i] = sh[i * stride];
     sh_irradiance(3, radiance, irradiance);
-    for (int i = 0; i < RADIOSITY_SH; i++) sh[i * stride] = irradiance[i];
+    for (int i = 0; i < SH; i++) sh[i * stride] = irradiance[i];
 }
 
 static void add_emission(struct probe *out, vec3s direction, vec3s radiance, float density)
@@ -141,19 +141,9 @@ bool radiosity_probe_plan(struct bake_plan *plan, struct frame_probes grid,
         { RADIOSITY_PROBE_SOURCE, TENSOR_U32, 2, { probes, most }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_PROBE_FACTOR, TENSOR_F16, 3, { probes, most, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_PROBE_PLACE, TENSOR_F32, 2, { probes, 4 }, BAKE_ROWS, BAKE_SAVED },
-        { RADIOSITY_PROBE_SKY, TENSOR_F32, 2, { probes, RADIOSITY_SH }, BAKE_ROWS, BAKE_SAVED },
-        { RADIOSITY_PROBE_EMITTED,
-          TENSOR_F32,
-          3,
-          { probes, RADIOSITY_SH, 3 },
-          BAKE_ROWS,
-          BAKE_SAVED },
-        { RADIOSITY_PROBE_DEPTH,
-          TENSOR_F16,
-          3,
-          { probes, PROBE_DEPTHS, 2 },
-          BAKE_ROWS,
-          BAKE_SAVED },
+        { RADIOSITY_PROBE_SKY, TENSOR_F32, 2, { probes, SH }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_PROBE_EMITTED, TENSOR_F32, 3, { probes, SH, 3 }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_PROBE_DEPTH, TENSOR_F16, 3, { probes, DEPTHS, 2 }, BAKE_ROWS, BAKE_SAVED },
     };
     const size_t tasks = (size_t)((probes + PROBES_PER_TASK - 1) / PROBES_PER_TASK);
     return bake_plan_add(

@@ -19,10 +19,7 @@ struct content {
 static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct content *c)
 {
     const uint64_t n = s->probes.count, k = s->probes.entries;
-#define EXPECT(name, type, ...)                                                                    \
-    tensors_expect(s->host, bake, name, type,                                                      \
-                   (int)(sizeof((const uint64_t[]){ __VA_ARGS__ }) / sizeof(uint64_t)),            \
-                   (const uint64_t[]){ __VA_ARGS__ })
+#define EXPECT(...) TENSORS_EXPECT(s->host, bake, __VA_ARGS__)
     return (c->source = EXPECT(RADIOSITY_PROBE_SOURCE, TENSOR_U32, n, k)) &&
            (c->factor = EXPECT(RADIOSITY_PROBE_FACTOR, TENSOR_F16, n, k, 4)) &&
            (c->place = EXPECT(RADIOSITY_PROBE_PLACE, TENSOR_F32, n, 4)) &&
