@@ -120,6 +120,21 @@ struct frame_view {
         .sampler = (view)->shadow_sampler                                                          \
     }
 
+// In GPU_BIND: the surface of each pixel, with "ggx_albedo" for its BRDF. Without FRAME_DIELECTRIC
+// the material stands in its place, and shaders are told so.
+#define FRAME_SURFACE_BINDINGS(view)                                                               \
+    (view)->constants_binding, (view)->ggx_albedo_binding,                                         \
+        { .name = "depth", .image = (view)->layers[FRAME_DEPTH] },                                 \
+        { .name = "normal", .image = (view)->layers[FRAME_NORMAL] },                               \
+        { .name = "albedo", .image = (view)->layers[FRAME_ALBEDO] },                               \
+        { .name = "material", .image = (view)->layers[FRAME_MATERIAL] },                           \
+    {                                                                                              \
+        .name = "dielectric",                                                                      \
+        .image =                                                                                   \
+            (view)                                                                                 \
+                ->layers[(view)->layers[FRAME_DIELECTRIC].id ? FRAME_DIELECTRIC : FRAME_MATERIAL]  \
+    }
+
 // Inputs and outputs of the indirect light; the frame creates and fills only these.
 enum frame_need {
     FRAME_NEEDS_RSM = 1,

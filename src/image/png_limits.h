@@ -1,4 +1,4 @@
-// What libpng reads of untrusted files, and how much.
+// Limits and settings of libpng for untrusted files.
 #pragma once
 
 #include <png.h>

@@ -9,25 +9,20 @@ static bool may_continue(const struct technique *technique, const void *now, con
     return option_difference(&technique->options, now, next) <= INVALIDATE;
 }
 
-static void apply_options(const struct technique *technique, void *state, const void *options,
-                          int effect)
+static void apply_options(const struct technique *technique, void *state, const void *options)
 {
-    if (!state) return;
-    technique_set_options(technique, state, options);
-    if (effect == INVALIDATE && technique->invalidate)
-        technique->invalidate(state, CHANGED_OPTIONS);
+    if (state) technique_set_options(technique, state, options);
 }
 
 // Of a running term, in all views.
 static void set_options(struct gi *gi, int term, void *now, const void *next)
 {
     const struct technique *technique = gi->spec.technique[term];
-    const int effect = option_difference(&technique->options, now, next);
-    if (effect < 0) return;
+    if (option_difference(&technique->options, now, next) < 0) return;
     option_copy_live(&technique->options, next, now);
-    apply_options(technique, gi->state[term], now, effect);
+    apply_options(technique, gi->state[term], now);
     for (int v = 1; v < FRAME_MAX_VIEWS; v++)
-        apply_options(technique, gi->views[v].state[term], now, effect);
+        apply_options(technique, gi->views[v].state[term], now);
 }
 
 int gi_continues(const struct gi *gi, const struct gi_spec *spec, int term)

@@ -32,11 +32,11 @@ bool technique_create(const struct technique *technique, void *state,
 
 void technique_set_options(const struct technique *technique, void *state, const void *options)
 {
-    if (technique->set_options)
-        technique->set_options(state, options);
-    else if (technique->invalidate)
-        technique->invalidate(state, CHANGED_OPTIONS);
+    const int effect = option_difference(&technique->options, state, options);
+    if (technique->set_options) technique->set_options(state, options);
     option_copy_live(&technique->options, options, state);
+    if (technique->invalidate && (effect >= INVALIDATE || !technique->set_options))
+        technique->invalidate(state, CHANGED_OPTIONS);
 }
 
 bool technique_resize(const struct technique *technique, struct gpu *gpu, void *state,

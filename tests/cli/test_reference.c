@@ -213,27 +213,50 @@ TEST(a_resumed_run_equals_a_longer_one)
     check_one_error_line(run_expect(1, SMALL " --spp 4 --resume -o", bare, NULL));
 }
 
+// A million samples of the scene, with the program's messages in a file.
+static pid_t start_tracing(const char *scene, const char *image, const char *messages)
+{
+    fflush(NULL);
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child > 0) return child;
+    signal(SIGINT, SIG_DFL);
+    if (!freopen(messages, "w", stderr)) _exit(126);
+    execl(AFTERGLOW_PROGRAM, AFTERGLOW_PROGRAM, "reference", scene, "--size", "64x64", "--spp",
+          "1000000", "-o", image, (char *)NULL);
+    _exit(127);
+}
+
+// One signal, when the first sample has been written: a second one would end the program at once.
+static void interrupt_tracing(pid_t child, const char *image)
+{
+    for (int i = 0; i < 1000 * test_time_factor() && !file_exists(image); i++) test_pause_ms(20);
+    test_pause_ms(300 * test_time_factor());
+    assert_int_equal(kill(child, SIGINT), 0);
+    int status = 0;
+    assert_true(waitpid(child, &status, 0) == child);
+    CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+}
+
 TEST(default_light_and_camera_are_said_before_the_samples)
 {
     static const char triangle[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
                                    "property float y\nproperty float z\nelement face 1\n"
                                    "property list uchar int vertex_indices\nend_header\n"
                                    "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-    const char *scene = path_of("triangle.ply");
+    const char *scene = path_of("triangle.ply"), *image = path_of("triangle.exr");
+    const char *messages = path_of("triangle.txt");
     write_file(scene, triangle, sizeof triangle - 1);
-    char command[2048], said[2048] = "";
-    const char *errors = path_of("triangle.txt");
-    // Interrupted, so that only what was said before counts.
-    snprintf(command, sizeof command,
-             "timeout -s INT %g '%s' reference '%s' --size 64x64 --spp 1000000 -o '%s' 2> '%s'",
-             2.0 * test_time_factor(), AFTERGLOW_PROGRAM, scene, path_of("triangle.exr"), errors);
-    CHECK(system(command) != 0);
-    FILE *file = fopen(errors, "re");
+    interrupt_tracing(start_tracing(scene, image, messages), image);
+    char said[2048] = "";
+    FILE *file = fopen(messages, "re");
     assert_non_null(file);
     CHECK(fread(said, 1, sizeof said - 1, file) > 0);
     fclose(file);
-    CHECK(strstr(said, "no light in ") && strstr(said, "no camera in "));
-    CHECK(strstr(said, "interrupted after") && !strstr(said, "million rays"));
+    const char *end = strstr(said, "interrupted after");
+    const char *light = strstr(said, "no light in "), *camera = strstr(said, "no camera in ");
+    CHECK(end && light && light < end && camera && camera < end);
+    CHECK(!strstr(said, "million rays"));
 }
 
 TEST(json_describes_the_traced_image)
@@ -293,23 +316,7 @@ TEST(wrong_usage_is_reported_before_the_work)
 TEST(an_interrupt_leaves_an_image_to_resume)
 {
     const char *path = path_of("interrupted.exr");
-    fflush(NULL);
-    pid_t child = fork();
-    assert_true(child >= 0);
-    if (child == 0) {
-        signal(SIGINT, SIG_DFL);
-        if (!freopen("/dev/null", "w", stderr)) _exit(126);
-        execl(AFTERGLOW_PROGRAM, AFTERGLOW_PROGRAM, "reference", "@cornell", "--size", "64x64",
-              "--spp", "1000000", "--quiet", "-o", path, (char *)NULL);
-        _exit(127);
-    }
-    for (int i = 0; i < 1000 * test_time_factor() && !file_exists(path); i++)
-        test_pause_ms(20); // the first sample is written
-    test_pause_ms(300 * test_time_factor());
-    assert_int_equal(kill(child, SIGINT), 0);
-    int status = 0;
-    assert_true(waitpid(child, &status, 0) == child);
-    CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+    interrupt_tracing(start_tracing("@cornell", path, "/dev/null"), path);
     double samples = mean_of(path, "samples");
     CHECK(samples > 1 && samples < 1000000);
     char spp[32];

@@ -103,8 +103,8 @@ void charts_finish(struct charts *charts);
 // Charts for the light map of a technique.
 struct charts_wish {
     const char *technique; // in messages
-    uint32_t texels;       // about so many, without gutters
-    float density;         // texels/m, in place of `texels`; 0: none
+    uint32_t texels;       // wanted number, without gutters
+    float density;         // texels/m, in place of `texels`; 0: not given
     uint32_t most_charts;
 };
 bool charts_init_wanted(struct charts *out, struct host *host, const struct scene_pose *pose,

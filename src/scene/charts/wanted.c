@@ -5,7 +5,7 @@
 // atlas has room for the gutters of those.
 enum { DENSITY_TRIES = 5, ATLAS_ROOM = 64, MOST_ATLAS = 1 << 28 };
 
-// What may bring the number of texels nearer to the wanted one. False: nothing.
+// Changes the options so that the next charts may have fewer texels. False: no option can.
 static bool want_fewer(struct charts_options *how, uint32_t texels, const struct charts *charts)
 {
     // Each small part of a surface has a texel at any density: the others keep a quarter of them.
@@ -21,7 +21,7 @@ static bool want_fewer(struct charts_options *how, uint32_t texels, const struct
     return true;
 }
 
-// Of the surface, where the density is given.
+// Limit of the surface's texels where the density is given.
 enum { MOST_TEXELS = 1 << 22 };
 
 static bool init_at_density(struct charts *out, struct host *host, const struct scene_pose *pose,

@@ -15,9 +15,9 @@ layout(set = 0, binding = LIGHT_MAP_LIGHTS_BINDING, scalar) readonly buffer fram
 };
 
 struct light_map_texel {
-    vec4 place;       // world; w: area, m²; 0: hidden inside of something
+    vec4 place;       // world, m; w: area, m²; 0: the texel is inside geometry
     vec3 normal;      // unit, of its side
-    vec4 reflectance; // w: mean cosine between shading normals and the normal
+    vec4 reflectance; // by colour; w: mean cosine between shading normals and the normal
 };
 
 light_map_texel light_map_texel_of(uint i, uint texels)
@@ -27,7 +27,8 @@ light_map_texel light_map_texel_of(uint i, uint texels)
                            light_map_texel_part(i, texels, TEXEL_REFLECTANCE));
 }
 
-// Of texel i; 0 where it is hidden. shadow_radius: texels of the shadow map.
+// Irradiance of texel i in the units of the frame; 0 where the texel is inside geometry. emitters:
+// factor of the light of emissive surfaces. shadow_radius: texels of the shadow map.
 vec3 light_map_first_order(light_map_texel texel, uint i, uint texels, float emitters,
                            int shadow_radius)
 {

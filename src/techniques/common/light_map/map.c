@@ -200,26 +200,18 @@ void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
                             const struct frame_view *view)
 {
     const gpu_image *layers = view->layers;
-    const gpu_image dielectric = layers[FRAME_DIELECTRIC];
     const struct light_map_apply_push push = {
         1.0f / (float)map->charts->width, 1.0f / (float)map->charts->height,
         1.0f / (float)view->width, 1.0f / (float)view->height, light_map_instances(&map->surfaces)
     };
     gpu_scope_begin(cmd, "apply");
     gpu_dispatch(
-        cmd, map->apply[map->surfaces.moves != NULL][dielectric.id != 0],
-        GPU_BIND(
-            view->constants_binding, view->ggx_albedo_binding,
-            { .name = "depth", .image = layers[FRAME_DEPTH] },
-            { .name = "normal", .image = layers[FRAME_NORMAL] },
-            { .name = "albedo", .image = layers[FRAME_ALBEDO] },
-            { .name = "material", .image = layers[FRAME_MATERIAL] },
-            { .name = "dielectric", .image = dielectric.id ? dielectric : layers[FRAME_MATERIAL] },
-            { .name = "id", .image = layers[FRAME_ID] },
-            LIGHT_MAP_SURFACE_BINDINGS(&map->surfaces, cmd),
-            { .name = "light_map", .image = map->images[map->shown], .sampler = map->linear },
-            { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
-            { .name = "specular", .image = layers[FRAME_SPECULAR] }),
+        cmd, map->apply[map->surfaces.moves != NULL][layers[FRAME_DIELECTRIC].id != 0],
+        GPU_BIND(FRAME_SURFACE_BINDINGS(view), { .name = "id", .image = layers[FRAME_ID] },
+                 LIGHT_MAP_SURFACE_BINDINGS(&map->surfaces, cmd),
+                 { .name = "light_map", .image = map->images[map->shown], .sampler = map->linear },
+                 { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
+                 { .name = "specular", .image = layers[FRAME_SPECULAR] }),
         &push, sizeof push, gpu_groups(view->width, map->apply_width),
         gpu_groups(view->height, map->apply_height), 1);
     gpu_scope_end(cmd);

@@ -36,7 +36,7 @@ void light_map_list(const struct light_map *map, size_t base, bool specular,
 // shown: [side_texel_count] whose light each texel shows (charts_fill).
 bool light_map_upload(struct light_map *map, uint32_t instances, const uint32_t *shown,
                       const struct tensors *bake);
-// About, with so many texels on one side.
+// Approximate bytes on the GPU of a map whose sides have so many texels.
 uint64_t light_map_bytes(uint64_t texels);
 
 // Rows first … first + count − 1, of owner_count and seam_count, of the map that is not shown.

@@ -12,7 +12,7 @@
 #define LIGHT_MAP_TABLE_WIDTH 4096u
 
 // Parts of a texel in the table of texels: entry part · texels + texel.
-#define TEXEL_POSITION    0 // world; w: area, m²; 0: hidden inside of something
+#define TEXEL_POSITION    0 // world, m; w: area, m²; 0: the texel is inside geometry
 #define TEXEL_NORMAL      1 // unit, of its side
 #define TEXEL_REFLECTANCE 2 // w: mean cosine between shading normals and the normal
 #define TEXEL_SKY_LIGHT   3 // irradiance along the normal, vector irradiance: radiance 1

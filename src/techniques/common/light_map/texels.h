@@ -8,14 +8,14 @@ struct tensors;
 
 struct light_map_texels {
     const struct charts *charts;
-    const float *point;       // [texels][4] position (m), share that is not inside of something
+    const float *point;       // [texels][4] position (m), share that is not inside geometry
     const float *reflectance; // [texels][4], the last the mean cosine of shading normals
     const float *sky;         // [texels][4] irradiance and vector irradiance: radiance 1
     const float *emitted;     // [texels][3][4] the same by colour, lux
 };
 bool light_map_find_texels(struct light_map_texels *out, struct host *host,
                            const struct charts *charts, const struct tensors *bake);
-// m², as far as it is not inside of something.
+// Area of the part of a texel that is not inside geometry, m².
 float light_map_texel_area(const struct light_map_texels *texels, uint32_t texel);
 // [texels] whose light each one shows (charts_fill): hidden ones have no area. Owned by the caller.
 uint32_t *light_map_shown(const struct light_map_texels *texels, struct host *host);

@@ -25,24 +25,17 @@ void radiosity_probes_record_apply(const struct radiosity_probes *p, struct gpu_
                                    const struct frame_view *view, bool mapped)
 {
     const gpu_image *layers = view->layers;
-    const gpu_image dielectric = layers[FRAME_DIELECTRIC];
     const struct radiosity_probe_apply_push push = { p->volume.grid,
                                                      mapped ? (int32_t)view->width : 0,
-                                                     dielectric.id != 0 };
+                                                     layers[FRAME_DIELECTRIC].id != 0 };
     gpu_scope_begin(cmd, "apply_probes");
     gpu_dispatch(
         cmd, p->apply,
-        GPU_BIND(
-            view->constants_binding, view->ggx_albedo_binding,
-            { .name = "depth", .image = layers[FRAME_DEPTH] },
-            { .name = "normal", .image = layers[FRAME_NORMAL] },
-            { .name = "albedo", .image = layers[FRAME_ALBEDO] },
-            { .name = "material", .image = layers[FRAME_MATERIAL] },
-            { .name = "dielectric", .image = dielectric.id ? dielectric : layers[FRAME_MATERIAL] },
-            { .name = "volume", .image = p->volume.image, .sampler = p->linear },
-            { .name = "probe_depths", .image = p->volume.depth, .sampler = p->linear },
-            { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
-            { .name = "specular", .image = layers[FRAME_SPECULAR] }),
+        GPU_BIND(FRAME_SURFACE_BINDINGS(view),
+                 { .name = "volume", .image = p->volume.image, .sampler = p->linear },
+                 { .name = "probe_depths", .image = p->volume.depth, .sampler = p->linear },
+                 { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
+                 { .name = "specular", .image = layers[FRAME_SPECULAR] }),
         &push, sizeof push, gpu_groups(view->width, RADIOSITY_LOCAL_2D),
         gpu_groups(view->height, RADIOSITY_LOCAL_2D), 1);
     gpu_scope_end(cmd);

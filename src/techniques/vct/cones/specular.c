@@ -8,7 +8,6 @@
 void vct_record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const struct vct_options *options = &vct->options;
-    const gpu_image dielectric = view->layers[FRAME_DIELECTRIC];
     const struct vct_specular_params params = {
         .tan_half = tanf(options->aperture * (GLM_PIf / 180.0f)),
         .step_size = options->step_size,
@@ -16,20 +15,14 @@ void vct_record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct fram
         .gain = options->gain,
         .texel_m = 2.0f * vct->clips[vct->clip_count - 1].grid.cell_m,
         .last_mip = vct_volume_mips(options) - 1,
-        .has_dielectric = dielectric.id != 0,
+        .has_dielectric = view->layers[FRAME_DIELECTRIC].id != 0,
     };
     gpu_scope_begin(cmd, "specular");
     gpu_dispatch(
         cmd, vct->specular,
-        GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), view->constants_binding,
-                 vct_clipmap_binding(vct, cmd),
+        GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), vct_clipmap_binding(vct, cmd),
                  gpu_transient(cmd, "vct_specular", &params, sizeof params),
-                 view->ggx_albedo_binding, { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-                 { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                 { .name = "albedo", .image = view->layers[FRAME_ALBEDO] },
-                 { .name = "material", .image = view->layers[FRAME_MATERIAL] },
-                 { .name = "dielectric",
-                   .image = dielectric.id ? dielectric : view->layers[FRAME_MATERIAL] },
+                 FRAME_SURFACE_BINDINGS(view),
                  { .name = "irradiance", .image = vct_result(vct, view) },
                  { .name = "light", .image = vct->light, .sampler = vct->linear },
                  { .name = "specular", .image = view->layers[FRAME_SPECULAR] },
