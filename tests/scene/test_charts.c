@@ -365,7 +365,7 @@ static enum unwrap_fault fault_of(float u_of_second, float first_u)
 {
     struct scene *scene = two_quads(u_of_second, first_u, 1);
     enum unwrap_fault fault;
-    CHECK(unwrap_check(test_host(), &scene->meshes[0], &fault));
+    CHECK(unwrap_check(test_host(), &scene->meshes[0], 1, &fault));
     scene_destroy(scene);
     return fault;
 }
@@ -381,9 +381,9 @@ TEST(unwraps_are_checked)
     struct scene *scene = two_quads(0.5f, 0.0f, 1);
     enum unwrap_fault fault;
     scene->meshes[0].uv[1][3].x = NAN;
-    CHECK(unwrap_check(test_host(), &scene->meshes[0], &fault) && fault == UNWRAP_NOT_FINITE);
+    CHECK(unwrap_check(test_host(), &scene->meshes[0], 1, &fault) && fault == UNWRAP_NOT_FINITE);
     for (int v = 0; v < 8; v++) scene->meshes[0].uv[1][v] = (vec2s){ { 0.5f, 0.5f } };
-    CHECK(unwrap_check(test_host(), &scene->meshes[0], &fault) && fault == UNWRAP_COLLAPSED);
+    CHECK(unwrap_check(test_host(), &scene->meshes[0], 1, &fault) && fault == UNWRAP_COLLAPSED);
     scene_destroy(scene);
 }
 
@@ -419,6 +419,43 @@ TEST(a_broken_unwrap_is_replaced_with_one_warning)
 {
     CHECK(unwrapped_charts(0.1f, 3) == 0);
     CHECK(strstr(test_last_message(), "overlaps itself"));
+}
+
+// Charts of two quads whose TEXCOORD_0 is a copy of TEXCOORD_1, or of one that overlaps itself,
+// without TEXCOORD_1. −1: refused.
+static int charts_of_set_0(bool overlaps, enum charts_coordinates coordinates)
+{
+    struct scene *scene = two_quads(overlaps ? 0.1f : 0.5f, 0.0f, 2);
+    struct scene_pose pose;
+    struct charts charts;
+    const struct charts_options options = { .texels_per_m = 16.0f,
+                                            .max_texels = 1u << 20,
+                                            .coordinates = coordinates };
+    int unwrapped = 0;
+    scene->meshes[0].uv[0] = scene->meshes[0].uv[1];
+    scene->meshes[0].uv[1] = NULL;
+    CHECK(pose_init(&pose, scene, -1, 0.0f));
+    test_forget_messages();
+    if (!charts_init(&charts, test_host(), &pose, &options)) unwrapped = -1;
+    for (uint32_t c = 0; unwrapped >= 0 && c < charts.count; c++)
+        unwrapped += charts.charts[c].unwrapped;
+    charts_finish(&charts);
+    close_scene(scene, &pose);
+    return unwrapped;
+}
+
+TEST(the_wanted_coordinates_are_kept_or_refused)
+{
+    CHECK(charts_of_set_0(false, CHARTS_TEXCOORD_0) == 4);
+    CHECK(charts_of_set_0(false, CHARTS_TEXCOORD_0_OR_1) == 4);
+    CHECK(charts_of_set_0(false, CHARTS_NO_TEXCOORD) == 0);
+    CHECK(charts_of_set_0(false, CHARTS_TEXCOORD_1) == 0);
+    CHECK(charts_of_set_0(true, CHARTS_TEXCOORD_0_OR_1) == 0);
+    CHECK_STRING(test_last_message(), "");
+    CHECK(charts_of_set_0(true, CHARTS_TEXCOORD_0) == -1);
+    CHECK(strstr(test_last_message(), "TEXCOORD_0 of mesh '") &&
+          strstr(test_last_message(), "overlaps itself"));
+    CHECK(unwrapped_charts(0.5f, 1) == 2); // TEXCOORD_1 as before
 }
 
 TEST(degenerate_triangles_have_no_chart)

@@ -191,7 +191,7 @@ bool charts_init(struct charts *out, struct host *host, const struct scene_pose 
 {
     struct surface surface = { 0 };
     *out = (struct charts){ .host = host };
-    bool ok = surface_init(&surface, host, pose, options->chosen);
+    bool ok = surface_init(&surface, host, pose, options->chosen, options->coordinates);
     out->without_area = surface.without_area;
     if (ok && surface.count > 0) ok = find_density(out, pose, &surface, options);
     ok = ok && make_chart_sides(out, pose->scene);

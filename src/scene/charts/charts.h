@@ -1,7 +1,8 @@
 // Charts: a parameterisation of a pose's triangles without overlaps, in one atlas, for light maps.
-// Each instance has charts of its own. A mesh whose TEXCOORD_1 is a valid unwrap (unwrap.h) keeps
-// its islands, each scaled to the density; triangles of other meshes are clustered by normal,
-// connected, and projected onto planes. Charts are packed with stb_rect_pack.
+// Each instance has charts of its own. A mesh whose TEXCOORD_1, or another set of coordinates, is a
+// valid unwrap (unwrap.h) keeps its islands, each scaled to the density; triangles of other meshes
+// are clustered by normal, connected, and projected onto planes. Charts are packed with
+// stb_rect_pack.
 //
 // A chart's rectangle has a gutter of CHART_GUTTER texels around the texels that its surface
 // touches; rectangles do not overlap. Coordinates in the atlas are in texels, centres at ½.
@@ -27,6 +28,14 @@ enum charts_join {
     CHARTS_JOINED_ACROSS, // those of all instances, if all or none are double-sided
 };
 
+// The texture coordinates whose islands a mesh keeps, where they are a valid unwrap.
+enum charts_coordinates {
+    CHARTS_TEXCOORD_1,
+    CHARTS_TEXCOORD_0,      // FAIL_UNSUPPORTED names a mesh where they are not
+    CHARTS_TEXCOORD_0_OR_1, // the first valid ones
+    CHARTS_NO_TEXCOORD,     // none: charts of normals
+};
+
 struct charts_options {
     float texels_per_m;  // wanted; the density is lowered until the atlas fits
     uint32_t max_texels; // width × height of the atlas
@@ -35,6 +44,7 @@ struct charts_options {
     // Of the surface, wanted: its area is so many texels. Charts touch more. 0: no wish.
     uint32_t surface_texels;
     enum charts_join join;
+    enum charts_coordinates coordinates;
     // For the message where charts do not fit: texels of the atlas for one of the option `texels`,
     // the maximum of that option, and of charts. 0: there is no such option.
     uint32_t atlas_per_texel, most_texels, most_charts;
@@ -42,7 +52,7 @@ struct charts_options {
 
 struct chart {
     int instance;   // of a spot: of its first triangle
-    bool unwrapped; // an island of TEXCOORD_1
+    bool unwrapped; // an island of texture coordinates
     bool spot;
     uint32_t first_triangle, triangle_count;
     uint32_t first_texel, texel_count;
@@ -106,6 +116,7 @@ struct charts_wish {
     uint32_t texels;       // wanted number, without gutters
     float density;         // texels/m, in place of `texels`; 0: not given
     uint32_t most_charts;
+    enum charts_coordinates coordinates;
 };
 bool charts_init_wanted(struct charts *out, struct host *host, const struct scene_pose *pose,
                         const struct charts_wish *wish);

@@ -1,4 +1,4 @@
-// Corners are joined by a hash table where position, instance and TEXCOORD_1 of an unwrap are
+// Corners are joined by a hash table where position, instance and coordinates of an unwrap are
 // equal; edges are sorted by their corners.
 #include "scene/charts/surface.h"
 
@@ -12,33 +12,67 @@
 
 // ---- triangles
 
-// One warning for a scene names the first mesh whose TEXCOORD_1 is broken.
+// The sets of coordinates that meshes keep. One warning for a scene names the first mesh whose
+// TEXCOORD_1 is broken.
+enum { NOT_CHECKED, NO_SET, FIRST_SET }; // FIRST_SET + n: TEXCOORD_n
 struct unwraps {
-    enum unwrap_fault *fault; // [mesh_count]
-    bool *checked;
+    struct host *host;
+    const struct scene *scene;
+    enum charts_coordinates coordinates;
+    uint8_t *set; // [mesh_count]
     int broken, first;
+    enum unwrap_fault fault; // of the first
 };
 
-static bool check_mesh(struct host *host, const struct scene *scene, int mesh, struct unwraps *u)
+static bool try_set(struct unwraps *u, int mesh, int set, enum unwrap_fault *fault)
 {
-    if (u->checked[mesh]) return true;
-    u->checked[mesh] = true;
-    if (!unwrap_check(host, &scene->meshes[mesh], &u->fault[mesh])) return false;
-    if (u->fault[mesh] <= UNWRAP_ABSENT) return true;
-    if (u->broken++ == 0) u->first = mesh;
+    if (!unwrap_check(u->host, &u->scene->meshes[mesh], set, fault)) return false;
+    if (*fault == UNWRAP_VALID) u->set[mesh] = (uint8_t)(FIRST_SET + set);
     return true;
 }
 
-static void warn(struct host *host, const struct scene *scene, const struct unwraps *u)
+static bool refuse_mesh(const struct unwraps *u, int mesh, enum unwrap_fault fault)
 {
-    if (u->broken == 0 || atomic_exchange(scene->warned_of_unwraps, true)) return;
-    const char *name = scene->meshes[u->first].name;
-    host_log(host, LOG_WARNING, "TEXCOORD_1 of %d meshes in %s: of '%s' it %s; charts replace it",
-             u->broken, scene->name, name ? name : "", unwrap_fault_text(u->fault[u->first]));
+    const char *name = u->scene->meshes[mesh].name;
+    return host_fail(u->host, FAIL_UNSUPPORTED,
+                     "TEXCOORD_0 of mesh '%s' in %s %s: it cannot be a light map; give the mesh "
+                     "other coordinates, or let charts be made",
+                     name ? name : "", u->scene->name, unwrap_fault_text(fault));
+}
+
+static bool check_mesh(struct unwraps *u, int mesh)
+{
+    enum unwrap_fault fault = UNWRAP_ABSENT;
+    const bool zero =
+        u->coordinates == CHARTS_TEXCOORD_0 || u->coordinates == CHARTS_TEXCOORD_0_OR_1;
+    const bool one =
+        u->coordinates == CHARTS_TEXCOORD_1 || u->coordinates == CHARTS_TEXCOORD_0_OR_1;
+    if (u->set[mesh] != NOT_CHECKED) return true;
+    u->set[mesh] = NO_SET;
+    if (zero && !try_set(u, mesh, 0, &fault)) return false;
+    if (u->coordinates == CHARTS_TEXCOORD_0 && fault != UNWRAP_VALID)
+        return refuse_mesh(u, mesh, fault);
+    if (u->set[mesh] != NO_SET || !one) return true;
+    if (!try_set(u, mesh, 1, &fault)) return false;
+    if (fault <= UNWRAP_ABSENT) return true;
+    if (u->broken++ == 0) {
+        u->first = mesh;
+        u->fault = fault;
+    }
+    return true;
+}
+
+static void warn(const struct unwraps *u)
+{
+    if (u->broken == 0 || atomic_exchange(u->scene->warned_of_unwraps, true)) return;
+    const char *name = u->scene->meshes[u->first].name;
+    host_log(u->host, LOG_WARNING,
+             "TEXCOORD_1 of %d meshes in %s: of '%s' it %s; charts replace it", u->broken,
+             u->scene->name, name ? name : "", unwrap_fault_text(u->fault));
 }
 
 static void add_triangle(struct surface *out, const struct scene_pose *pose, int instance,
-                         uint32_t triangle, bool unwrapped)
+                         uint32_t triangle, const vec2s *unwrap)
 {
     const struct mesh *mesh = scene_mesh_of(pose->scene, instance);
     const vec3s *deformed = pose->deformed[instance].positions;
@@ -48,13 +82,13 @@ static void add_triangle(struct surface *out, const struct scene_pose *pose, int
                                     .triangle = triangle,
                                     .double_sided =
                                         pose->scene->materials[mesh->material].double_sided,
-                                    .unwrapped = unwrapped,
+                                    .unwrapped = unwrap != NULL,
                                     .neighbor = { CHART_NONE, CHART_NONE, CHART_NONE } };
     for (uint32_t k = 0; k < 3; k++) {
         const uint32_t v = mesh->indices[3 * (size_t)triangle + k];
         t->corner[k] = deformed ? deformed[v] : mat4_point(world_from_mesh, mesh->positions[v]);
         t->vertex_normal[k] = mesh->normals[v];
-        if (unwrapped) t->uv[k] = mesh->uv[1][v];
+        if (unwrap) t->uv[k] = unwrap[v];
     }
     t->area_m2 = triangle_area(t->corner, &t->normal);
     if (t->area_m2 == 0.0f) {
@@ -89,21 +123,22 @@ static bool add_triangles(struct surface *out, const struct scene_pose *pose, co
         const uint32_t count = mesh->index_count / 3;
         const int index = scene->instances[i].mesh;
         if (index >= 0 && any_chosen(chosen, first, count)) {
-            if (!check_mesh(out->host, scene, index, unwraps)) return false;
+            if (!check_mesh(unwraps, index)) return false;
+            const int set = unwraps->set[index] - FIRST_SET;
             for (uint32_t t = 0; t < count; t++)
                 if (!chosen || chosen[first + t])
-                    add_triangle(out, pose, i, t, unwraps->fault[index] == UNWRAP_VALID);
+                    add_triangle(out, pose, i, t, set >= 0 ? mesh->uv[set] : NULL);
         }
         first += count;
     }
-    warn(out->host, scene, unwraps);
+    warn(unwraps);
     return true;
 }
 
 // ---- edges
 
 struct corner_key {
-    float at[5]; // position, TEXCOORD_1 of an unwrap
+    float at[5]; // position, coordinates of an unwrap
     int instance;
 };
 
@@ -185,7 +220,7 @@ static bool find_neighbors(struct surface *surface)
 }
 
 bool surface_init(struct surface *out, struct host *host, const struct scene_pose *pose,
-                  const bool *chosen)
+                  const bool *chosen, enum charts_coordinates coordinates)
 {
     const size_t count = scene_triangle_count(pose->scene);
     *out = (struct surface){ .host = host };
@@ -193,14 +228,14 @@ bool surface_init(struct surface *out, struct host *host, const struct scene_pos
         return host_fail(host, FAIL_MEMORY, "charts of %s: more than %u triangles",
                          pose->scene->name, UINT32_MAX / 8);
     }
-    struct unwraps unwraps = { .first = -1 };
-    unwraps.fault = host_alloc(host, (size_t)pose->scene->mesh_count, sizeof *unwraps.fault);
-    unwraps.checked = host_alloc(host, (size_t)pose->scene->mesh_count, sizeof *unwraps.checked);
+    struct unwraps unwraps = {
+        .host = host, .scene = pose->scene, .coordinates = coordinates, .first = -1
+    };
+    unwraps.set = host_alloc(host, (size_t)pose->scene->mesh_count, sizeof *unwraps.set);
     out->triangles = host_alloc(host, count, sizeof *out->triangles);
-    const bool ok = unwraps.fault && unwraps.checked && out->triangles &&
-                    add_triangles(out, pose, chosen, &unwraps) && find_neighbors(out);
-    host_free(host, unwraps.fault);
-    host_free(host, unwraps.checked);
+    const bool ok = unwraps.set && out->triangles && add_triangles(out, pose, chosen, &unwraps) &&
+                    find_neighbors(out);
+    host_free(host, unwraps.set);
     if (!ok) surface_finish(out);
     return ok;
 }

@@ -11,7 +11,7 @@ struct surface_triangle {
     vec3s normal;           // unit, of the front
     float area_m2;
     bool double_sided;
-    bool unwrapped; // uv is TEXCOORD_1, and edges connect where that is equal
+    bool unwrapped; // uv is that of a valid unwrap, and edges connect where it is equal
     vec2s uv[3];
     uint32_t neighbor[3]; // across the edge from corner k to k + 1; CHART_NONE: none
 };
@@ -25,7 +25,7 @@ struct surface {
     float longest_m;
 };
 
-// surface_finish accepts zero.
+// chosen: as in charts_options. surface_finish accepts zero.
 bool surface_init(struct surface *out, struct host *host, const struct scene_pose *pose,
-                  const bool *chosen);
+                  const bool *chosen, enum charts_coordinates coordinates);
 void surface_finish(struct surface *surface);

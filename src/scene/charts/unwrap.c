@@ -30,14 +30,14 @@ static bool take(void *user, int32_t x, int32_t y)
     return true;
 }
 
-static enum unwrap_fault check_triangle(const struct mesh *mesh, uint32_t triangle,
+static enum unwrap_fault check_triangle(const struct mesh *mesh, int set, uint32_t triangle,
                                         struct raster_bits *raster)
 {
     struct raster_triangle texels;
     vec3s corner[3];
     for (uint32_t k = 0; k < 3; k++) {
         const uint32_t v = mesh->indices[3 * (size_t)triangle + k];
-        const vec2s uv = mesh->uv[1][v];
+        const vec2s uv = mesh->uv[set][v];
         corner[k] = mesh->positions[v];
         if (!isfinite(uv.x) || !isfinite(uv.y)) return UNWRAP_NOT_FINITE;
         if (uv.x < 0.0f || uv.x > 1.0f || uv.y < 0.0f || uv.y > 1.0f) return UNWRAP_OUTSIDE;
@@ -49,16 +49,16 @@ static enum unwrap_fault check_triangle(const struct mesh *mesh, uint32_t triang
     return raster_centres(&texels, take, raster) ? UNWRAP_VALID : UNWRAP_OVERLAPS;
 }
 
-bool unwrap_check(struct host *host, const struct mesh *mesh, enum unwrap_fault *fault)
+bool unwrap_check(struct host *host, const struct mesh *mesh, int set, enum unwrap_fault *fault)
 {
     *fault = UNWRAP_ABSENT;
-    if (!mesh->uv[1]) return true;
+    if (!mesh->uv[set]) return true;
     struct raster_bits raster = { .side = raster_side(mesh->index_count / 3) };
     raster.bits = host_alloc(host, (size_t)raster.side * (size_t)raster.side / 8, 1);
     if (!raster.bits) return false;
     *fault = UNWRAP_VALID;
     for (uint32_t t = 0; t < mesh->index_count / 3 && *fault == UNWRAP_VALID; t++)
-        *fault = check_triangle(mesh, t, &raster);
+        *fault = check_triangle(mesh, set, t, &raster);
     host_free(host, raster.bits);
     return true;
 }

@@ -1,5 +1,5 @@
-// Whether TEXCOORD_1 of a mesh is an unwrap that light maps can use: each point of the texture
-// belongs to one point of the surface.
+// Whether texture coordinates of a mesh are an unwrap that light maps can use: each point of the
+// texture belongs to one point of the surface.
 #pragma once
 
 #include "core/host.h"
@@ -14,6 +14,6 @@ enum unwrap_fault {
     UNWRAP_OVERLAPS,  // two triangles cover the centre of a texel of the check's raster
 };
 
-// False without memory. Triangles without an area are ignored.
-bool unwrap_check(struct host *host, const struct mesh *mesh, enum unwrap_fault *fault);
+// set: of TEXCOORD_n. False without memory. Triangles without an area are ignored.
+bool unwrap_check(struct host *host, const struct mesh *mesh, int set, enum unwrap_fault *fault);
 const char *unwrap_fault_text(enum unwrap_fault fault); // "overlaps itself", …

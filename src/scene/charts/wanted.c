@@ -30,7 +30,8 @@ static bool init_at_density(struct charts *out, struct host *host, const struct 
     const struct charts_options how = { .texels_per_m = wish->density,
                                         .max_texels = MOST_ATLAS,
                                         .surface_texels = MOST_TEXELS,
-                                        .join = CHARTS_JOINED };
+                                        .join = CHARTS_JOINED,
+                                        .coordinates = wish->coordinates };
     if (!charts_init(out, host, pose, &how)) return false;
     const float reached = out->texels_per_m;
     if (out->count == 0 || reached > 0.999f * wish->density) return true;
@@ -50,6 +51,7 @@ bool charts_init_wanted(struct charts *out, struct host *host, const struct scen
                                                     : MOST_ATLAS,
                                   .surface_texels = texels,
                                   .join = CHARTS_JOINED,
+                                  .coordinates = wish->coordinates,
                                   .atlas_per_texel = ATLAS_ROOM,
                                   .most_texels = MOST_TEXELS,
                                   .most_charts = wish->most_charts };
