@@ -27,6 +27,12 @@ float rng_float(struct rng *rng)
     return rng_unit(rng_u32(rng));
 }
 
+double rng_double(struct rng *rng)
+{
+    const uint64_t high = rng_u32(rng), low = rng_u32(rng);
+    return (double)((high << 32 | low) >> 11) * 0x1p-53;
+}
+
 vec2s rng_vec2(struct rng *rng)
 {
     float x = rng_float(rng); // the order of evaluation in an initializer list is unspecified

@@ -13,7 +13,8 @@ struct rng {
 
 struct rng rng_for(uint32_t pixel, uint32_t sample, uint32_t dimension);
 uint32_t rng_u32(struct rng *rng);
-float rng_float(struct rng *rng); // in [0, 1)
+float rng_float(struct rng *rng);   // in [0, 1)
+double rng_double(struct rng *rng); // in [0, 1), of 53 bits
 vec2s rng_vec2(struct rng *rng);
 // PCG hash of one word (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering").
 uint32_t pcg_hash(uint32_t word);

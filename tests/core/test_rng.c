@@ -69,6 +69,20 @@ TEST(numbers_are_in_the_unit_interval_and_uniform)
     CHECK(fabs(chi_square_excess(counts, 1000, 1000.0)) < 5.0);
 }
 
+TEST(doubles_are_in_the_unit_interval_and_uniform_in_high_and_low_bits)
+{
+    static int counts[1000], low_counts[1024];
+    struct rng rng = rng_for(3, 5, 8);
+    for (int i = 0; i < 1000000; i++) {
+        const double u = rng_double(&rng);
+        CHECK(u >= 0.0 && u < 1.0);
+        counts[(int)(u * 1000.0)]++;
+        low_counts[(uint64_t)(u * 0x1p53) & 1023]++;
+    }
+    CHECK(fabs(chi_square_excess(counts, 1000, 1000.0)) < 5.0);
+    CHECK(fabs(chi_square_excess(low_counts, 1024, 1000000.0 / 1024.0)) < 5.0);
+}
+
 // Pairs of the first numbers of generators whose seeds differ by one in one argument must be
 // uniform in the unit square.
 static void check_neighbours(uint32_t pixel_step, uint32_t sample_step, uint32_t dimension_step)
