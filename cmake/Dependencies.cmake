@@ -14,6 +14,8 @@ pkg_check_modules(JPEG REQUIRED IMPORTED_TARGET libjpeg)
 find_package(OpenEXR 3.1 CONFIG REQUIRED)
 pkg_check_modules(ASSIMP REQUIRED IMPORTED_TARGET assimp)
 pkg_check_modules(SECCOMP REQUIRED IMPORTED_TARGET libseccomp)
+# The reentrant one of its libraries.
+pkg_check_modules(QHULL REQUIRED IMPORTED_TARGET qhull_r)
 pkg_check_modules(STB REQUIRED IMPORTED_TARGET stb)
 pkg_check_modules(SPIRV_CROSS REQUIRED IMPORTED_TARGET spirv-cross-c-shared)
 # Embree 4 (Debian 13) or 3 (Debian 12); src/trace/embree.c supports both.

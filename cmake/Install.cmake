@@ -32,7 +32,7 @@ install(FILES ${PROJECT_BINARY_DIR}/afterglow-config.cmake ${PROJECT_BINARY_DIR}
   DESTINATION ${package})
 
 # pkg-config names of the third-party libraries that the static library needs.
-set(AFTERGLOW_PC_REQUIRES "jansson libxxhash libpng libjpeg OpenEXR spirv-cross-c-shared vulkan")
+set(AFTERGLOW_PC_REQUIRES "jansson libxxhash libpng libjpeg OpenEXR qhull_r spirv-cross-c-shared vulkan")
 # As flags: required by name, OpenBLAS would add the Fortran library of its static version.
 list(JOIN OPENBLAS_LDFLAGS " " AFTERGLOW_PC_OPENBLAS)
 list(JOIN LAPACKE_LDFLAGS " " AFTERGLOW_PC_LAPACKE)
