@@ -210,7 +210,7 @@ static void check_unwraps(const char *name)
     CHECK(spots > 10);
     for (int m = 0; m < copy->mesh_count; m++) {
         enum unwrap_fault fault;
-        CHECK(unwrap_check(test_host(), &copy->meshes[m], 1, &fault));
+        CHECK(unwrap_check(test_host(), &copy->meshes[m], 1, 0.0, &fault));
         if (fault > UNWRAP_ABSENT)
             fail_msg("%s: TEXCOORD_1 of %s %s", name, copy->meshes[m].name,
                      unwrap_fault_text(fault));

@@ -365,7 +365,7 @@ static enum unwrap_fault fault_of(float u_of_second, float first_u)
 {
     struct scene *scene = two_quads(u_of_second, first_u, 1);
     enum unwrap_fault fault;
-    CHECK(unwrap_check(test_host(), &scene->meshes[0], 1, &fault));
+    CHECK(unwrap_check(test_host(), &scene->meshes[0], 1, 0.0, &fault));
     scene_destroy(scene);
     return fault;
 }
@@ -381,9 +381,25 @@ TEST(unwraps_are_checked)
     struct scene *scene = two_quads(0.5f, 0.0f, 1);
     enum unwrap_fault fault;
     scene->meshes[0].uv[1][3].x = NAN;
-    CHECK(unwrap_check(test_host(), &scene->meshes[0], 1, &fault) && fault == UNWRAP_NOT_FINITE);
+    CHECK(unwrap_check(test_host(), &scene->meshes[0], 1, 0.0, &fault) &&
+          fault == UNWRAP_NOT_FINITE);
     for (int v = 0; v < 8; v++) scene->meshes[0].uv[1][v] = (vec2s){ { 0.5f, 0.5f } };
-    CHECK(unwrap_check(test_host(), &scene->meshes[0], 1, &fault) && fault == UNWRAP_COLLAPSED);
+    CHECK(unwrap_check(test_host(), &scene->meshes[0], 1, 0.0, &fault) &&
+          fault == UNWRAP_COLLAPSED);
+    scene_destroy(scene);
+}
+
+// A fifth of the covered texels is covered twice, then a quarter of the surface is collapsed.
+TEST(unwraps_may_overlap_and_collapse_within_a_tolerance)
+{
+    struct scene *scene = two_quads(0.2f, 0.0f, 1);
+    struct mesh *mesh = &scene->meshes[0];
+    enum unwrap_fault fault;
+    CHECK(unwrap_check(test_host(), mesh, 1, 0.19, &fault) && fault == UNWRAP_OVERLAPS);
+    CHECK(unwrap_check(test_host(), mesh, 1, 0.21, &fault) && fault == UNWRAP_VALID);
+    mesh->uv[1][1] = mesh->uv[1][0];
+    CHECK(unwrap_check(test_host(), mesh, 1, 0.24, &fault) && fault == UNWRAP_COLLAPSED);
+    CHECK(unwrap_check(test_host(), mesh, 1, 0.26, &fault) && fault == UNWRAP_VALID);
     scene_destroy(scene);
 }
 

@@ -24,9 +24,14 @@ struct unwraps {
     enum unwrap_fault fault; // of the first
 };
 
+// Of TEXCOORD_0, which is seldom made for light maps: a fold of some texels in a scan is no reason
+// to leave a good unwrap.
+static const double TOLERANCE_0 = 1e-3;
+
 static bool try_set(struct unwraps *u, int mesh, int set, enum unwrap_fault *fault)
 {
-    if (!unwrap_check(u->host, &u->scene->meshes[mesh], set, fault)) return false;
+    const double tolerance = set == 0 ? TOLERANCE_0 : 0.0;
+    if (!unwrap_check(u->host, &u->scene->meshes[mesh], set, tolerance, fault)) return false;
     if (*fault == UNWRAP_VALID) u->set[mesh] = (uint8_t)(FIRST_SET + set);
     return true;
 }
@@ -90,6 +95,7 @@ static void add_triangle(struct surface *out, const struct scene_pose *pose, int
         t->vertex_normal[k] = mesh->normals[v];
         if (unwrap) t->uv[k] = unwrap[v];
     }
+    if (unwrap && unwrap_is_collapsed(t->uv)) t->unwrapped = false;
     t->area_m2 = triangle_area(t->corner, &t->normal);
     if (t->area_m2 == 0.0f) {
         out->without_area++;
