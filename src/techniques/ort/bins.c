@@ -3,6 +3,7 @@
 #include "techniques/ort/crop.h"
 #include "techniques/ort/pack.h"
 #include "techniques/ort/slices.h"
+#include "techniques/ort/tiles.h"
 
 #include "core/host.h"
 
@@ -29,7 +30,7 @@ static void scratch_finish(struct scratch *s, struct host *host)
     host_free(host, s->mask);
 }
 
-static bool add_map(struct scratch *s, uint32_t map, struct ort_pieces *pieces)
+static bool add_boxes(struct scratch *s, uint32_t map, struct ort_pieces *pieces)
 {
     if (!ort_crop_map(&s->crop)) return false;
     for (size_t i = 0; i < s->crop.box_count; i++)
@@ -45,22 +46,35 @@ static uint64_t texels_of(const struct ort_pieces *pieces)
     return texels;
 }
 
-bool ort_bins_init(struct ort_bins *out, struct host *host, uint32_t maps, uint32_t width,
-                   uint32_t height, ort_mask_function *mask, void *user)
+// The pieces of all maps, without a place.
+static bool add_maps(struct ort_bins *out, const struct ort_bins_wish *wish,
+                     struct ort_pieces *pieces)
 {
-    assert(width > 0 && width <= ORT_MAX_MAP_SIDE && height > 0 && height <= ORT_MAX_MAP_SIDE);
-    struct scratch scratch = { 0 };
+    struct scratch s = { 0 };
+    bool ok = scratch_init(&s, out->host, wish->width, wish->height);
+    for (uint32_t map = 0; ok && map < wish->maps; map++) {
+        ok = wish->mask(wish->user, map, s.mask);
+        if (!ok) break;
+        out->occupied += ort_cover_set(&s.cover, s.mask);
+        ok = wish->tile_rows > 0 ? ort_tiles_add(pieces, &s.cover, map, wish->tile_rows)
+                                 : add_boxes(&s, map, pieces);
+    }
+    scratch_finish(&s, out->host);
+    return ok;
+}
+
+bool ort_bins_init(struct ort_bins *out, struct host *host, const struct ort_bins_wish *wish)
+{
+    assert(wish->width > 0 && wish->width <= ORT_MAX_MAP_SIDE);
+    assert(wish->height > 0 && wish->height <= ORT_MAX_MAP_SIDE);
+    assert(wish->tile_rows == 0 || ORT_BIN_SIDE % wish->tile_rows == 0);
     struct ort_pieces pieces = { .host = host };
     *out = (struct ort_bins){ .host = host };
-    bool ok = scratch_init(&scratch, host, width, height);
-    for (uint32_t map = 0; ok && map < maps; map++) {
-        ok = mask(user, map, scratch.mask);
-        if (!ok) break;
-        out->occupied += ort_cover_set(&scratch.cover, scratch.mask);
-        ok = add_map(&scratch, map, &pieces);
-    }
-    scratch_finish(&scratch, host);
-    ok = ok && ort_pack(&pieces, &out->bin_count, &out->cuts);
+    bool ok = add_maps(out, wish, &pieces);
+    if (ok && wish->tile_rows > 0)
+        out->bin_count = ort_tiles_pack(&pieces, wish->tile_rows);
+    else
+        ok = ok && ort_pack(&pieces, &out->bin_count, &out->cuts);
     out->packed = texels_of(&pieces);
     out->pieces = pieces.at;
     out->piece_count = pieces.count;

@@ -4,15 +4,21 @@
 //
 // Shaders handle runs of ORT_RUN texels of a row. A piece begins at such a run, in its map and in
 // its bin, and its width is a power of two from ORT_RUN to ORT_BIN_SIDE.
+//
+// Or pieces are tiles, a run wide, that follow each other in the order in which a gather reads
+// them: workgroup after workgroup, then map after map. Memory is read in one stream, and fewer
+// empty texels are kept.
 #pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
+#include "techniques/ort/ort_shared.h"
+
 struct host;
 
-enum { ORT_RUN = 8, ORT_BIN_SIDE = 1024, ORT_MAX_MAP_SIDE = 16384 };
+enum { ORT_MAX_MAP_SIDE = 16384 };
 
 // A rectangle of a map and its place in a bin. If the width of maps is no multiple of ORT_RUN, a
 // piece may reach beyond the right edge by less than a run: these texels are zero.
@@ -37,9 +43,15 @@ struct ort_bins {
 // Fills mask[height][width] of a map: 1 where a texel is not zero, else 0. false: failed.
 typedef bool ort_mask_function(void *user, uint32_t map, uint8_t *mask);
 
-// Asks for the mask of each map once, in order. Width and height are of every map, 1 to
-// ORT_MAX_MAP_SIDE each. Scratch memory is about two bytes a texel of one map, and some for each
-// piece.
-bool ort_bins_init(struct ort_bins *out, struct host *host, uint32_t maps, uint32_t width,
-                   uint32_t height, ort_mask_function *mask, void *user);
+struct ort_bins_wish {
+    uint32_t maps;
+    uint32_t width, height; // of every map, 1…ORT_MAX_MAP_SIDE
+    uint32_t tile_rows;     // of tiles, which divide ORT_BIN_SIDE; 0: pieces as in section 5.2
+    ort_mask_function *mask;
+    void *user;
+};
+
+// Asks for the mask of each map once, in order. Scratch memory is about two bytes a texel of one
+// map, and some for each piece.
+bool ort_bins_init(struct ort_bins *out, struct host *host, const struct ort_bins_wish *wish);
 void ort_bins_finish(struct ort_bins *bins); // accepts zero

@@ -5,6 +5,9 @@
 // its width; then no piece is wider either, and no area is ever too narrow. Pieces are cut where an
 // area ends, and a new bin begins only when all areas are full. Only the last bin has empty areas,
 // at most one of each width, and the number of bins is the least possible.
+//
+// Pieces of equal width follow each other by their column in the maps: a shader reads all pieces of
+// a column together, and finds them in few parts of memory.
 #include "techniques/ort/pack.h"
 
 #include "core/host.h"
@@ -110,14 +113,14 @@ static bool cut_piece(struct packing *p, uint32_t piece, uint32_t height)
 static bool choose_piece(struct packing *p, uint32_t level, uint32_t height, uint32_t *piece)
 {
     if (take_piece(p, level, height, piece)) return true;
-    take_piece(p, level, ORT_BIN_SIDE, piece);
-    return cut_piece(p, *piece, height);
+    return take_piece(p, level, ORT_BIN_SIDE, piece) && cut_piece(p, *piece, height);
 }
 
+// Packs all pieces in the lists of a level.
 static bool pack_level(struct packing *p, uint32_t level)
 {
     while (has_pieces(p, level)) {
-        uint32_t piece;
+        uint32_t piece = 0;
         struct area area = take_area(p, level);
         if (!choose_piece(p, level, ORT_BIN_SIDE - area.y, &piece)) return false;
         struct ort_piece *at = &p->pieces->at[piece];
@@ -130,6 +133,15 @@ static bool pack_level(struct packing *p, uint32_t level)
     return true;
 }
 
+static int compare_columns(const void *a, const void *b)
+{
+    const struct ort_piece *p = a, *q = b;
+    if (p->width != q->width) return p->width > q->width ? -1 : 1;
+    if (p->x != q->x) return p->x < q->x ? -1 : 1;
+    if (p->map != q->map) return p->map < q->map ? -1 : 1;
+    return p->y < q->y ? -1 : p->y > q->y;
+}
+
 static int compare_places(const void *a, const void *b)
 {
     const struct ort_piece *p = a, *q = b;
@@ -138,16 +150,48 @@ static int compare_places(const void *a, const void *b)
     return p->bin_y < q->bin_y ? -1 : p->bin_y > q->bin_y;
 }
 
+// Pieces of equal width and column, which are sorted, from `first` on. Returns their end.
+static uint32_t add_column(struct packing *p, uint32_t first, uint32_t count, bool *ok)
+{
+    const struct ort_piece column = p->pieces->at[first];
+    uint32_t i = first;
+    for (; *ok && i < count; i++) {
+        const struct ort_piece *piece = &p->pieces->at[i];
+        if (piece->width != column.width || piece->x != column.x) break;
+        *ok = add_piece(p, i);
+    }
+    return i;
+}
+
+static bool pack_all(struct packing *p)
+{
+    const uint32_t count = p->pieces->count; // rests of cut pieces come behind
+    bool ok = true;
+    for (uint32_t i = 0; ok && i < count;) {
+        const uint32_t level = level_of(p->pieces->at[i].width);
+        i = add_column(p, i, count, &ok);
+        ok = ok && pack_level(p, level);
+    }
+    return ok;
+}
+
+static void sort(struct ort_pieces *pieces, int (*compare)(const void *, const void *))
+{
+    if (pieces->count > 0) // else qsort gets NULL
+        qsort(pieces->at, pieces->count, sizeof *pieces->at, compare);
+}
+
 bool ort_pack(struct ort_pieces *pieces, uint32_t *bin_count, uint32_t *cuts)
 {
     struct packing *p = host_alloc(pieces->host, 1, sizeof *p);
     bool ok = p;
-    if (p) p->pieces = pieces;
-    for (uint32_t i = pieces->count; ok && i-- > 0;) ok = add_piece(p, i);
-    for (uint32_t level = WIDTHS; ok && level-- > 0;) ok = pack_level(p, level);
+    if (p) {
+        p->pieces = pieces;
+        sort(pieces, compare_columns);
+        ok = pack_all(p);
+    }
     if (ok) {
-        if (pieces->count > 0) // else qsort gets NULL
-            qsort(pieces->at, pieces->count, sizeof *pieces->at, compare_places);
+        sort(pieces, compare_places);
         *bin_count = p->bins;
         *cuts = p->cuts;
     }

@@ -11,11 +11,17 @@
 
 static const uint64_t BIN_TEXELS = (uint64_t)ORT_BIN_SIDE * ORT_BIN_SIDE;
 
+// Pieces as in section 5.2.
+static bool init_bins(struct ort_bins *out, struct host *host, uint32_t maps, uint32_t width,
+                      uint32_t height, ort_mask_function *mask, void *user)
+{
+    return ort_bins_init(out, host, &(struct ort_bins_wish){ maps, width, height, 0, mask, user });
+}
+
 static struct ort_bins make_bins(struct test_maps *maps, uint32_t count)
 {
     struct ort_bins bins;
-    CHECK(
-        ort_bins_init(&bins, test_host(), count, maps->width, maps->height, test_maps_mask, maps));
+    CHECK(init_bins(&bins, test_host(), count, maps->width, maps->height, test_maps_mask, maps));
     return bins;
 }
 
@@ -169,7 +175,7 @@ static bool mask_bands(void *user, uint32_t map, uint8_t *mask)
 TEST(ort_pieces_that_fit_are_not_cut)
 {
     struct ort_bins bins;
-    CHECK(ort_bins_init(&bins, test_host(), 10, ORT_BIN_SIDE, ORT_BIN_SIDE, mask_bands, NULL));
+    CHECK(init_bins(&bins, test_host(), 10, ORT_BIN_SIDE, ORT_BIN_SIDE, mask_bands, NULL));
     CHECK(bins.cuts == 0 && bins.bin_count == 5 && bins.piece_count == 10);
     ort_bins_finish(&bins);
 }
@@ -190,10 +196,10 @@ TEST(ort_pieces_of_corners_and_of_an_l_have_no_empty_runs)
 {
     uint32_t side = ORT_BIN_SIDE;
     struct ort_bins bins;
-    CHECK(ort_bins_init(&bins, test_host(), 1, side, side, mask_corners, &side));
+    CHECK(init_bins(&bins, test_host(), 1, side, side, mask_corners, &side));
     CHECK(bins.occupied == 4 && bins.piece_count == 4 && bins.packed == 4 * ORT_RUN);
     ort_bins_finish(&bins);
-    CHECK(ort_bins_init(&bins, test_host(), 2, side, side, mask_corners, &side));
+    CHECK(init_bins(&bins, test_host(), 2, side, side, mask_corners, &side));
     CHECK(bins.occupied == 4 + 2 * 16 * side - 16 * 16 && bins.packed == bins.occupied + 28);
     ort_bins_finish(&bins);
 }
@@ -225,7 +231,7 @@ TEST(ort_bins_fail_with_a_mask)
     struct test_maps maps = test_maps_of(MAP_DISCS, 64, 64, 1);
     struct ort_bins bins;
     maps.fails = 3;
-    CHECK(!ort_bins_init(&bins, test_host(), 4, 64, 64, test_maps_mask, &maps));
+    CHECK(!init_bins(&bins, test_host(), 4, 64, 64, test_maps_mask, &maps));
     CHECK(bins.pieces == NULL && bins.piece_count == 0);
     ort_bins_finish(&bins);
 }
@@ -250,11 +256,49 @@ TEST(ort_bins_fail_when_out_of_memory)
         int left = allocations;
         struct host host = { .reallocate = scarce_reallocate, .user = &left };
         struct ort_bins bins;
-        ok = ort_bins_init(&bins, &host, 4, 300, 300, test_maps_mask, &maps);
+        ok = init_bins(&bins, &host, 4, 300, 300, test_maps_mask, &maps);
         CHECK(ok || host.failure == FAIL_MEMORY);
         ort_bins_finish(&bins);
     }
     CHECK(ok && allocations > 8);
+}
+
+// ---- tiles in the order of a gather
+
+static void check_tiles(const struct ort_bins *bins, struct test_maps *maps, uint32_t count,
+                        uint32_t rows)
+{
+    uint64_t occupied = 0;
+    for (uint32_t i = 0; i < bins->piece_count; i++) {
+        const struct ort_piece *p = &bins->pieces[i], *before = p - 1;
+        check_shape(p, maps);
+        CHECK(p->width == ORT_RUN && p->y % rows == 0 && p->height <= rows);
+        CHECK(p->bin_y % rows == 0 && p->bin < bins->bin_count);
+        // A stream: by workgroup, then by map; places follow each other.
+        CHECK(i == 0 || before->x < p->x ||
+              (before->x == p->x &&
+               (before->y < p->y || (before->y == p->y && before->map < p->map))));
+        CHECK(i == 0 || before->bin < p->bin || before->bin_x < p->bin_x ||
+              (before->bin_x == p->bin_x && before->bin_y + rows == p->bin_y));
+    }
+    for (uint32_t map = 0; map < count; map++) occupied += check_map(bins, maps, map);
+    CHECK(occupied == bins->occupied && bins->cuts == 0);
+}
+
+TEST(ort_tiles_follow_each_other_and_cover_each_texel_once)
+{
+    static const uint32_t ROWS[] = { 8, 64 };
+    for (int kind = 0; kind < MAP_KINDS; kind++)
+        for (size_t r = 0; r < 2; r++) {
+            struct test_maps maps = test_maps_of((enum map_kind)kind, 203, 331, 7);
+            struct ort_bins bins;
+            CHECK(ort_bins_init(
+                &bins, test_host(),
+                &(struct ort_bins_wish){ 5, 203, 331, ROWS[r], test_maps_mask, &maps }));
+            check_tiles(&bins, &maps, 5, ROWS[r]);
+            ort_bins_finish(&bins);
+            test_maps_finish(&maps);
+        }
 }
 
 // ---- a case as in the paper, section 6.1
