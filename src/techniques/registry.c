@@ -7,6 +7,7 @@
 #include "techniques/lpv/lpv.h"
 #include "techniques/mrt/mrt.h"
 #include "techniques/none/none.h"
+#include "techniques/ort/ort.h"
 #include "techniques/radiosity/radiosity.h"
 #include "techniques/ssao/ssao.h"
 #include "techniques/vct/vct.h"
@@ -14,13 +15,11 @@
 
 #include <string.h>
 
-const struct technique *const techniques[] = { &technique_none,  &technique_ambient,
-                                               &technique_lpv,   &technique_holpv,
-                                               &technique_vct,   &technique_mrt,
-                                               &technique_drt,   &technique_radiosity,
-                                               &technique_dnrt,  &technique_vo,
-                                               &technique_ssao,  &technique_hbao,
-                                               &technique_vctao, NULL };
+const struct technique *const techniques[] = {
+    &technique_none, &technique_ambient, &technique_lpv,       &technique_holpv, &technique_vct,
+    &technique_mrt,  &technique_drt,     &technique_radiosity, &technique_ort,   &technique_dnrt,
+    &technique_vo,   &technique_ssao,    &technique_hbao,      &technique_vctao, NULL
+};
 
 const struct technique_debug_view *technique_find_view(const struct technique *technique,
                                                        const char *name)

@@ -102,8 +102,10 @@ bool radiosity_charts(const struct scene_pose *statics, const void *options, str
                       struct charts *out)
 {
     const struct radiosity_options *o = options;
-    const struct charts_wish wish = { "radiosity", (uint32_t)o->texels, o->density,
-                                      RADIOSITY_MAX_CLUSTERS / 2 };
+    const struct charts_wish wish = { .technique = "radiosity",
+                                      .texels = (uint32_t)o->texels,
+                                      .density = o->density,
+                                      .most_charts = RADIOSITY_MAX_CLUSTERS / 2 };
     return charts_init_wanted(out, host, statics, &wish);
 }
 

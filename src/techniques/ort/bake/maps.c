@@ -1,0 +1,157 @@
+// The stage of transfer maps: R(t, t + Δt) TVA(t, Δt) for all offsets of a texel (equation 10),
+// then its weights are brought to the sum of its row, which the rays know. One bounce and more are
+// treated apart. What the points of the offsets have too much of one bounce is scaled down; what
+// they miss comes from the patches that the rays have met.
+#include "core/half.h"
+#include "techniques/ort/bake/stages.h"
+#include "techniques/ort/bake/transfer.h"
+
+#include "bake/plan.h"
+
+#include <string.h>
+
+enum { TEXELS_PER_TASK = 256 };
+
+// Weights of all offsets for one colour: [offsets].
+enum { SINGLE, PATCH, MULTIPLE, KINDS };
+struct row {
+    size_t offsets;
+    float *weight[KINDS][3];
+    float sum[KINDS][3];
+};
+
+static bool row_init(struct row *row, struct host *host, size_t offsets)
+{
+    bool ok = true;
+    *row = (struct row){ .offsets = offsets };
+    for (int kind = 0; kind < KINDS; kind++)
+        for (int c = 0; c < 3; c++)
+            ok &= (row->weight[kind][c] = host_alloc(host, offsets, sizeof(float))) != NULL;
+    return ok;
+}
+
+static void row_finish(struct row *row, struct host *host)
+{
+    for (int kind = 0; kind < KINDS; kind++)
+        for (int c = 0; c < 3; c++) host_free(host, row->weight[kind][c]);
+}
+
+static void add_weights(struct row *row, int kind, size_t k, const float transfer[3], float area)
+{
+    for (int c = 0; c < 3; c++) {
+        row->weight[kind][c][k] = transfer[c] * area;
+        row->sum[kind][c] += transfer[c] * area;
+    }
+}
+
+static void weigh(const struct ort_transfer *transfer, const struct ort_receiver *r,
+                  const struct bake_task *task, struct row *row)
+{
+    const struct ort_map *map = &transfer->texels.scene->map;
+    const int32_t *offset = bake_task_input(task, ORT_OFFSETS)->data;
+    const float *areas = bake_task_input(task, ORT_AREAS)->data;
+    const struct ort_place place = ort_place_of(map, r->texel);
+    memset(row->sum, 0, sizeof row->sum);
+    for (size_t k = 0; k < row->offsets; k++) {
+        const uint32_t from = ort_texel_at(map, place, offset[2 * k], offset[2 * k + 1]);
+        const float area = areas[k * map->texel_count + r->texel];
+        float of[KINDS][3] = { { 0 } };
+        if (from != CHART_NONE && area > 0.0f) {
+            ort_transfer_single(transfer, r, from, of[SINGLE]);
+            ort_transfer_patch(transfer, r, from, of[PATCH]);
+            ort_transfer_multiple(transfer, r, from, of[MULTIPLE]);
+        }
+        for (int kind = 0; kind < KINDS; kind++) add_weights(row, kind, k, of[kind], area);
+    }
+}
+
+// Factors of the three kinds that give a row its exact sum.
+static void find_factors(const struct ort_receiver *r, const struct row *row, int c, bool exact,
+                         float factor[KINDS])
+{
+    const float sum[KINDS] = { row->sum[SINGLE][c], row->sum[PATCH][c], row->sum[MULTIPLE][c] };
+    float missed = r->single[c] - sum[SINGLE], multiple = r->multiple[c];
+    factor[SINGLE] = factor[MULTIPLE] = 1.0f;
+    factor[PATCH] = 0.0f;
+    if (!exact) return;
+    if (missed < 0.0f) factor[SINGLE] = r->single[c] / sum[SINGLE];
+    if (missed > 0.0f && sum[PATCH] > 0.0f) {
+        factor[PATCH] = missed / sum[PATCH];
+        missed = 0.0f;
+    }
+    if (missed > 0.0f) multiple += missed; // no offset leads to what the rays have met
+    factor[MULTIPLE] = sum[MULTIPLE] > 0.0f ? multiple / sum[MULTIPLE] : 0.0f;
+}
+
+static void write_row(const struct ort_receiver *r, const struct row *row, bool exact,
+                      uint16_t *out)
+{
+    for (int c = 0; c < 3; c++) {
+        float factor[KINDS];
+        find_factors(r, row, c, exact, factor);
+        for (size_t k = 0; k < row->offsets; k++) {
+            float weight = 0.0f;
+            for (int kind = 0; kind < KINDS; kind++)
+                weight += factor[kind] * row->weight[kind][c][k];
+            out[3 * k + (size_t)c] = half_from_float(ORT_MAP_SCALE * weight);
+        }
+    }
+}
+
+static bool make_rows(const struct bake_task *task, const struct ort_transfer *transfer,
+                      struct ort_receiver *receiver, struct row *row)
+{
+    const struct ort_scene *scene = task->job;
+    uint64_t count, first = bake_task_rows(task, 0, &count);
+    for (uint64_t i = 0; i < count; i++) {
+        if (bake_task_cancelled(task)) return false;
+        if (!ort_receive(transfer, (uint32_t)(first + i), receiver)) continue;
+        weigh(transfer, receiver, task, row);
+        write_row(receiver, row, scene->options.rows == ORT_ROWS_EXACT, bake_row(task, 0, i));
+    }
+    return true;
+}
+
+static bool run(const struct bake_task *task)
+{
+    const struct ort_scene *scene = task->job;
+    struct ort_transfer transfer;
+    struct ort_receiver receiver;
+    struct row row;
+    if (scene->map.texel_count == 0) return true;
+    if (!ort_transfer_init(&transfer, task) || !bake_task_input(task, ORT_OFFSETS) ||
+        !bake_task_input(task, ORT_AREAS))
+        return false;
+    const bool has_row = row_init(&row, task->host, ort_offset_count(&scene->map, &scene->options));
+    const bool ok = ort_receiver_init(&receiver, task->host, transfer.patch_count) && has_row &&
+                    make_rows(task, &transfer, &receiver, &row);
+    ort_receiver_finish(&receiver, task->host);
+    row_finish(&row, task->host);
+    return ok;
+}
+
+bool ort_add_maps(struct bake_plan *plan, const struct ort_scene *scene)
+{
+    const uint64_t texels = light_map_rows(scene->map.texel_count);
+    const uint64_t offsets = ort_offset_count(&scene->map, &scene->options);
+    const double patches = (double)ort_patch_count(scene->map.texel_count);
+    const size_t tasks = (size_t)((texels + TEXELS_PER_TASK - 1) / TEXELS_PER_TASK);
+    const struct bake_output out[] = {
+        { ORT_MAPS, TENSOR_F16, 3, { texels, offsets, 3 }, BAKE_ROWS, BAKE_SAVED },
+    };
+    // Of the offsets a quarter face the texel; a ray takes as long as the bounces of so many
+    // patches.
+    enum { PATCHES_PER_RAY = 400 };
+    return bake_plan_add(
+        plan, &(struct bake_stage){
+                  .name = "maps",
+                  .wave = 4,
+                  .task_count = tasks,
+                  .run = run,
+                  .outputs = out,
+                  .output_count = 1,
+                  .rays = 0.25 * (double)(texels * offsets) / (double)tasks,
+                  .others = (double)texels / (double)tasks *
+                            (0.1 * patches * patches / PATCHES_PER_RAY + 0.25 * (double)offsets),
+                  .scratch_bytes = (size_t)(9.0 * patches * sizeof(float)) });
+}

@@ -1,0 +1,15 @@
+// Options of offset radiance transfer maps.
+#pragma once
+
+#include "core/option.h"
+
+struct ort_options {
+#define OPTION OPTION_FIELD
+#include "techniques/ort/ort_options.def"
+#undef OPTION
+};
+
+enum { ORT_ROWS_EXACT, ORT_ROWS_PAPER };
+enum { ORT_AVERAGE, ORT_MAXIMUM };
+enum { ORT_HALF, ORT_BYTE };
+enum { ORT_TILES, ORT_SLICES };

@@ -1,0 +1,81 @@
+// The passes of a frame whose light has changed.
+#include "techniques/ort/ort_state.h"
+
+static void record_direct(struct ort *s, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    const struct ort_direct_push push = { s->map.texel_count, view->shadow_radius,
+                                          s->options.emitters ? 1.0f : 0.0f };
+    gpu_scope_begin(cmd, "direct");
+    gpu_dispatch(cmd, s->pipelines.direct,
+                 GPU_BIND(FRAME_LIGHT_BINDINGS(view),
+                          { .name = "light_map_texels", .image = s->tables.texels },
+                          { .name = "ort_places", .image = s->tables.places },
+                          { .name = "first_order", .image = s->tables.first_order }),
+                 &push, sizeof push, gpu_groups(push.texels, ORT_LOCAL), 1, 1);
+    gpu_scope_end(cmd);
+}
+
+static void record_spread(struct ort *s, struct gpu_cmd *cmd)
+{
+    const struct ort_spread_push push = { s->map.width, s->map.height };
+    gpu_scope_begin(cmd, "spread");
+    gpu_dispatch(cmd, s->pipelines.spread,
+                 GPU_BIND({ .name = "first_order", .image = s->tables.first_order },
+                          { .name = "ort_light", .image = s->tables.light }),
+                 &push, sizeof push, gpu_groups(push.height, ORT_LOCAL),
+                 push.width + 2 * ORT_MARGIN, 1);
+    gpu_scope_end(cmd);
+}
+
+static void record_gather(struct ort *s, struct gpu_cmd *cmd)
+{
+    const uint32_t columns = ort_columns(&s->map), blocks = ort_blocks(s);
+    gpu_scope_begin(cmd, "gather");
+    for (uint32_t part = 0; part < (uint32_t)s->options.parts; part++) {
+        const struct ort_gather_push push = { s->map.width, s->map.height, part * columns * blocks,
+                                              part > 0 };
+        gpu_dispatch(cmd, s->pipelines.gather,
+                     GPU_BIND({ .name = "ort_lists", .image = s->tables.lists },
+                              { .name = "ort_entries", .image = s->tables.entries },
+                              { .name = "ort_bins", .image = s->tables.bins },
+                              { .name = "ort_light", .image = s->tables.light },
+                              { .name = "ort_sums", .image = s->tables.sums }),
+                     &push, sizeof push, blocks, columns, 1);
+    }
+    gpu_scope_end(cmd);
+}
+
+static void record_finish(struct ort *s, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    const struct ort_finish_push push = { s->map.texel_count, s->map.height,
+                                          s->options.emitters ? 1.0f : 0.0f };
+    gpu_scope_begin(cmd, "finish");
+    gpu_dispatch(cmd, s->pipelines.finish,
+                 GPU_BIND(view->constants_binding,
+                          { .name = "light_map_texels", .image = s->tables.texels },
+                          { .name = "ort_places", .image = s->tables.places },
+                          { .name = "ort_sums", .image = s->tables.sums },
+                          { .name = "texel_light", .image = s->tables.texel_light }),
+                 &push, sizeof push, gpu_groups(push.texels, ORT_LOCAL), 1, 1);
+    gpu_scope_end(cmd);
+}
+
+static void record_map(struct ort *s, struct gpu_cmd *cmd)
+{
+    struct light_map *map = &s->light_map;
+    gpu_scope_begin(cmd, "light_map");
+    light_map_record_show(map, cmd, s->tables.texel_light, 0, map->owner_count);
+    if (s->options.seams && map->seam_count > 0)
+        light_map_record_seams(map, cmd, s->tables.texel_light, 0, map->seam_count);
+    map->shown = 1 - map->shown;
+    gpu_scope_end(cmd);
+}
+
+void ort_record_update(struct ort *s, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    record_direct(s, cmd, view);
+    record_spread(s, cmd);
+    record_gather(s, cmd);
+    record_finish(s, cmd, view);
+    record_map(s, cmd);
+}

@@ -1,0 +1,67 @@
+// The private state of offset radiance transfer maps.
+#pragma once
+
+#include "techniques/common/kept.h"
+#include "techniques/common/light_map/follow.h"
+#include "techniques/common/light_map/map.h"
+#include "techniques/common/light_map/texels.h"
+#include "techniques/ort/ort_shared.h"
+#include "techniques/ort/ort_tensors.h"
+
+struct ort_tables {
+    gpu_image texels, places;       // of texels
+    gpu_image lists, entries, bins; // of the gather
+    gpu_image first_order, light;   // of the newest light: by place, in runs
+    gpu_image sums, texel_light;    // what the maps transfer; light of texels
+};
+
+struct ort_pipelines {
+    gpu_pipeline direct, spread, gather, finish;
+};
+
+struct ort {
+    struct ort_options options;
+    struct host *host;
+    struct gpu *gpu;
+    struct ort_map map; // without texels: an empty scene
+    uint32_t rows;      // of a workgroup of the gather
+    struct light_map light_map;
+    struct ort_tables tables;
+    struct ort_pipelines pipelines;
+    struct light_map_followed followed;
+    struct kept kept;
+};
+
+// Runs in a row of places, and workgroups of the gather in a column of them.
+static inline uint32_t ort_columns(const struct ort_map *map)
+{
+    return (map->width + ORT_RUN - 1) / ORT_RUN;
+}
+static inline uint32_t ort_blocks(const struct ort *state)
+{
+    return (state->map.height + state->rows - 1) / state->rows;
+}
+
+// ---- ort_upload.c, ort_bins_upload.c, ort_lists.c
+
+// Tables of the light map and of a bake, which is untrusted, on the GPU.
+bool ort_upload(struct ort *state, const struct tensors *bake);
+
+// Transfer maps of a bake: maps[texel][offset][colour], halves times ORT_MAP_SCALE.
+struct ort_maps {
+    const int32_t *offset; // [count][2]
+    const uint16_t *weight;
+    uint32_t count;
+};
+struct ort_bins;
+// The weights of pieces in bins. scale: [maps] of bytes.
+bool ort_upload_bins(struct ort *state, const struct ort_maps *maps, const struct ort_bins *bins,
+                     const float *scale);
+// For each workgroup of the gather and each part the pieces in it, bin after bin.
+bool ort_upload_lists(struct ort *state, const struct ort_maps *maps, const struct ort_bins *bins,
+                      const float *scale);
+
+// ---- ort_record.c
+
+// The light map under the lights of a frame.
+void ort_record_update(struct ort *state, struct gpu_cmd *cmd, const struct frame_view *view);

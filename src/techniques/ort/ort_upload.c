@@ -1,0 +1,119 @@
+// From a bake, which is untrusted, to tables on the GPU.
+#include "techniques/ort/bins.h"
+#include "techniques/ort/ort_state.h"
+
+#include "core/half.h"
+
+#include <math.h>
+
+struct content {
+    struct ort_maps maps;
+    struct light_map_texels texels;
+    uint32_t *shown; // [texels] whose light each one shows
+    float *scale;    // [maps] of bytes
+};
+
+static bool find_tensors(struct ort *s, const struct tensors *bake, struct content *out)
+{
+    const uint64_t n = light_map_rows(s->map.texel_count);
+    const uint64_t k = ort_offset_count(&s->map, &s->options);
+    *out = (struct content){ .maps.count = (uint32_t)k };
+    return (out->maps.offset = TENSORS_EXPECT(s->host, bake, ORT_OFFSETS, TENSOR_I32, k, 2)) &&
+           (out->maps.weight = TENSORS_EXPECT(s->host, bake, ORT_MAPS, TENSOR_F16, n, k, 3)) &&
+           light_map_find_texels(&out->texels, s->host, &s->map.charts, bake);
+}
+
+static bool check_offsets(const struct ort *s, const struct ort_maps *maps)
+{
+    const int64_t limit[2] = { s->map.width, s->map.height };
+    for (size_t i = 0; i < 2 * (size_t)maps->count; i++)
+        if (maps->offset[i] <= -limit[i % 2] || maps->offset[i] >= limit[i % 2])
+            return host_fail(s->host, FAIL_FORMAT, "bake of ort: offset %d beyond the light map",
+                             maps->offset[i]);
+    return true;
+}
+
+struct masking {
+    const struct ort_map *map;
+    const struct ort_maps *maps;
+};
+
+// Weights that no texel an offset away belongs to are left out, whatever the bake has there.
+static bool fill_mask(void *user, uint32_t k, uint8_t *mask)
+{
+    const struct masking *m = user;
+    const int32_t *offset = m->maps->offset + 2 * (size_t)k;
+    for (uint32_t i = 0; i < m->map->texel_count; i++) {
+        const struct ort_place at = ort_place_of(m->map, i);
+        const uint16_t *w = m->maps->weight + 3 * ((size_t)i * m->maps->count + k);
+        const bool lit = ((w[0] | w[1] | w[2]) & 0x7fff) != 0;
+        if (lit)
+            mask[at.y * (size_t)m->map->width + at.x] =
+                ort_texel_at(m->map, at, offset[0], offset[1]) != CHART_NONE;
+    }
+    return true;
+}
+
+// Of 8 bits: the largest weight of a map is 255.
+static void find_scales(const struct ort *s, struct content *c)
+{
+    for (uint32_t i = 0; i < s->map.texel_count; i++) {
+        const uint16_t *w = c->maps.weight + 3 * (size_t)i * c->maps.count;
+        for (uint32_t k = 0; k < c->maps.count; k++)
+            for (int a = 0; a < 3; a++)
+                c->scale[k] = fmaxf(c->scale[k], float_from_half(w[3 * k + (uint32_t)a]) / 255.0f);
+    }
+}
+
+static bool upload_maps(struct ort *s, struct content *c)
+{
+    struct ort_bins bins;
+    const struct masking masking = { &s->map, &c->maps };
+    c->scale = host_alloc(s->host, c->maps.count, sizeof *c->scale);
+    if (!c->scale) return false;
+    if (s->options.precision == ORT_BYTE) find_scales(s, c);
+    const struct ort_bins_wish wish = { .maps = c->maps.count,
+                                        .width = s->map.width,
+                                        .height = s->map.height,
+                                        .tile_rows = s->options.order == ORT_TILES ? s->rows : 0,
+                                        .mask = fill_mask,
+                                        .user = (void *)&masking };
+    if (!ort_bins_init(&bins, s->host, &wish)) return false;
+    const bool ok = ort_upload_bins(s, &c->maps, &bins, c->scale) &&
+                    ort_upload_lists(s, &c->maps, &bins, c->scale);
+    const double side = ORT_BIN_SIDE, room = fmax(bins.bin_count * side * side, 1.0);
+    host_log(s->host, LOG_INFO,
+             "ort: %u maps of %u x %u texels in %u pieces and %u bins, occupied by %.0f %%",
+             c->maps.count, s->map.width, s->map.height, bins.piece_count, bins.bin_count,
+             100.0 * (double)bins.occupied / room);
+    ort_bins_finish(&bins);
+    return ok;
+}
+
+static bool upload_places(struct ort *s)
+{
+    const uint32_t count = s->map.texel_count;
+    uint32_t *places = host_alloc(s->host, light_map_table_room(count), sizeof *places);
+    for (uint32_t i = 0; places && i < count; i++) {
+        const struct ort_place at = ort_place_of(&s->map, i);
+        places[i] = at.y << 16 | at.x;
+    }
+    return light_map_table_upload(s->host, s->gpu, "places", GPU_R32U, places, count,
+                                  &s->tables.places);
+}
+
+bool ort_upload(struct ort *s, const struct tensors *bake)
+{
+    struct content c;
+    if (!find_tensors(s, bake, &c)) return false;
+    if (s->map.texel_count == 0) return true;
+    if (!check_offsets(s, &c.maps)) return false;
+    c.shown = light_map_shown(&c.texels, s->host);
+    const bool ok =
+        c.shown && upload_maps(s, &c) && upload_places(s) &&
+        light_map_upload_texels(&c.texels, s->host, s->gpu, &s->tables.texels) &&
+        light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c.shown, bake);
+    host_free(s->host, c.shown);
+    host_free(s->host, c.scale);
+    return ok;
+}
