@@ -3,8 +3,6 @@
 
 #include "scene/limits.h"
 
-static const float PI = 3.14159265f;
-
 struct world_camera api_camera(const struct ag_camera *camera)
 {
     vec3s eye = api_vec3(camera->eye), up = api_vec3(camera->up);
@@ -35,7 +33,7 @@ enum ag_result api_camera_check(struct ag_context *context, const char *function
     AG_REQUIRE_FOR(function, context, glms_vec3_norm(forward) > 0.0f,
                    "the camera's eye and target are the same point");
     AG_REQUIRE_FOR(function, context,
-                   camera->vertical_fov_rad > 0.0f && camera->vertical_fov_rad < PI,
+                   camera->vertical_fov_rad > 0.0f && camera->vertical_fov_rad < GLM_PIf,
                    "the camera's vertical_fov_rad %g is not between 0 and pi",
                    (double)camera->vertical_fov_rad);
     AG_REQUIRE_FOR(function, context, camera->near_m > 0.0f && isfinite(camera->near_m),

@@ -8,7 +8,6 @@
 
 #include <string.h>
 
-static const float HALF_PI = 1.57079633f;
 static const double MAX_TIME_S = 1e9;
 
 static struct ag_context *context_of(const struct ag_scene *scene)
@@ -197,7 +196,7 @@ enum ag_result ag_scene_look_at(struct ag_scene *scene, const float *eye, const 
                "eye or target is not within %g m of the origin", (double)SCENE_MAX_DISTANCE_M);
     vec3s forward = vec3_towards(api_vec3(eye), api_vec3(target));
     AG_REQUIRE(context, glms_vec3_norm(forward) > 0.0f, "eye and target are the same point");
-    AG_REQUIRE(context, vertical_fov_rad > 0.0f && vertical_fov_rad < 2 * HALF_PI,
+    AG_REQUIRE(context, vertical_fov_rad > 0.0f && vertical_fov_rad < GLM_PIf,
                "vertical_fov_rad %g is not between 0 and pi", (double)vertical_fov_rad);
     const struct scene_pose *pose = pose_at(scene, 0, 0.0);
     if (!pose) return api_done(context, false);

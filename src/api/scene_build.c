@@ -7,8 +7,6 @@ _Static_assert((int)AG_LIGHT_SUN == (int)LIGHT_SUN && (int)AG_LIGHT_POINT == (in
                    (int)AG_LIGHT_SPOT == (int)LIGHT_SPOT,
                "types are converted by value");
 
-static const float HALF_PI = 1.57079633f;
-
 void ag_material_desc_default(struct ag_material_desc *desc)
 {
     if (!desc) return;
@@ -97,7 +95,7 @@ void ag_light_desc_default(struct ag_light_desc *desc, enum ag_light_type type)
     *desc = (struct ag_light_desc){ .type = type,
                                     .direction = { 0, -1, 0 },
                                     .intensity = { 1, 1, 1 },
-                                    .outer_rad = HALF_PI / 2,
+                                    .outer_rad = GLM_PI_4f,
                                     .enabled = true };
 }
 

@@ -8,8 +8,6 @@ _Static_assert((int)ALPHA_OPAQUE == 0 && (int)ALPHA_MASK == AG_ALPHA_MASK - AG_A
                    (int)ALPHA_BLEND == AG_ALPHA_BLEND - AG_ALPHA_OPAQUE,
                "modes are converted by value");
 
-static const float HALF_PI = 1.57079633f;
-
 static enum ag_result material_check(const char *function, struct ag_context *context,
                                      const struct ag_material_desc *desc)
 {
@@ -73,7 +71,7 @@ static enum ag_result light_check(const char *function, struct ag_context *conte
     if (desc->type == AG_LIGHT_SPOT)
         AG_REQUIRE_FOR(function, context,
                        desc->inner_rad >= 0.0f && desc->inner_rad < desc->outer_rad &&
-                           desc->outer_rad <= HALF_PI * (1 + 1e-6f),
+                           desc->outer_rad <= GLM_PI_2f * (1 + 1e-6f),
                        "inner_rad %g and outer_rad %g are not 0 to half pi, inner below outer",
                        (double)desc->inner_rad, (double)desc->outer_rad);
     return AG_OK;
@@ -90,7 +88,7 @@ enum ag_result parts_light(const char *function, const struct ag_scene *scene,
     out->light.type = (enum light_type)desc->type;
     out->light.intensity = api_vec3(desc->intensity);
     out->light.inner_rad = desc->inner_rad;
-    out->light.outer_rad = fminf(desc->outer_rad, HALF_PI);
+    out->light.outer_rad = fminf(desc->outer_rad, GLM_PI_2f);
     out->light.off = !desc->enabled;
     return AG_OK;
 }

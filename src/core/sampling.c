@@ -3,13 +3,11 @@
 
 #include <math.h>
 
-static const float PI = 3.14159265358979f;
-
 // A direction around +z from 1 − cosθ (0…2) and φ / 2π.
 static vec3s direction_of(float one_minus_cos, float turns)
 {
     float sin_theta = sqrtf(fmaxf(0.0f, one_minus_cos * (2.0f - one_minus_cos)));
-    float phi = 2.0f * PI * turns;
+    float phi = 2.0f * GLM_PIf * turns;
     return vec3_of(sin_theta * cosf(phi), sin_theta * sinf(phi), 1.0f - one_minus_cos);
 }
 

@@ -13,7 +13,6 @@
 #include <string.h>
 
 static const float BLEND_CUTOFF = 0.5f; // blended materials are drawn as masks
-static const double PI = 3.14159265358979323846;
 // Upper limit of subdivisions of a triangle's edge when its maps are averaged.
 enum { MAX_STRATA = 32 };
 
@@ -417,7 +416,8 @@ struct flux {
 static struct flux flux_of(const struct emitter_triangle *t)
 {
     struct flux f;
-    for (int c = 0; c < 3; c++) f.channel[c] = PI * (double)t->radiance.raw[c] * (double)t->area_m2;
+    for (int c = 0; c < 3; c++)
+        f.channel[c] = GLM_PI * (double)t->radiance.raw[c] * (double)t->area_m2;
     return f;
 }
 

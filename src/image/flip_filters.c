@@ -4,9 +4,9 @@
 // normalization on it follow the paper.
 #include "image/flip_filters.h"
 
-#include <math.h>
+#include "core/vec.h"
 
-static const double PI = 3.14159265358979323846;
+#include <math.h>
 
 // Table 1 of the paper.
 static const double LIGHTNESS_B = 0.0047, RED_GREEN_B = 0.0053;
@@ -32,7 +32,7 @@ static double make_gaussian(double sigma_px, int radius, struct filter *out)
 
 static double sigma_deg(double b)
 {
-    return sqrt(b / 2.0) / PI;
+    return sqrt(b / 2.0) / GLM_PI;
 }
 
 static void make_contrast_sensitivity(double pixels_per_degree, struct flip_filters *out)
@@ -44,8 +44,8 @@ static void make_contrast_sensitivity(double pixels_per_degree, struct flip_filt
                                 &out->filter[FLIP_BLUE_YELLOW_WIDE]);
     double narrow = make_gaussian(sigma_deg(NARROW_B) * pixels_per_degree, radius,
                                   &out->filter[FLIP_BLUE_YELLOW_NARROW]);
-    wide *= wide * WIDE_A * sqrt(PI / WIDE_B);
-    narrow *= narrow * NARROW_A * sqrt(PI / NARROW_B);
+    wide *= wide * WIDE_A * sqrt(GLM_PI / WIDE_B);
+    narrow *= narrow * NARROW_A * sqrt(GLM_PI / NARROW_B);
     out->wide_share = (float)(wide / (wide + narrow));
     out->radius = radius;
 }

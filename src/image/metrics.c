@@ -229,10 +229,9 @@ static bool percentile_error(struct host *host, const float *errors, size_t coun
 // stays inside Rec. 709 (0.18). Its order is preserved in grey.
 static vec3s error_colour(float t)
 {
-    const float pi = 3.14159265f;
     float grey = t > 0.08f ? (100.0f * t + 16.0f) / 116.0f : cbrtf(100.0f * t / 903.3f);
-    float chroma = 0.18f * sinf(pi * t);
-    float hue_rad = (280.0f + 180.0f * t) * (pi / 180.0f);
+    float chroma = 0.18f * sinf(GLM_PIf * t);
+    float hue_rad = (280.0f + 180.0f * t) * (GLM_PIf / 180.0f);
     float a = chroma * cosf(hue_rad), b = chroma * sinf(hue_rad);
     float l = grey + 0.3963377774f * a + 0.2158037573f * b;
     float m = grey - 0.1055613458f * a - 0.0638541728f * b;

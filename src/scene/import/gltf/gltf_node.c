@@ -6,8 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-static const float PI = 3.14159265358979f;
-
 // {"afterglow_mobility": "static" or "movable"} in the extras of a node.
 static void load_mobility(struct import *import, json_t *extras, struct node *out)
 {
@@ -110,9 +108,10 @@ static bool load_instances(struct gltf *gltf, size_t i)
 static bool load_spot(struct gltf_object object, struct light *light)
 {
     struct gltf_object spot = gltf_child(object, "spot");
-    light->outer_rad = gltf_float(spot, "outerConeAngle", PI / 4.0f, 1e-4f, PI / 2.0f + 1e-4f);
-    light->inner_rad = gltf_float(spot, "innerConeAngle", 0.0f, 0.0f, PI);
-    light->outer_rad = fminf(light->outer_rad, PI / 2.0f);
+    light->outer_rad =
+        gltf_float(spot, "outerConeAngle", GLM_PIf / 4.0f, 1e-4f, GLM_PIf / 2.0f + 1e-4f);
+    light->inner_rad = gltf_float(spot, "innerConeAngle", 0.0f, 0.0f, GLM_PIf);
+    light->outer_rad = fminf(light->outer_rad, GLM_PIf / 2.0f);
     // Files have equal angles for a hard edge; the falloff needs a nonzero width.
     light->inner_rad = fminf(light->inner_rad, 0.999f * light->outer_rad);
     return !object.gltf->failed;
@@ -174,7 +173,7 @@ static bool load_camera(struct gltf *gltf, size_t i)
     struct camera *camera = &scene->cameras[scene->camera_count];
     *camera = (struct camera){ .node = (int)gltf->scene_node[i] };
     camera->name = import_name(gltf->import, gltf_string(object, "name"), "camera", (size_t)index);
-    camera->vertical_fov_rad = gltf_float(perspective, "yfov", 1.0f, 1e-3f, PI - 1e-3f);
+    camera->vertical_fov_rad = gltf_float(perspective, "yfov", 1.0f, 1e-3f, GLM_PIf - 1e-3f);
     camera->near_m = gltf_float(perspective, "znear", 0.01f, 1e-6f, FLT_MAX);
     scene->camera_count++;
     return camera->name && !gltf->failed;
