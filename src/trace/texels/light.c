@@ -3,6 +3,7 @@
 #include "core/rng.h"
 #include "core/sampling.h"
 #include "trace/surface.h"
+#include "trace/texels/inside.h"
 
 #include <math.h>
 
@@ -11,8 +12,7 @@ struct texel_seen texel_seen_at(const struct trace_scene *scene, const struct ra
 {
     const struct trace_mesh *mesh = &scene->meshes[hit->geometry];
     const float along = -glms_vec3_dot(mesh->facets[hit->triangle].normal, ray->direction);
-    struct texel_seen seen = { .back = along < 0.0f };
-    seen.inside = seen.back && !mesh->material->double_sided;
+    struct texel_seen seen = { .back = along<0.0f, .inside = inside_side_of(scene, ray, hit)> 0 };
     if (seen.inside || !mesh->material->emissive) return seen;
     seen.emission = surface_emission(mesh, hit->triangle, hit->u, hit->v);
     seen.pdf = light_emitter_pdf(scene, hit->geometry, hit->triangle, hit->distance, fabsf(along));

@@ -2,9 +2,9 @@
 
 #include "core/parallel.h"
 #include "scene/statics.h"
-#include "trace/trace.h"
 
 #include "techniques/mrt/level/wall.h"
+#include "trace/texels/light.h"
 
 #include <math.h>
 
@@ -22,20 +22,18 @@ static struct frame_probes grid_of(const struct mrt_block_map *map, int p)
 
 struct job {
     struct mrt_published *out;
-    const struct scene *scene;
     struct trace_scene *trace;
     struct probe_sphere sphere;
 };
 
-static float look(void *user, const struct probe_ray *ray, bool *inside)
+static float look(void *user, const struct probe_ray *from, bool *inside)
 {
     const struct job *job = user;
-    struct trace_hit hit;
-    *inside = false;
-    if (!trace_closest(job->trace, ray->from, ray->direction, INFINITY, &hit)) return INFINITY;
-    const int material = scene_mesh_of(job->scene, hit.instance)->material;
-    *inside = !hit.front && !job->scene->materials[material].double_sided;
-    return hit.distance;
+    const struct ray ray = { from->from, from->direction, 0.0f, INFINITY };
+    struct ray_hit hit;
+    const bool met = embree_closest(job->trace->embree, &ray, NULL, false, &hit);
+    *inside = met && texel_seen_at(job->trace, &ray, &hit).inside;
+    return met ? hit.distance : INFINITY;
 }
 
 static void trace_probe(void *user, size_t i)
@@ -61,7 +59,6 @@ bool mrt_published_init(struct mrt_published *out, struct host *host, const stru
     out->depth = host_alloc(host, count, sizeof *out->depth);
     const bool ok = out->place && out->depth && scene_statics_init(&statics, host, pose) &&
                     (job.trace = trace_scene_create(host, &statics.pose));
-    job.scene = &statics.scene;
     if (ok) parallel_for(count, 8, trace_probe, &job);
     trace_scene_destroy(job.trace);
     scene_statics_finish(&statics);
