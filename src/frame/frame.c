@@ -255,7 +255,8 @@ static uint32_t direct_features(const struct frame *f)
                               : f->common->scene.max_emissive > 0 || f->common->scene.has_unlit;
     return (f->layers[FRAME_DIELECTRIC].id ? DIRECT_DIELECTRIC : 0) |
            (f->common->options.shadow_filter > 0 ? DIRECT_FILTERED : 0) |
-           (emission ? DIRECT_EMISSION : 0);
+           (emission ? DIRECT_EMISSION : 0) |
+           (f->needs & FRAME_NEEDS_DIRECT_IRRADIANCE ? DIRECT_IRRADIANCE : 0);
 }
 
 static size_t most_pixels(const struct frame_common *common)
@@ -416,7 +417,8 @@ static void record_direct(struct frame *f, struct gpu_cmd *cmd)
         .width = f->width,
         .height = f->height,
     };
-    direct_record(&f->common->direct, cmd, &in, f->layers[FRAME_DIRECT]);
+    direct_record(&f->common->direct, cmd, &in, f->layers[FRAME_DIRECT],
+                  f->layers[FRAME_DIRECT_IRRADIANCE]);
 }
 
 static void record_rsm(struct frame *f, struct gpu_cmd *cmd)
@@ -532,6 +534,7 @@ static uint32_t display_kind(const struct frame_shown *shown)
 {
     if (shown->image.id) return DISPLAY_RADIANCE;
     switch (shown->layer) {
+    case FRAME_DIRECT_IRRADIANCE:
     case FRAME_IRRADIANCE:
         return DISPLAY_IRRADIANCE;
     case FRAME_ALBEDO:

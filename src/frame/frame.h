@@ -51,6 +51,10 @@ enum frame_layer {
     // RGBA16F: scaled radiance of punctual lights and emission. Alpha: the diffuse lobe over
     // albedo/π, 1−E_d for dielectrics, 0 for unlit materials and without a surface.
     FRAME_DIRECT,
+    // RGBA16F: scaled irradiance of punctual lights with their shadows at the shading normal, which
+    // the diffuse lobe of FRAME_DIRECT reflects; alpha 1. 0 without a surface and for unlit
+    // materials. At most 65504. With FRAME_NEEDS_DIRECT_IRRADIANCE only.
+    FRAME_DIRECT_IRRADIANCE,
     FRAME_IRRADIANCE, // RGBA16F: scaled irradiance, indirect
     FRAME_SPECULAR,   // RGBA16F: scaled radiance, indirect
     FRAME_VISIBILITY, // R8
@@ -147,6 +151,13 @@ enum frame_need {
     FRAME_UPDATE_NEEDS_GBUFFER = 128, // `update` reads depth and normals of the first view
     // Dynamic instances neither send nor occlude a source's light: a delta adds what they do.
     FRAME_LEAVES_DYNAMIC = 256,
+    // `record` reads E_direct, FRAME_DIRECT_IRRADIANCE. A source that replaces the diffuse
+    // reflection of direct light, as subsurface scattering does, writes E − E_direct in place of E:
+    //     L = direct + albedo·(1−metallic)/π · (1−E_d) · (E − E_direct) + specular.
+    // The difference and FRAME_INDIRECT may be negative: composite, exposure and read-back clamp
+    // neither. With E ≥ 0, FRAME_COLOR is at least −2⁻¹⁰ of direct, which is rounding. Visibility
+    // below 1 scales the difference, and so keeps a share of the reflection.
+    FRAME_NEEDS_DIRECT_IRRADIANCE = 512,
 };
 
 struct frame_indirect {

@@ -17,6 +17,8 @@ static const struct layer table[FRAME_LAYER_COUNT] = {
     [FRAME_MOTION] = { "frame.motion", GPU_RGBA16F, GPU_SAMPLED | GPU_ATTACHMENT },
     [FRAME_ID] = { "frame.id", GPU_RG32U, GPU_SAMPLED | GPU_ATTACHMENT },
     [FRAME_DIRECT] = { "frame.direct", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
+    [FRAME_DIRECT_IRRADIANCE] = { "frame.direct_irradiance", GPU_RGBA16F,
+                                  GPU_SAMPLED | GPU_STORAGE },
     [FRAME_IRRADIANCE] = { "frame.irradiance", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
     [FRAME_SPECULAR] = { "frame.specular", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
     [FRAME_VISIBILITY] = { "frame.visibility", GPU_R8, GPU_SAMPLED | GPU_STORAGE },
@@ -64,6 +66,7 @@ uint32_t frame_gbuffer_layers(uint32_t needs, bool has_dielectrics)
 uint32_t frame_image_layers(const struct frame_input *input, uint32_t needs)
 {
     return 1u << FRAME_DIRECT | 1u << FRAME_COLOR |
+           (needs & FRAME_NEEDS_DIRECT_IRRADIANCE ? 1u << FRAME_DIRECT_IRRADIANCE : 0) |
            (needs & FRAME_WRITES_IRRADIANCE ? 1u << FRAME_IRRADIANCE : 0) |
            (needs & FRAME_WRITES_SPECULAR ? 1u << FRAME_SPECULAR : 0) |
            (needs & FRAME_WRITES_VISIBILITY ? 1u << FRAME_VISIBILITY : 0) |

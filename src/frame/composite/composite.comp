@@ -41,7 +41,7 @@ layout(push_constant, scalar) uniform push_block
     composite_push push;
 };
 
-// direct: of direct/direct.comp.
+// direct: of direct/direct.comp. Irradiance may be negative: FRAME_NEEDS_DIRECT_IRRADIANCE.
 vec3 indirect_light(ivec2 pixel, vec4 direct)
 {
     vec3 light = vec3(0.0);

@@ -35,7 +35,9 @@ static bool prepare_pipeline(struct direct *d, uint32_t variant)
     gpu_constants_of_bits(variant, constants, DIRECT_CONSTANT_BITS);
     constants[DIRECT_CONSTANT_BITS] =
         (struct gpu_constant){ DIRECT_CONSTANT_CASCADES, d->cascades };
-    return gpu_compute_pipeline_create(d->gpu, "frame.direct", &shader_direct_comp, constants,
+    const struct gpu_shader *shader =
+        variant & DIRECT_IRRADIANCE ? &shader_direct_irradiance_comp : &shader_direct_plain_comp;
+    return gpu_compute_pipeline_create(d->gpu, "frame.direct", shader, constants,
                                        DIRECT_CONSTANT_BITS + 1, &d->pipelines[variant]);
 }
 
@@ -49,19 +51,16 @@ static bool prepare_list(struct direct *d, size_t pixels)
     return gpu_buffer_create(d->gpu, &desc, &d->list);
 }
 
-static bool has_emission(uint32_t variant)
+static bool prepare_undecided(struct direct *d, uint32_t variant)
 {
-    return variant >> DIRECT_CONSTANT_EMISSION & 1u;
-}
-
-static bool prepare_undecided(struct direct *d, bool emission)
-{
+    const bool irradiance = variant & DIRECT_IRRADIANCE, emission = variant & DIRECT_EMISSION;
     const struct gpu_constant constants[] = { { DIRECT_CONSTANT_CASCADES, d->cascades },
                                               { DIRECT_CONSTANT_EMISSION, emission } };
-    gpu_pipeline *pipeline = &d->undecided[emission];
-    return pipeline->id ||
-           gpu_compute_pipeline_create(d->gpu, "frame.direct_undecided",
-                                       &shader_direct_undecided_comp, constants, 2, pipeline);
+    const struct gpu_shader *shader =
+        irradiance ? &shader_direct_undecided_irradiance_comp : &shader_direct_undecided_plain_comp;
+    gpu_pipeline *pipeline = &d->undecided[irradiance][emission];
+    return pipeline->id || gpu_compute_pipeline_create(d->gpu, "frame.direct_undecided", shader,
+                                                       constants, 2, pipeline);
 }
 
 bool direct_prepare(struct direct *d, uint32_t variant, size_t pixels)
@@ -69,8 +68,7 @@ bool direct_prepare(struct direct *d, uint32_t variant, size_t pixels)
     const uint32_t blocks = direct_variant_of_blocks(variant);
     // Every binding of the shader needs a buffer: that of a pixel where there is no list.
     return prepare_pipeline(d, variant) && prepare_list(d, blocks ? pixels : 1) &&
-           (!blocks ||
-            (prepare_pipeline(d, blocks) && prepare_undecided(d, has_emission(variant))));
+           (!blocks || (prepare_pipeline(d, blocks) && prepare_undecided(d, blocks)));
 }
 
 // No pixels, and 0 x 1 x 1 groups.
@@ -89,22 +87,25 @@ static gpu_image emissive_or_other(const struct direct_input *in)
 
 // The shadow test of the pixels in the list.
 static void record_undecided(const struct direct *d, struct gpu_cmd *cmd,
-                             const struct direct_input *in, gpu_image out)
+                             const struct direct_input *in, gpu_image out, gpu_image irradiance)
 {
+    const bool has_irradiance = in->variant & DIRECT_IRRADIANCE;
+    const bool has_emission = in->variant & DIRECT_EMISSION;
     gpu_dispatch_indirect(
-        cmd, d->undecided[has_emission(in->variant)],
+        cmd, d->undecided[has_irradiance][has_emission],
         GPU_BIND(in->constants, in->shadow_sun,
                  { "shadow_sun_depths", .image = in->shadow_sun_maps, .sampler = d->nearest },
                  { "shadow_blocks", .image = in->shadow_blocks, .sampler = d->nearest },
                  { "depth_layer", .image = in->depth, .sampler = d->nearest },
                  { "normal_layer", .image = in->normal, .sampler = d->nearest },
                  { "emissive_layer", .image = emissive_or_other(in), .sampler = d->nearest },
-                 { "direct_list", .buffer = d->list }, { "direct_layer", .image = out }),
+                 { "direct_list", .buffer = d->list }, { "direct_layer", .image = out },
+                 { "direct_irradiance_layer", .image = irradiance }),
         NULL, 0, d->list, offsetof(struct direct_list_header, groups));
 }
 
 void direct_record(const struct direct *d, struct gpu_cmd *cmd, const struct direct_input *in,
-                   gpu_image out)
+                   gpu_image out, gpu_image irradiance)
 {
     struct direct_push push = { in->shadow_radius };
     const bool has_dielectric = in->dielectric.id != 0;
@@ -128,9 +129,10 @@ void direct_record(const struct direct *d, struct gpu_cmd *cmd, const struct dir
                  { "emissive_layer", .image = emissive_or_other(in), .sampler = d->nearest },
                  in->ggx_albedo,
                  { "shadow_blocks", .image = in->shadow_blocks, .sampler = d->nearest },
-                 { "direct_list", .buffer = d->list }, { "direct_layer", .image = out }),
+                 { "direct_list", .buffer = d->list }, { "direct_layer", .image = out },
+                 { "direct_irradiance_layer", .image = irradiance }),
         &push, sizeof push, gpu_groups(in->width, 8), gpu_groups(in->height, 8), 1);
-    if (has_list) record_undecided(d, cmd, in, out);
+    if (has_list) record_undecided(d, cmd, in, out, irradiance);
     gpu_scope_end(cmd);
 }
 
@@ -138,7 +140,7 @@ void direct_finish(struct direct *d)
 {
     for (int i = 0; d->gpu && i < DIRECT_VARIANTS; i++)
         gpu_pipeline_destroy(d->gpu, &d->pipelines[i]);
-    for (int i = 0; d->gpu && i < 2; i++) gpu_pipeline_destroy(d->gpu, &d->undecided[i]);
+    for (int i = 0; d->gpu && i < 4; i++) gpu_pipeline_destroy(d->gpu, &d->undecided[i / 2][i % 2]);
     if (d->gpu) gpu_buffer_destroy(d->gpu, &d->list);
     *d = (struct direct){ 0 };
 }

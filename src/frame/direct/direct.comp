@@ -4,7 +4,8 @@
 
 // Direct light: emission plus reflected light of all punctual lights with shadows. Pixels without a
 // surface get the sky radiance. Alpha: the diffuse lobe over albedo/π, for the composite's indirect
-// light; 0 for unlit materials and without a surface.
+// light; 0 for unlit materials and without a surface. A variant also writes the irradiance that the
+// diffuse lobe reflects.
 #define GGX_ALBEDO_BINDING 10
 #define FRAME_CONSTANTS_COPIED
 #include "frame/frame.glsl"
@@ -34,6 +35,11 @@ layout(set = 0, binding = 7) uniform sampler2D material_layer;
 layout(set = 0, binding = 8) uniform sampler2D emissive_layer;
 layout(set = 0, binding = 11) uniform sampler2D dielectric_layer;
 layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D direct_layer;
+#if DIRECT_IRRADIANCE
+layout(set = 0, binding = 18, rgba16f) uniform writeonly image2D direct_irradiance_layer;
+
+vec4 irradiance = vec4(0.0); // scaled, of the lights so far with their shadows; 1: a lit surface
+#endif
 
 layout(set = 0, binding = 17, scalar) buffer direct_list
 {
@@ -167,6 +173,9 @@ vec3 reflected_radiance(surface s, frame_light light)
     bool facing = cosine > 0.0 && attenuation > 0.0;
     if (light.shadow_first >= 0) attenuation *= visibility(s, light, to_light, facing);
     if (!facing) return vec3(0.0);
+#if DIRECT_IRRADIANCE
+    irradiance.rgb += light.intensity * (attenuation * cosine);
+#endif
     vec3 brdf = s.lobes.diffuse + brdf_specular(s.lobes, s.normal, s.to_viewer, to_light);
     return brdf * light.intensity * (attenuation * cosine);
 }
@@ -206,9 +215,15 @@ void main()
         if (frame_is_lit(albedo.a)) {
             surface s = read_surface(pixel, depth, albedo.rgb);
             diffuse = s.lobes.diffuse_share;
+#if DIRECT_IRRADIANCE
+            irradiance.a = 1.0;
+#endif
             if (HAS_SUNS || HAS_LOCALS) radiance += reflected_by(s);
         }
     }
     imageStore(direct_layer, pixel, vec4(min(radiance, vec3(HALF_MAX)), diffuse));
+#if DIRECT_IRRADIANCE
+    imageStore(direct_irradiance_layer, pixel, min(irradiance, vec4(HALF_MAX)));
+#endif
     if (BLOCKS && undecided) append(pixel);
 }

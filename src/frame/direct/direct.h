@@ -1,22 +1,23 @@
-// Direct light: one compute pass from the G-buffer and the shadow maps to FRAME_DIRECT.
+// Direct light: one compute pass from the G-buffer and the shadow maps to FRAME_DIRECT, and to
+// FRAME_DIRECT_IRRADIANCE if a technique needs it.
 #pragma once
 
 #include "frame/direct/direct_shared.h"
 #include "gpu/gpu.h"
 
-enum { DIRECT_VARIANTS = 1 << DIRECT_CONSTANT_BITS };
-
 enum direct_feature {
     DIRECT_DIELECTRIC = 1 << DIRECT_CONSTANT_DIELECTRIC,
     DIRECT_FILTERED = 1 << DIRECT_CONSTANT_FILTERED,
     DIRECT_EMISSION = 1 << DIRECT_CONSTANT_EMISSION,
+    DIRECT_IRRADIANCE = 1 << DIRECT_CONSTANT_BITS, // of other shaders, not a constant
+    DIRECT_VARIANTS = 2 << DIRECT_CONSTANT_BITS,
 };
 
 struct direct {
     struct gpu *gpu;
-    gpu_pipeline pipelines[DIRECT_VARIANTS]; // bit DIRECT_CONSTANT_…
+    gpu_pipeline pipelines[DIRECT_VARIANTS]; // bits DIRECT_CONSTANT_…, and DIRECT_IRRADIANCE
     uint32_t cascades;                       // per sun
-    gpu_pipeline undecided[2];               // [with emission]
+    gpu_pipeline undecided[2][2];            // [with irradiance][with emission]
     gpu_buffer list;                         // struct direct_list_header, pixels
     gpu_sampler nearest;
 };
@@ -41,6 +42,7 @@ uint32_t direct_variant_of_blocks(uint32_t variant);
 // Creates what is missing for the variant, and for its variant of blocks, in images of up to so
 // many pixels.
 bool direct_prepare(struct direct *direct, uint32_t variant, size_t pixels);
+// irradiance: with DIRECT_IRRADIANCE, else empty.
 void direct_record(const struct direct *direct, struct gpu_cmd *cmd, const struct direct_input *in,
-                   gpu_image out);
+                   gpu_image out, gpu_image irradiance);
 void direct_finish(struct direct *direct); // accepts zero

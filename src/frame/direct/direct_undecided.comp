@@ -2,7 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// The shadow test of the pixels that direct.comp listed: those in shadow keep their emission alone.
+// The shadow test of the pixels that direct.comp listed: those in shadow keep their emission alone,
+// and have no irradiance.
 #define FRAME_CONSTANTS_COPIED
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
@@ -20,6 +21,9 @@ layout(set = 0, binding = 5, scalar) readonly buffer direct_list
     direct_list_header list;
     uint list_pixels[]; // y << 16 | x
 };
+#if DIRECT_IRRADIANCE
+layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D direct_irradiance_layer;
+#endif
 
 layout(constant_id = DIRECT_CONSTANT_EMISSION) const bool HAS_EMISSION = true;
 
@@ -40,4 +44,7 @@ void main()
         emission =
             min(texelFetch(emissive_layer, pixel, 0).rgb * frame.emissive_scale, vec3(HALF_MAX));
     imageStore(direct_layer, pixel, vec4(emission, imageLoad(direct_layer, pixel).a));
+#if DIRECT_IRRADIANCE
+    imageStore(direct_irradiance_layer, pixel, vec4(vec3(0.0), 1.0));
+#endif
 }
