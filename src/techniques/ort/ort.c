@@ -5,6 +5,7 @@
 #include "techniques/ort/ort.h"
 
 #include "techniques/ort/ort_state.h"
+#include "bake/report.h"
 #include "scene/statics.h"
 
 #include "technique_shaders.h"
@@ -74,11 +75,16 @@ static void list_pipelines(const struct ort *s, struct gpu_objects *out)
         (struct gpu_constant){ ORT_GATHER_BYTES, s->options.precision == ORT_BYTE };
     out->constants[first + 2] =
         (struct gpu_constant){ ORT_GATHER_SLICES, s->options.order == ORT_SLICES };
+    out->constants[first + 3] =
+        (struct gpu_constant){ ORT_FINISH_SCATTERS, s->options.transfer != ORT_RADIOSITY };
     GPU_ADD(out, 0, { GPU_PIPELINE, PIPELINE(direct), .shader = &shader_ort_direct_comp },
             { GPU_PIPELINE, PIPELINE(spread), .shader = &shader_ort_spread_comp },
             { GPU_PIPELINE, PIPELINE(gather), .shader = &shader_ort_gather_comp,
               .consts = 7u << first },
-            { GPU_PIPELINE, PIPELINE(finish), .shader = &shader_ort_finish_comp });
+            { GPU_PIPELINE, PIPELINE(finish), .shader = &shader_ort_finish_comp,
+              .consts = 8u << first });
+    if (s->options.transfer != ORT_RADIOSITY)
+        GPU_ADD(out, 0, { GPU_PIPELINE, PIPELINE(replace), .shader = &shader_ort_replace_comp });
 }
 
 // What ort_upload creates.
@@ -95,6 +101,17 @@ static void list(const struct ort *s, struct gpu_objects *out)
     list_pipelines(s, out);
     light_map_list(&s->light_map, offsetof(struct ort, light_map), s->options.specular, out);
     list_uploads(out);
+}
+
+static bool bake_report(struct report *report, struct bake *bake, const struct technique_bake *how)
+{
+    const struct tensor *energy = tensors_find(bake_tensors(bake), ORT_ENERGY);
+    const struct tensor *offsets = tensors_find(bake_tensors(bake), ORT_OFFSETS);
+    (void)how;
+    if (!energy || !offsets) return true;
+    report_number(report, "offsets", (double)offsets->shape[0]);
+    report_number(report, "energy_ratio", (double)ort_energy_ratio(energy->data));
+    return true;
 }
 
 static bool load(void *state, const struct tensors *bake)
@@ -130,8 +147,7 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
 static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct ort *s = state;
-    if (view->layers[FRAME_ID].id && s->map.texel_count > 0)
-        light_map_record_apply(&s->light_map, cmd, view);
+    if (view->layers[FRAME_ID].id && s->map.texel_count > 0) ort_record_apply(s, cmd, view);
 }
 
 static gpu_image light_map(void *state)
@@ -154,7 +170,8 @@ static void destroy(void *state)
 static uint32_t more_needs(const void *options)
 {
     const struct ort_options *o = options;
-    return o->specular ? FRAME_WRITES_SPECULAR : 0;
+    return (o->specular ? FRAME_WRITES_SPECULAR : 0) |
+           (o->transfer != ORT_RADIOSITY ? FRAME_NEEDS_DIRECT_IRRADIANCE : 0);
 }
 
 // Of a square light map that texels fill by two thirds. Pieces of maps cover a third of it in the
@@ -185,6 +202,7 @@ const struct technique technique_ort = {
     .state_size = sizeof(struct ort),
     .more_needs = more_needs,
     .bake = ort_bake,
+    .bake_report = bake_report,
     .create = create,
     .load = load,
     .invalidate = invalidate,

@@ -2,9 +2,6 @@
 #include "techniques/ort/bins.h"
 #include "techniques/ort/ort_state.h"
 
-#include "core/half.h"
-
-#include <math.h>
 #include <string.h>
 
 enum { RUN_WORDS = 4 }; // of halves; of bytes half as many
@@ -12,25 +9,18 @@ enum { RUN_WORDS = 4 }; // of halves; of bytes half as many
 struct filling {
     const struct ort *state;
     const struct ort_maps *maps;
-    const float *scale;
-    bool bytes;
     uint32_t *words; // of a bin
 };
 
-static uint32_t byte_of(uint16_t half, float scale)
+// A weight of a texel in a run, which is an entry of the bin. weight: its number in a bake.
+static void put_weight(const struct filling *f, size_t entry, uint32_t in_run, size_t weight)
 {
-    const float value = scale > 0.0f ? float_from_half(half) / scale : 0.0f;
-    return (uint32_t)lrintf(fminf(fmaxf(value, 0.0f), 255.0f));
-}
-
-// entry: of the run and colour in the bin.
-static void put_weight(const struct filling *f, size_t entry, uint32_t in_run, uint16_t half,
-                       float scale)
-{
-    if (f->bytes)
-        f->words[entry * RUN_WORDS / 2 + in_run / 4] |= byte_of(half, scale) << in_run % 4 * 8;
+    if (f->maps->bytes)
+        f->words[entry * RUN_WORDS / 2 + in_run / 4] |= (uint32_t)f->maps->bytes[weight]
+                                                        << in_run % 4 * 8;
     else
-        f->words[entry * RUN_WORDS + in_run / 2] |= (uint32_t)half << in_run % 2 * 16;
+        f->words[entry * RUN_WORDS + in_run / 2] |= (uint32_t)f->maps->weight[weight]
+                                                    << in_run % 2 * 16;
 }
 
 static void put_texel(const struct filling *f, const struct ort_piece *piece, uint32_t x,
@@ -40,12 +30,13 @@ static void put_texel(const struct filling *f, const struct ort_piece *piece, ui
     const int32_t *offset = f->maps->offset + 2 * (size_t)piece->map;
     const struct ort_place at = { piece->x + x, piece->y + y };
     const uint32_t texel = ort_texel_at(map, at, 0, 0);
-    if (texel == CHART_NONE || ort_texel_at(map, at, offset[0], offset[1]) == CHART_NONE) return;
-    const uint16_t *weight = f->maps->weight + 3 * ((size_t)texel * f->maps->count + piece->map);
+    if (texel == CHART_NONE || map->group_of[texel] != piece->map / f->maps->offsets) return;
+    if (ort_texel_at(map, at, offset[0], offset[1]) == CHART_NONE) return;
+    const size_t weight = 3 * ((size_t)texel * f->maps->offsets + piece->map % f->maps->offsets);
     const size_t column = (piece->bin_x + x) / ORT_RUN;
     const size_t run = column * ORT_BIN_SIDE + piece->bin_y + y;
     for (size_t c = 0; c < 3; c++)
-        put_weight(f, 3 * run + c, (piece->bin_x + x) % ORT_RUN, weight[c], f->scale[piece->map]);
+        put_weight(f, 3 * run + c, (piece->bin_x + x) % ORT_RUN, weight + c);
 }
 
 static uint32_t fill_bin(const struct filling *f, const struct ort_bins *bins, uint32_t bin,
@@ -77,14 +68,12 @@ static bool create_image(struct ort *s, uint32_t bins, enum gpu_format format)
     return gpu_image_create(s->gpu, &desc, &s->tables.bins);
 }
 
-bool ort_upload_bins(struct ort *s, const struct ort_maps *maps, const struct ort_bins *bins,
-                     const float *scale)
+bool ort_upload_bins(struct ort *s, const struct ort_maps *maps, const struct ort_bins *bins)
 {
-    const bool is_bytes = s->options.precision == ORT_BYTE;
-    const enum gpu_format format = is_bytes ? GPU_RG32U : GPU_RGBA32U;
+    const enum gpu_format format = maps->bytes ? GPU_RG32U : GPU_RGBA32U;
     const size_t bytes =
         (size_t)(3 * ORT_BIN_SIDE * ORT_BIN_SIDE / ORT_RUN) * (size_t)gpu_format_bytes(format);
-    const struct filling f = { s, maps, scale, is_bytes, host_alloc(s->host, bytes, 1) };
+    const struct filling f = { s, maps, host_alloc(s->host, bytes, 1) };
     const uint32_t count = bins->bin_count > 0 ? bins->bin_count : 1;
     bool ok = f.words && create_image(s, count, format);
     for (uint32_t bin = 0, piece = 0; ok && bin < bins->bin_count; bin++) {

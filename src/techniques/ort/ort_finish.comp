@@ -1,5 +1,6 @@
-// Light of each texel: what the maps transfer, the sky and emissive surfaces. The maps have no
-// directions: their vector irradiance is along the normal.
+// Light of each texel: what the maps transfer, and the first-order light of the sky and emissive
+// surfaces, unless that scatters below surfaces and is in the maps. The maps have no directions:
+// their vector irradiance is along the normal.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -9,6 +10,7 @@
 #include "techniques/ort/ort_shared.h"
 
 layout(local_size_x = ORT_LOCAL) in;
+layout(constant_id = ORT_FINISH_SCATTERS) const bool SCATTERS = false;
 
 layout(push_constant, scalar) uniform push_block
 {
@@ -28,8 +30,8 @@ void main()
     vec3 normal = light_map_texel_part(i, push.texels, TEXEL_NORMAL).xyz;
     for (int c = 0; c < 3; c++) {
         float sum = imageLoad(ort_sums, light_map_at(run + 2 * c))[x % 4u] / ORT_MAP_SCALE;
-        vec4 light =
-            vec4(sum, sum * normal) + light_map_unbounced(i, push.texels, c, push.emitters);
+        vec4 light = vec4(sum, sum * normal);
+        if (!SCATTERS) light += light_map_unbounced(i, push.texels, c, push.emitters);
         imageStore(texel_light, light_map_at(c * push.texels + i),
                    uvec4(light_map_pack(light), 0u, 0u));
     }

@@ -12,6 +12,11 @@ struct ort_map {
     uint32_t texel_count;   // of both sides
     uint32_t width, height; // of the plane: charts.width, charts_sides() · charts.height
     uint32_t *texel_at;     // [width · height]; CHART_NONE: none, as in gutters
+    // Texels whose offsets are the same: those of a large chart, the last ones of all others.
+    uint32_t group_count; // at least 1
+    uint8_t *group_of;    // [texel_count]
+    uint32_t *first;      // [group_count + 1] of the group, in `members`
+    uint32_t *members;    // [texel_count] group after group, in ascending order
 };
 
 bool ort_charts(const struct scene_pose *statics, const void *options, struct host *host,
@@ -50,7 +55,7 @@ static inline uint32_t ort_patch_count(uint32_t texels)
     return count == 0 ? 1 : count < ORT_MOST_PATCHES ? count : ORT_MOST_PATCHES;
 }
 
-// Offsets of a bake: as many as there are, if more are wanted.
+// Offsets of each group in a bake: as many as there are, if more are wanted.
 static inline uint32_t ort_offset_count(const struct ort_map *map,
                                         const struct ort_options *options)
 {

@@ -10,6 +10,8 @@ struct ort_options {
 };
 
 enum { ORT_ROWS_EXACT, ORT_ROWS_PAPER };
+enum { ORT_RADIOSITY, ORT_SCATTERING, ORT_BOTH };
+enum { ORT_EXPONENTIAL }; // of materials: others have the dipole
 enum { ORT_AVERAGE, ORT_MAXIMUM };
 enum { ORT_HALF, ORT_BYTE };
 enum { ORT_TILES, ORT_SLICES };

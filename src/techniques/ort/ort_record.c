@@ -79,3 +79,22 @@ void ort_record_update(struct ort *s, struct gpu_cmd *cmd, const struct frame_vi
     record_finish(s, cmd, view);
     record_map(s, cmd);
 }
+
+static void record_replace(struct ort *s, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    enum { LOCAL_2D = 8 };
+    gpu_scope_begin(cmd, "replace");
+    gpu_dispatch(
+        cmd, s->pipelines.replace,
+        GPU_BIND(view->constants_binding,
+                 { .name = "direct_irradiance", .image = view->layers[FRAME_DIRECT_IRRADIANCE] },
+                 { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+        NULL, 0, gpu_groups(view->width, LOCAL_2D), gpu_groups(view->height, LOCAL_2D), 1);
+    gpu_scope_end(cmd);
+}
+
+void ort_record_apply(struct ort *s, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    light_map_record_apply(&s->light_map, cmd, view);
+    if (s->options.transfer != ORT_RADIOSITY) record_replace(s, cmd, view);
+}

@@ -26,6 +26,8 @@
 #define ORT_GATHER_ROWS   0
 #define ORT_GATHER_BYTES  1
 #define ORT_GATHER_SLICES 2
+// And of the finish: all light of a texel, its own too, scatters below the surface.
+#define ORT_FINISH_SCATTERS 3
 
 struct ort_direct_push {
     uint32_t texels;

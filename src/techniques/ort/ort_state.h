@@ -16,7 +16,7 @@ struct ort_tables {
 };
 
 struct ort_pipelines {
-    gpu_pipeline direct, spread, gather, finish;
+    gpu_pipeline direct, spread, gather, finish, replace;
 };
 
 struct ort {
@@ -47,17 +47,24 @@ static inline uint32_t ort_blocks(const struct ort *state)
 // Tables of the light map and of a bake, which is untrusted, on the GPU.
 bool ort_upload(struct ort *state, const struct tensors *bake);
 
-// Transfer maps of a bake: maps[texel][offset][colour], halves times ORT_MAP_SCALE.
+// Transfer maps of a bake: maps[texel][offset][colour], halves times ORT_MAP_SCALE. Map
+// group · offsets + offset has the texels of a group.
 struct ort_maps {
     const int32_t *offset; // [count][2]
     const uint16_t *weight;
-    uint32_t count;
+    const uint8_t *bytes; // the same in steps of the maps' scales; NULL: of 16 bits
+    uint32_t offsets;     // of a texel
+    uint32_t count;       // of all groups
 };
+static inline const uint16_t *ort_weight(const struct ort_maps *maps, uint32_t texel, uint32_t map)
+{
+    return maps->weight + 3 * ((size_t)texel * maps->offsets + map % maps->offsets);
+}
 struct ort_bins;
-// The weights of pieces in bins. scale: [maps] of bytes.
-bool ort_upload_bins(struct ort *state, const struct ort_maps *maps, const struct ort_bins *bins,
-                     const float *scale);
-// For each workgroup of the gather and each part the pieces in it, bin after bin.
+// The weights of pieces in bins.
+bool ort_upload_bins(struct ort *state, const struct ort_maps *maps, const struct ort_bins *bins);
+// For each workgroup of the gather and each part the pieces in it, bin after bin. scale: [maps] of
+// bytes.
 bool ort_upload_lists(struct ort *state, const struct ort_maps *maps, const struct ort_bins *bins,
                       const float *scale);
 
@@ -65,3 +72,5 @@ bool ort_upload_lists(struct ort *state, const struct ort_maps *maps, const stru
 
 // The light map under the lights of a frame.
 void ort_record_update(struct ort *state, struct gpu_cmd *cmd, const struct frame_view *view);
+// A view's pixels.
+void ort_record_apply(struct ort *state, struct gpu_cmd *cmd, const struct frame_view *view);

@@ -9,7 +9,16 @@
 #include "techniques/technique.h"
 
 #define ORT_OFFSETS "offsets" // I32 [offsets][2]
+#define ORT_ENERGY  "energy"  // F32 [2][3], see ort_energy_ratio
 #define ORT_MAPS    "maps"    // F16 [texels][offsets][3], times ORT_MAP_SCALE
+
+// Light that all texels get of uniform first-order light by the points of the offsets, over that
+// they ought to get: rows of ORT_ENERGY, lumen. With `rows=exact` the maps have the latter.
+static inline float ort_energy_ratio(const float energy[6])
+{
+    const float exact = energy[3] + energy[4] + energy[5];
+    return exact > 0.0f ? (energy[0] + energy[1] + energy[2]) / exact : 1.0f;
+}
 
 // ---- bake/stages.c
 bool ort_bake(struct bake_plan *plan, const struct technique_bake *how);

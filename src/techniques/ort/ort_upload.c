@@ -5,20 +5,26 @@
 #include "core/half.h"
 
 #include <math.h>
+#include <string.h>
 
 struct content {
     struct ort_maps maps;
+    const float *energy; // ORT_ENERGY
     struct light_map_texels texels;
     uint32_t *shown; // [texels] whose light each one shows
     float *scale;    // [maps] of bytes
+    uint8_t *bytes;  // as ort_maps.bytes
 };
 
 static bool find_tensors(struct ort *s, const struct tensors *bake, struct content *out)
 {
     const uint64_t n = light_map_rows(s->map.texel_count);
     const uint64_t k = ort_offset_count(&s->map, &s->options);
-    *out = (struct content){ .maps.count = (uint32_t)k };
-    return (out->maps.offset = TENSORS_EXPECT(s->host, bake, ORT_OFFSETS, TENSOR_I32, k, 2)) &&
+    const uint64_t groups = s->map.group_count;
+    *out = (struct content){ .maps = { .offsets = (uint32_t)k, .count = (uint32_t)(groups * k) } };
+    return (out->energy = TENSORS_EXPECT(s->host, bake, ORT_ENERGY, TENSOR_F32, 2, 3)) &&
+           (out->maps.offset =
+                TENSORS_EXPECT(s->host, bake, ORT_OFFSETS, TENSOR_I32, groups, k, 2)) &&
            (out->maps.weight = TENSORS_EXPECT(s->host, bake, ORT_MAPS, TENSOR_F16, n, k, 3)) &&
            light_map_find_texels(&out->texels, s->host, &s->map.charts, bake);
 }
@@ -43,9 +49,11 @@ static bool fill_mask(void *user, uint32_t k, uint8_t *mask)
 {
     const struct masking *m = user;
     const int32_t *offset = m->maps->offset + 2 * (size_t)k;
-    for (uint32_t i = 0; i < m->map->texel_count; i++) {
-        const struct ort_place at = ort_place_of(m->map, i);
-        const uint16_t *w = m->maps->weight + 3 * ((size_t)i * m->maps->count + k);
+    memset(mask, 0, (size_t)m->map->width * m->map->height);
+    const uint32_t group = k / m->maps->offsets;
+    for (uint32_t i = m->map->first[group]; i < m->map->first[group + 1]; i++) {
+        const struct ort_place at = ort_place_of(m->map, m->map->members[i]);
+        const uint16_t *w = ort_weight(m->maps, m->map->members[i], k);
         const bool lit = ((w[0] | w[1] | w[2]) & 0x7fff) != 0;
         if (lit)
             mask[at.y * (size_t)m->map->width + at.x] =
@@ -58,11 +66,41 @@ static bool fill_mask(void *user, uint32_t k, uint8_t *mask)
 static void find_scales(const struct ort *s, struct content *c)
 {
     for (uint32_t i = 0; i < s->map.texel_count; i++) {
-        const uint16_t *w = c->maps.weight + 3 * (size_t)i * c->maps.count;
-        for (uint32_t k = 0; k < c->maps.count; k++)
+        const uint16_t *w = ort_weight(&c->maps, i, 0);
+        float *scale = c->scale + s->map.group_of[i] * (size_t)c->maps.offsets;
+        for (uint32_t k = 0; k < c->maps.offsets; k++)
             for (int a = 0; a < 3; a++)
-                c->scale[k] = fmaxf(c->scale[k], float_from_half(w[3 * k + (uint32_t)a]) / 255.0f);
+                scale[k] = fmaxf(scale[k], float_from_half(w[3 * k + (uint32_t)a]) / 255.0f);
     }
+}
+
+// Rounds the weights of a texel to bytes. What one loses the next one gets: most weights are below
+// half a step of their map, and rows keep their sums.
+static void quantise_row(const struct ort *s, const struct content *c, uint32_t texel, uint8_t *out)
+{
+    const uint16_t *w = ort_weight(&c->maps, texel, 0);
+    const float *scale = c->scale + s->map.group_of[texel] * (size_t)c->maps.offsets;
+    for (uint32_t a = 0; a < 3; a++) {
+        float rest = 0.0f;
+        for (uint32_t k = 0; k < c->maps.offsets; k++) {
+            const float weight = float_from_half(w[3 * k + a]);
+            if (!(weight > 0.0f && scale[k] > 0.0f)) continue;
+            const float step = fminf(fmaxf(rintf((weight + rest) / scale[k]), 0.0f), 255.0f);
+            rest += weight - step * scale[k];
+            out[3 * k + a] = (uint8_t)step;
+        }
+    }
+}
+
+static bool quantise(struct ort *s, struct content *c)
+{
+    const size_t row = 3 * (size_t)c->maps.offsets;
+    c->bytes = host_alloc(s->host, s->map.texel_count, row);
+    if (!c->bytes) return false;
+    find_scales(s, c);
+    for (uint32_t i = 0; i < s->map.texel_count; i++) quantise_row(s, c, i, c->bytes + i * row);
+    c->maps.bytes = c->bytes;
+    return true;
 }
 
 static bool upload_maps(struct ort *s, struct content *c)
@@ -71,7 +109,7 @@ static bool upload_maps(struct ort *s, struct content *c)
     const struct masking masking = { &s->map, &c->maps };
     c->scale = host_alloc(s->host, c->maps.count, sizeof *c->scale);
     if (!c->scale) return false;
-    if (s->options.precision == ORT_BYTE) find_scales(s, c);
+    if (s->options.precision == ORT_BYTE && !quantise(s, c)) return false;
     const struct ort_bins_wish wish = { .maps = c->maps.count,
                                         .width = s->map.width,
                                         .height = s->map.height,
@@ -79,13 +117,14 @@ static bool upload_maps(struct ort *s, struct content *c)
                                         .mask = fill_mask,
                                         .user = (void *)&masking };
     if (!ort_bins_init(&bins, s->host, &wish)) return false;
-    const bool ok = ort_upload_bins(s, &c->maps, &bins, c->scale) &&
-                    ort_upload_lists(s, &c->maps, &bins, c->scale);
+    const bool ok =
+        ort_upload_bins(s, &c->maps, &bins) && ort_upload_lists(s, &c->maps, &bins, c->scale);
     const double side = ORT_BIN_SIDE, room = fmax(bins.bin_count * side * side, 1.0);
     host_log(s->host, LOG_INFO,
-             "ort: %u maps of %u x %u texels in %u pieces and %u bins, occupied by %.0f %%",
+             "ort: %u maps of %u x %u texels in %u pieces and %u bins, occupied by %.0f %%; energy "
+             "of the offsets %.3f",
              c->maps.count, s->map.width, s->map.height, bins.piece_count, bins.bin_count,
-             100.0 * (double)bins.occupied / room);
+             100.0 * (double)bins.occupied / room, (double)ort_energy_ratio(c->energy));
     ort_bins_finish(&bins);
     return ok;
 }
@@ -115,5 +154,6 @@ bool ort_upload(struct ort *s, const struct tensors *bake)
         light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c.shown, bake);
     host_free(s->host, c.shown);
     host_free(s->host, c.scale);
+    host_free(s->host, c.bytes);
     return ok;
 }

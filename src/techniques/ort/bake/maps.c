@@ -11,9 +11,10 @@
 #include <string.h>
 
 enum { TEXELS_PER_TASK = 256 };
+enum { OUT_MAPS, OUT_ENERGY };
 
 // Weights of all offsets for one colour: [offsets].
-enum { SINGLE, PATCH, MULTIPLE, KINDS };
+enum { SINGLE, PATCH, MULTIPLE, SCATTERED, KINDS };
 struct row {
     size_t offsets;
     float *weight[KINDS][3];
@@ -47,8 +48,10 @@ static void add_weights(struct row *row, int kind, size_t k, const float transfe
 static void weigh(const struct ort_transfer *transfer, const struct ort_receiver *r,
                   const struct bake_task *task, struct row *row)
 {
-    const struct ort_map *map = &transfer->texels.scene->map;
-    const int32_t *offset = bake_task_input(task, ORT_OFFSETS)->data;
+    const struct ort_scene *scene = transfer->texels.scene;
+    const struct ort_map *map = &scene->map;
+    const int32_t *offset = (const int32_t *)bake_task_input(task, ORT_OFFSETS)->data +
+                            2 * map->group_of[r->texel] * row->offsets;
     const float *areas = bake_task_input(task, ORT_AREAS)->data;
     const struct ort_place place = ort_place_of(map, r->texel);
     memset(row->sum, 0, sizeof row->sum);
@@ -57,9 +60,12 @@ static void weigh(const struct ort_transfer *transfer, const struct ort_receiver
         const float area = areas[k * map->texel_count + r->texel];
         float of[KINDS][3] = { { 0 } };
         if (from != CHART_NONE && area > 0.0f) {
-            ort_transfer_single(transfer, r, from, of[SINGLE]);
-            ort_transfer_patch(transfer, r, from, of[PATCH]);
-            ort_transfer_multiple(transfer, r, from, of[MULTIPLE]);
+            if (scene->options.transfer != ORT_SCATTERING) {
+                ort_transfer_single(transfer, r, from, of[SINGLE]);
+                ort_transfer_patch(transfer, r, from, of[PATCH]);
+                ort_transfer_multiple(transfer, r, from, of[MULTIPLE]);
+            }
+            if (scene->kernel) ort_transfer_scattered(transfer, r, from, of[SCATTERED]);
         }
         for (int kind = 0; kind < KINDS; kind++) add_weights(row, kind, k, of[kind], area);
     }
@@ -69,9 +75,10 @@ static void weigh(const struct ort_transfer *transfer, const struct ort_receiver
 static void find_factors(const struct ort_receiver *r, const struct row *row, int c, bool exact,
                          float factor[KINDS])
 {
-    const float sum[KINDS] = { row->sum[SINGLE][c], row->sum[PATCH][c], row->sum[MULTIPLE][c] };
+    const float sum[KINDS] = { row->sum[SINGLE][c], row->sum[PATCH][c], row->sum[MULTIPLE][c],
+                               row->sum[SCATTERED][c] };
     float missed = r->single[c] - sum[SINGLE], multiple = r->multiple[c];
-    factor[SINGLE] = factor[MULTIPLE] = 1.0f;
+    factor[SINGLE] = factor[MULTIPLE] = factor[SCATTERED] = 1.0f;
     factor[PATCH] = 0.0f;
     if (!exact) return;
     if (missed < 0.0f) factor[SINGLE] = r->single[c] / sum[SINGLE];
@@ -80,6 +87,7 @@ static void find_factors(const struct ort_receiver *r, const struct row *row, in
         missed = 0.0f;
     }
     if (missed > 0.0f) multiple += missed; // no offset leads to what the rays have met
+    factor[SCATTERED] = sum[SCATTERED] > 0.0f ? r->scattered[c] / sum[SCATTERED] : 0.0f;
     factor[MULTIPLE] = sum[MULTIPLE] > 0.0f ? multiple / sum[MULTIPLE] : 0.0f;
 }
 
@@ -98,16 +106,28 @@ static void write_row(const struct ort_receiver *r, const struct row *row, bool 
     }
 }
 
+// Of the row as the offsets give it, and of the exact one.
+static void add_energy(const struct ort_receiver *r, const struct row *row, float energy[6])
+{
+    for (int c = 0; c < 3; c++) {
+        energy[c] +=
+            r->at.area * (row->sum[SINGLE][c] + row->sum[MULTIPLE][c] + row->sum[SCATTERED][c]);
+        energy[3 + c] += r->at.area * (r->single[c] + r->multiple[c] + r->scattered[c]);
+    }
+}
+
 static bool make_rows(const struct bake_task *task, const struct ort_transfer *transfer,
                       struct ort_receiver *receiver, struct row *row)
 {
     const struct ort_scene *scene = task->job;
-    uint64_t count, first = bake_task_rows(task, 0, &count);
+    uint64_t count, first = bake_task_rows(task, OUT_MAPS, &count);
     for (uint64_t i = 0; i < count; i++) {
         if (bake_task_cancelled(task)) return false;
         if (!ort_receive(transfer, (uint32_t)(first + i), receiver)) continue;
         weigh(transfer, receiver, task, row);
-        write_row(receiver, row, scene->options.rows == ORT_ROWS_EXACT, bake_row(task, 0, i));
+        add_energy(receiver, row, task->out[OUT_ENERGY]);
+        write_row(receiver, row, scene->options.rows == ORT_ROWS_EXACT,
+                  bake_row(task, OUT_MAPS, i));
     }
     return true;
 }
@@ -138,6 +158,7 @@ bool ort_add_maps(struct bake_plan *plan, const struct ort_scene *scene)
     const size_t tasks = (size_t)((texels + TEXELS_PER_TASK - 1) / TEXELS_PER_TASK);
     const struct bake_output out[] = {
         { ORT_MAPS, TENSOR_F16, 3, { texels, offsets, 3 }, BAKE_ROWS, BAKE_SAVED },
+        { ORT_ENERGY, TENSOR_F32, 2, { 2, 3 }, BAKE_SUM, BAKE_SAVED },
     };
     // Of the offsets a quarter face the texel; a ray takes as long as the bounces of so many
     // patches.
@@ -149,7 +170,7 @@ bool ort_add_maps(struct bake_plan *plan, const struct ort_scene *scene)
                   .task_count = tasks,
                   .run = run,
                   .outputs = out,
-                  .output_count = 1,
+                  .output_count = 2,
                   .rays = 0.25 * (double)(texels * offsets) / (double)tasks,
                   .others = (double)texels / (double)tasks *
                             (0.1 * patches * patches / PATCHES_PER_RAY + 0.25 * (double)offsets),

@@ -9,6 +9,8 @@
 enum {
     SEEDS = 100,
     SEEDS_MOST_SIDE = 50, // columns or rows of the grid of seeds
+    RINGS = 16,           // around 0, of 8 seeds each
+    NEAR_SEEDS = 1 + 8 * RINGS,
     BATCH = 20,
     REFINEMENTS = 1000,
     DRAWS_PER_REFINEMENT = 16,
@@ -82,8 +84,29 @@ static int32_t seed_place(int32_t last, uint32_t i, uint32_t count)
     return (int32_t)lround(2.0 * last * i / (count - 1.0)) - last;
 }
 
+static bool is_in_square(const struct ort_offsets_wish *wish, struct ort_offset offset)
+{
+    return abs(offset.x) <= last_x(wish) && abs(offset.y) <= last_y(wish);
+}
+
+// 0, and eight offsets at each power of two: transfer between neighbours is the strongest, and a
+// peak there, as that of subsurface scattering, may lie between the seeds of the grid.
+static void add_near_seeds(struct chooser *chooser)
+{
+    static const int32_t AROUND[8][2] = { { 1, 0 },  { 1, 1 },   { 0, 1 },  { -1, 1 },
+                                          { -1, 0 }, { -1, -1 }, { 0, -1 }, { 1, -1 } };
+    add_to_batch(chooser, (struct ort_offset){ 0, 0 });
+    for (int ring = 0; ring < RINGS; ring++)
+        for (int k = 0; k < 8; k++) {
+            const struct ort_offset offset = { AROUND[k][0] * (1 << ring),
+                                               AROUND[k][1] * (1 << ring) };
+            if (is_in_square(chooser->wish, offset)) add_to_batch(chooser, offset);
+        }
+}
+
 static bool take_seeds(struct chooser *chooser, const uint32_t sides[2])
 {
+    add_near_seeds(chooser);
     for (uint32_t y = 0; y < sides[1]; y++)
         for (uint32_t x = 0; x < sides[0]; x++)
             add_to_batch(chooser,
@@ -116,7 +139,7 @@ static bool find_importance(struct chooser *chooser)
 {
     uint32_t sides[2];
     seed_grid(chooser->wish, sides);
-    const size_t seeds = (size_t)sides[0] * sides[1], points = seeds + REFINEMENTS;
+    const size_t seeds = (size_t)sides[0] * sides[1] + NEAR_SEEDS, points = seeds + REFINEMENTS;
     const size_t batch = seeds > BATCH ? seeds : BATCH;
     chooser->points = host_alloc(chooser->host, points, sizeof *chooser->points);
     chooser->batch = host_alloc(chooser->host, batch, sizeof *chooser->batch);

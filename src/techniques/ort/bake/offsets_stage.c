@@ -19,7 +19,9 @@ struct importance {
     const struct bake_task *task;
     struct ort_transfer transfer;
     struct sample *samples;
-    uint32_t count;
+    uint32_t sample_count;
+    uint32_t count; // of those that are not inside geometry
+    uint32_t group;
     bool maximum;
 };
 
@@ -30,10 +32,13 @@ static float transference(const struct importance *im, const struct sample *s,
     const struct ort_texels *texels = &im->transfer.texels;
     const uint32_t from = ort_texel_at(&texels->scene->map, s->place, offset.x, offset.y);
     if (from == CHART_NONE) return 0.0f;
-    float single[3], multiple[3], sum = 0.0f;
-    ort_transfer_single(&im->transfer, &s->receiver, from, single);
-    ort_transfer_multiple(&im->transfer, &s->receiver, from, multiple);
-    for (int c = 0; c < 3; c++) sum += single[c] + multiple[c];
+    float single[3] = { 0 }, multiple[3] = { 0 }, scattered[3] = { 0 }, sum = 0.0f;
+    if (texels->scene->options.transfer != ORT_SCATTERING) {
+        ort_transfer_single(&im->transfer, &s->receiver, from, single);
+        ort_transfer_multiple(&im->transfer, &s->receiver, from, multiple);
+    }
+    if (texels->scene->kernel) ort_transfer_scattered(&im->transfer, &s->receiver, from, scattered);
+    for (int c = 0; c < 3; c++) sum += single[c] + multiple[c] + scattered[c];
     return sum / 3.0f * ort_texel_area(texels, from);
 }
 
@@ -48,20 +53,22 @@ static bool importance_of(void *user, const struct ort_offset *offsets, uint32_t
             sum += t;
             most = fmaxf(most, t);
         }
-        out[i] = im->maximum ? most : sum / (float)im->count;
+        out[i] = im->maximum || im->count == 0 ? most : sum / (float)im->count;
     }
     return true;
 }
 
-// Every n-th texel that is not inside geometry.
+// Every n-th texel of the group that is not inside geometry.
 static bool make_samples(struct importance *im)
 {
     struct host *host = im->task->host;
     const struct ort_map *map = &im->transfer.texels.scene->map;
-    const uint32_t wanted = map->texel_count < SAMPLES ? map->texel_count : SAMPLES;
+    const uint32_t first = map->first[im->group], texels = map->first[im->group + 1] - first;
+    const uint32_t most = SAMPLES / map->group_count, wanted = texels < most ? texels : most;
+    im->sample_count = wanted;
     im->samples = host_alloc(host, wanted, sizeof *im->samples);
     for (uint32_t k = 0; im->samples && k < wanted; k++) {
-        const uint32_t texel = (uint32_t)((uint64_t)k * map->texel_count / wanted);
+        const uint32_t texel = map->members[first + (uint64_t)k * texels / wanted];
         struct sample *s = &im->samples[im->count];
         if (!s->receiver.seen && !ort_receiver_init(&s->receiver, host, im->transfer.patch_count))
             return false;
@@ -73,10 +80,22 @@ static bool make_samples(struct importance *im)
 
 static void destroy_samples(struct importance *im)
 {
-    const uint32_t most = im->transfer.texels.scene->map.texel_count;
-    for (uint32_t k = 0; im->samples && k < SAMPLES && k < most; k++)
+    for (uint32_t k = 0; im->samples && k < im->sample_count; k++)
         ort_receiver_finish(&im->samples[k].receiver, im->task->host);
     host_free(im->task->host, im->samples);
+}
+
+// Light that scatters leaves where it entered, more than anywhere else: the nearest offset gives
+// way to 0, which is between its neighbours in any order.
+static void include_zero(struct ort_offset *offsets, uint32_t count)
+{
+    uint32_t nearest = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct ort_offset a = offsets[i], b = offsets[nearest];
+        if ((int64_t)a.x * a.x + (int64_t)a.y * a.y < (int64_t)b.x * b.x + (int64_t)b.y * b.y)
+            nearest = i;
+    }
+    offsets[nearest] = (struct ort_offset){ 0, 0 };
 }
 
 static bool choose(struct importance *im, const struct ort_scene *scene, int32_t *out)
@@ -85,11 +104,12 @@ static bool choose(struct importance *im, const struct ort_scene *scene, int32_t
     const struct ort_offsets_wish wish = { .width = scene->map.width,
                                            .height = scene->map.height,
                                            .count = ort_offset_count(&scene->map, &scene->options),
-                                           .seed = im->task->bake_seed,
+                                           .seed = im->task->bake_seed + im->group,
                                            .importance = importance_of,
                                            .user = im };
     struct ort_offset *offsets = host_alloc(host, wish.count, sizeof *offsets);
     const bool ok = offsets && ort_choose_offsets(host, &wish, offsets);
+    if (ok && scene->kernel) include_zero(offsets, wish.count);
     for (uint32_t i = 0; ok && i < wish.count; i++) {
         out[2 * i] = offsets[i].x;
         out[2 * i + 1] = offsets[i].y;
@@ -101,7 +121,9 @@ static bool choose(struct importance *im, const struct ort_scene *scene, int32_t
 static bool run(const struct bake_task *task)
 {
     const struct ort_scene *scene = task->job;
-    struct importance im = { .task = task, .maximum = scene->options.importance == ORT_MAXIMUM };
+    struct importance im = { .task = task,
+                             .group = (uint32_t)task->index,
+                             .maximum = scene->options.importance == ORT_MAXIMUM };
     if (scene->map.texel_count == 0) return true;
     if (!ort_transfer_init(&im.transfer, task)) return false;
     const bool ok = make_samples(&im) && choose(&im, scene, task->out[0]);
@@ -112,17 +134,18 @@ static bool run(const struct bake_task *task)
 bool ort_add_offsets(struct bake_plan *plan, const struct ort_scene *scene)
 {
     const uint64_t count = ort_offset_count(&scene->map, &scene->options);
+    const uint64_t groups = scene->map.group_count;
     const size_t floats = 9 * (size_t)ort_patch_count(scene->map.texel_count);
     const struct bake_output out[] = {
-        { ORT_OFFSETS, TENSOR_I32, 2, { count, 2 }, BAKE_ROWS, BAKE_SAVED },
+        { ORT_OFFSETS, TENSOR_I32, 3, { groups, count, 2 }, BAKE_ROWS, BAKE_SAVED },
     };
-    return bake_plan_add(plan,
-                         &(struct bake_stage){ .name = "offsets",
-                                               .wave = 2,
-                                               .task_count = 1,
-                                               .run = run,
-                                               .outputs = out,
-                                               .output_count = 1,
-                                               .rays = 0.25 * SAMPLES * 1100,
-                                               .scratch_bytes = SAMPLES * floats * sizeof(float) });
+    return bake_plan_add(
+        plan, &(struct bake_stage){ .name = "offsets",
+                                    .wave = 2,
+                                    .task_count = groups,
+                                    .run = run,
+                                    .outputs = out,
+                                    .output_count = 1,
+                                    .rays = 0.25 * SAMPLES * 1100 / (double)groups,
+                                    .scratch_bytes = SAMPLES / groups * floats * sizeof(float) });
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/statics.h"
+#include "techniques/ort/bake/near.h"
 #include "techniques/ort/ort_tensors.h"
 #include "trace/texels/close.h"
 #include "trace/texels/texels.h"
@@ -15,7 +16,9 @@ struct ort_scene {
     struct scene_statics statics;
     struct trace_scene *trace;
     struct seam_closing closing;
-    uint32_t *patch_of; // [texels]
+    uint32_t *patch_of;        // [texels]
+    struct ort_kernel *kernel; // NULL: no light scatters below surfaces
+    struct ort_near near;      // with a kernel
 };
 
 #define ORT_HITS    "texels/hit" // U32 [texels][rays]: texel that a ray meets; CHART_NONE: none

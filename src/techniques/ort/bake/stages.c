@@ -8,6 +8,15 @@
 #include "techniques/ort/bake/patches.h"
 #include "techniques/ort/bake/texels.h"
 
+static bool prepare_scattering(struct ort_scene *scene, struct host *host)
+{
+    if (scene->options.transfer == ORT_RADIOSITY) return true;
+    scene->kernel = host_alloc(host, 1, sizeof *scene->kernel);
+    if (!scene->kernel) return false;
+    ort_kernel_init(scene->kernel, &scene->options);
+    return ort_near_init(&scene->near, &scene->map, scene->kernel->reach_m);
+}
+
 static bool prepare(void *argument, struct host *host)
 {
     struct ort_scene *scene = argument;
@@ -16,7 +25,7 @@ static bool prepare(void *argument, struct host *host)
     scene->trace = trace_scene_create(host, &scene->statics.pose);
     if (!scene->trace) return false;
     scene->patch_of = ort_make_patches(&scene->map, scene->trace);
-    return scene->patch_of &&
+    return scene->patch_of && prepare_scattering(scene, host) &&
            seam_closing_init(&scene->closing, host, &scene->map.charts, scene->trace);
 }
 
@@ -25,9 +34,12 @@ static void finish(void *argument)
     struct ort_scene *scene = argument;
     seam_closing_finish(&scene->closing);
     host_free(scene->map.host, scene->patch_of);
+    if (scene->kernel) host_free(scene->host, scene->kernel);
+    ort_near_finish(&scene->near);
     trace_scene_destroy(scene->trace);
     scene_statics_finish(&scene->statics);
     scene->patch_of = NULL;
+    scene->kernel = NULL;
     scene->trace = NULL;
 }
 

@@ -69,6 +69,27 @@ static void add_bounces(const struct ort_transfer *transfer, struct ort_receiver
     }
 }
 
+struct scattering {
+    const struct ort_transfer *transfer;
+    struct ort_receiver *receiver;
+};
+
+static void add_near(void *user, uint32_t from)
+{
+    const struct scattering *s = user;
+    const float area = ort_texel_area(&s->transfer->texels, from);
+    float share[3];
+    ort_transfer_scattered(s->transfer, s->receiver, from, share);
+    for (int c = 0; c < 3; c++) s->receiver->scattered[c] += share[c] * area;
+}
+
+static void add_scattered(const struct ort_transfer *transfer, struct ort_receiver *r)
+{
+    const struct ort_scene *scene = transfer->texels.scene;
+    ort_near_visit(&scene->near, chart_texel_of(&scene->map.charts, r->texel)->position, add_near,
+                   &(struct scattering){ transfer, r });
+}
+
 bool ort_receive(const struct ort_transfer *transfer, uint32_t texel, struct ort_receiver *r)
 {
     const size_t bytes = 3 * (size_t)transfer->patch_count * sizeof(float);
@@ -79,9 +100,13 @@ bool ort_receive(const struct ort_transfer *transfer, uint32_t texel, struct ort
     memset(r->sent, 0, bytes);
     memset(r->single, 0, sizeof r->single);
     memset(r->multiple, 0, sizeof r->multiple);
+    memset(r->scattered, 0, sizeof r->scattered);
     if (!(r->at.area > 0.0f)) return false;
-    add_hits(transfer, r);
-    add_bounces(transfer, r);
+    if (transfer->texels.scene->options.transfer != ORT_SCATTERING) {
+        add_hits(transfer, r);
+        add_bounces(transfer, r);
+    }
+    if (transfer->texels.scene->kernel) add_scattered(transfer, r);
     return true;
 }
 
@@ -138,4 +163,15 @@ void ort_transfer_multiple(const struct ort_transfer *transfer, const struct ort
                            uint32_t from, float out[3])
 {
     share_patch(transfer, to->seen, from, out);
+}
+
+void ort_transfer_scattered(const struct ort_transfer *transfer, const struct ort_receiver *to,
+                            uint32_t from, float out[3])
+{
+    const struct ort_scene *scene = transfer->texels.scene;
+    const struct chart_texel *a = chart_texel_of(&scene->map.charts, to->texel);
+    const struct chart_texel *b = chart_texel_of(&scene->map.charts, from);
+    const float distance = from == to->texel ? 0.0f : glms_vec3_distance(a->position, b->position);
+    ort_kernel_at(scene->kernel, fmaxf(distance, from == to->texel ? 0.0f : 1e-30f),
+                  ort_texel_area(&transfer->texels, from), out);
 }

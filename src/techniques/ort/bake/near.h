@@ -1,0 +1,40 @@
+// Texels near to a point, by a grid of cells, and the light that scatters from them.
+#pragma once
+
+#include "techniques/ort/bake/profile.h"
+#include "techniques/ort/ort_map.h"
+
+enum { ORT_KERNEL_STEPS = 2048 };
+
+// Profiles of the three colours by distance, in units of the scene; 0 beyond the reach.
+struct ort_kernel {
+    struct ort_profile profile[3];
+    float mm;                              // in a metre of the scene
+    float reach_m, steps_per_m;            // of all colours
+    float per_m2[3][ORT_KERNEL_STEPS + 2]; // 1/m²
+};
+void ort_kernel_init(struct ort_kernel *out, const struct ort_options *options);
+// Share per area of the light of a texel of this area that leaves at a distance, 1/m². At 0 it is
+// the mean over a disk of the area.
+void ort_kernel_at(const struct ort_kernel *kernel, float distance_m, float area_m2, float out[3]);
+
+struct ort_near_item {
+    uint64_t cell;
+    uint32_t texel;
+};
+
+// ort_near_finish accepts zero.
+struct ort_near {
+    struct host *host;
+    struct ort_near_item *items; // by cell
+    uint32_t count;
+    vec3s origin;
+    float per_cell; // 1/m
+    uint64_t side[3];
+};
+// Cells are as wide as the reach of searches.
+bool ort_near_init(struct ort_near *out, const struct ort_map *map, float reach_m);
+void ort_near_finish(struct ort_near *near);
+// Calls visit for all texels within the reach of a point, and for some beyond.
+void ort_near_visit(const struct ort_near *near, vec3s position,
+                    void (*visit)(void *user, uint32_t texel), void *user);

@@ -1,0 +1,135 @@
+// Profiles of subsurface scattering: their integrals, the published reflectances, and the light of
+// all texels nearby.
+#include "framework/test.h"
+
+#include "core/rng.h"
+#include "techniques/ort/bake/near.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const char *const NAMES[] = { "exponential", "apple",   "chicken1", "chicken2",
+                                     "cream",       "ketchup", "marble",   "potato",
+                                     "skimmilk",    "skin1",   "skin2",    "wholemilk" };
+enum { MATERIALS = sizeof NAMES / sizeof NAMES[0] };
+
+static struct ort_profile profile_of(int material, int colour)
+{
+    const struct ort_options options = { .material = material, .falloff = 2.0f };
+    return ort_profile_of(&options, colour);
+}
+
+// Jensen et al. 2001, figure 5: diffuse reflectance, measured, from which the coefficients are.
+TEST(dipoles_reflect_what_was_published)
+{
+    static const double PUBLISHED[MATERIALS][3] = {
+        { 1, 1, 1 },          { 0.85, 0.84, 0.53 }, { 0.31, 0.15, 0.10 }, { 0.32, 0.16, 0.10 },
+        { 0.98, 0.90, 0.73 }, { 0.16, 0.01, 0.00 }, { 0.83, 0.79, 0.75 }, { 0.77, 0.62, 0.21 },
+        { 0.81, 0.81, 0.69 }, { 0.44, 0.22, 0.13 }, { 0.63, 0.44, 0.34 }, { 0.91, 0.88, 0.76 }
+    };
+    for (int m = 0; m < MATERIALS; m++)
+        for (int c = 0; c < 3; c++) {
+            const struct ort_profile p = profile_of(m, c);
+            printf("%s colour %d: %.3f (%.2f)\n", NAMES[m], c, p.total, PUBLISHED[m][c]);
+            CHECK_NEAR(p.total, PUBLISHED[m][c], 0.03);
+        }
+}
+
+// ∫ P 2πr dr by the trapezoid rule in log r.
+static double integral_between(const struct ort_profile *p, double low, double high)
+{
+    enum { STEPS = 4000 };
+    const double step = log(high / low) / STEPS;
+    double sum = 0.0;
+    for (int i = 0; i <= STEPS; i++) {
+        const double r = low * exp(step * i);
+        sum += (i == 0 || i == STEPS ? 0.5 : 1.0) * ort_profile_at(p, r) * 2.0 * GLM_PI * r * r;
+    }
+    return sum * step;
+}
+
+TEST(profiles_integrate_to_one_and_to_what_lies_beyond)
+{
+    for (int m = 0; m < MATERIALS; m++)
+        for (int c = 0; c < 3; c++) {
+            const struct ort_profile p = profile_of(m, c);
+            const double reach = ort_profile_reach(&p, 1e-6), r = ort_profile_reach(&p, 0.3);
+            CHECK_NEAR(integral_between(&p, 1e-6 * r, reach), 1.0, 2e-5);
+            CHECK_NEAR(integral_between(&p, r, reach), 0.3, 2e-5);
+            CHECK_NEAR(ort_profile_beyond(&p, 0.0), 1.0, 1e-12);
+        }
+}
+
+// A plane of texels, so fine that their sum is the integral; and one so coarse that all light stays
+// in a texel.
+static double sum_over_plane(const struct ort_kernel *kernel, int colour, float texel_m)
+{
+    const int last = (int)ceilf(kernel->reach_m / texel_m);
+    double sum = 0.0;
+    for (int y = -last; y <= last; y++)
+        for (int x = -last; x <= last; x++) {
+            float share[3];
+            ort_kernel_at(kernel, texel_m * hypotf((float)x, (float)y), texel_m * texel_m, share);
+            sum += (double)(share[colour] * texel_m * texel_m);
+        }
+    return sum;
+}
+
+TEST(light_of_a_plane_sums_to_one)
+{
+    static struct ort_kernel kernel;
+    ort_kernel_init(&kernel, &(struct ort_options){ .material = 9, .mm_per_unit = 1000.0f });
+    for (int c = 0; c < 3; c++) {
+        CHECK_NEAR(sum_over_plane(&kernel, c, 0.0002f), 1.0, 0.01);
+        CHECK_NEAR(sum_over_plane(&kernel, c, 1.0f), 1.0, 0.01);
+    }
+    // Half the size: a scene unit of 500 mm.
+    const float reach_m = kernel.reach_m;
+    ort_kernel_init(&kernel, &(struct ort_options){ .material = 9, .mm_per_unit = 500.0f });
+    CHECK_NEAR(kernel.reach_m, 2.0f * reach_m, 1e-5f);
+}
+
+// ---- neighbours
+
+enum { TEXELS = 3000 };
+
+struct found {
+    const struct charts *charts;
+    vec3s from;
+    float reach_m;
+    int count, within;
+};
+
+static void count(void *user, uint32_t texel)
+{
+    struct found *f = user;
+    f->count++;
+    f->within += glms_vec3_distance(f->charts->texels[texel].position, f->from) <= f->reach_m;
+}
+
+TEST(near_texels_are_all_those_within_the_reach)
+{
+    struct chart_texel *texels = host_alloc(test_host(), TEXELS, sizeof *texels);
+    struct ort_map map = { .host = test_host(),
+                           .texel_count = TEXELS,
+                           .charts = { .texels = texels, .texel_count = TEXELS } };
+    struct rng rng = rng_for(1, 2, 3);
+    for (int i = 0; i < TEXELS; i++)
+        texels[i].position =
+            vec3_of(rng_float(&rng) - 0.5f, 0.2f * rng_float(&rng), 7.0f * rng_float(&rng));
+    static const float REACH[] = { 1e-4f, 0.05f, 0.3f, 2.0f, 100.0f };
+    for (size_t k = 0; k < sizeof REACH / sizeof REACH[0]; k++) {
+        struct ort_near near;
+        CHECK(ort_near_init(&near, &map, REACH[k]));
+        for (int i = 0; i < TEXELS; i += 61) {
+            struct found found = { &map.charts, texels[i].position, REACH[k], 0, 0 };
+            int within = 0;
+            for (int j = 0; j < TEXELS; j++)
+                within += glms_vec3_distance(texels[j].position, found.from) <= REACH[k];
+            ort_near_visit(&near, found.from, count, &found);
+            CHECK(found.within == within && found.count <= TEXELS);
+        }
+        ort_near_finish(&near);
+    }
+    host_free(test_host(), texels);
+}
