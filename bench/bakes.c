@@ -44,7 +44,7 @@ static bool find_path(const struct ag_bake *bake, char out[PATH_SIZE])
 }
 
 // A cache that cannot be used costs time; it is not an error.
-static enum ag_result complete(struct ag_bake *bake)
+static enum ag_result complete(struct ag_bake *bake, bool *run)
 {
     char path[PATH_SIZE];
     struct ag_bake_info info;
@@ -52,6 +52,7 @@ static enum ag_result complete(struct ag_bake *bake)
     if (has_path && access(path, R_OK) == 0 && ag_bake_load(bake, path) == AG_OK) return AG_OK;
     ag_bake_get_info(bake, &info);
     fprintf(stderr, "baking %s:%s …\n", info.technique, info.options);
+    *run = true;
     const enum ag_result result = ag_bake_run(bake, NULL, NULL);
     if (result != AG_OK || !has_path) return result;
     make_folders(path);
@@ -71,7 +72,7 @@ enum ag_result bench_bakes_prepare(struct bench_bakes *bakes, struct ag_context 
         result = ag_bake_create(scene, gi, &desc, &bakes->owned[i]);
         if (result != AG_OK) return result;
         bakes->bakes[bakes->count++] = bakes->owned[i];
-        result = complete(bakes->owned[i]);
+        result = complete(bakes->owned[i], &bakes->run);
         if (result != AG_OK) return result;
     }
     return AG_OK;

@@ -1,5 +1,4 @@
 #include "bench.h"
-#include "bakes.h"
 
 #include "csv.h"
 
@@ -30,10 +29,10 @@ static bool parse_option(void *user, const char *name, const char *value)
     return true;
 }
 
-static void print_usage(const struct bench_program *program)
+static void print_usage(const struct bench_program *program, FILE *file)
 {
     const unsigned options = program->options;
-    fprintf(stderr, "usage: %s %s [--frames 1..%d]%s [--device NAME]%s%s\n", program->name,
+    fprintf(file, "usage: %s %s [--frames 1..%d]%s [--device NAME]%s%s\n", program->name,
             program->usage, PASSES_MAX_FRAMES, options & BENCH_SIZE ? " [--size WxH]" : "",
             options & BENCH_CSV ? " [--csv FILE]" : "",
             options & BENCH_SCENES ? " [SCENE]..." : "");
@@ -67,8 +66,13 @@ int bench_main(const struct bench_program *program, struct bench *bench, void *u
                char **argv)
 {
     struct command command = { program, bench, user };
+    if (argc == 2 && strcmp(argv[1], "--help") == 0) {
+        print_usage(program, stdout);
+        if (program->help) fputs(program->help, stdout);
+        return 0;
+    }
     if (!parse(&command, argc, argv)) {
-        print_usage(program);
+        print_usage(program, stderr);
         return 2;
     }
     if (!csv_open(bench->csv_path, program->csv_header, &bench->csv)) return 1;
@@ -92,9 +96,9 @@ enum ag_result bench_open_scene(const struct bench *bench, const char *name,
     return result;
 }
 
-enum ag_result bench_create_renderer(const struct bench *bench, struct ag_scene *scene,
-                                     const char *gi, const char *frame_options,
-                                     struct ag_renderer **out)
+enum ag_result bench_create_baked(const struct bench *bench, struct ag_scene *scene, const char *gi,
+                                  const char *frame_options, const struct bench_bakes *bakes,
+                                  struct ag_renderer **out)
 {
     struct ag_renderer_desc desc;
     ag_renderer_desc_default(&desc);
@@ -102,12 +106,19 @@ enum ag_result bench_create_renderer(const struct bench *bench, struct ag_scene 
     desc.height = bench->height;
     desc.gi = gi;
     if (frame_options) desc.frame_options = frame_options;
+    desc.bakes = bakes->bakes;
+    desc.bake_count = bakes->count;
+    return ag_renderer_create(bench->device, scene, &desc, out);
+}
+
+enum ag_result bench_create_renderer(const struct bench *bench, struct ag_scene *scene,
+                                     const char *gi, const char *frame_options,
+                                     struct ag_renderer **out)
+{
     struct bench_bakes bakes;
     *out = NULL;
     enum ag_result result = bench_bakes_prepare(&bakes, bench->context, scene, gi);
-    desc.bakes = bakes.bakes;
-    desc.bake_count = bakes.count;
-    if (result == AG_OK) result = ag_renderer_create(bench->device, scene, &desc, out);
+    if (result == AG_OK) result = bench_create_baked(bench, scene, gi, frame_options, &bakes, out);
     bench_bakes_finish(&bakes);
     return result;
 }

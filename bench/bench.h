@@ -3,6 +3,7 @@
 #ifndef AG_BENCH_BENCH_H
 #define AG_BENCH_BENCH_H
 
+#include "bakes.h"
 #include "command_line.h"
 #include "passes.h"
 
@@ -30,6 +31,7 @@ enum { BENCH_SIZE = 1, BENCH_CSV = 2, BENCH_SCENES = 4 };
 
 struct bench_program {
     const char *name, *usage; // usage: the program's own options
+    const char *help;         // more lines of --help; may be NULL
     unsigned options;
     const char *csv_header;
     // The program's own options, as in command_line_parse.
@@ -53,6 +55,10 @@ enum ag_result bench_open_scene(const struct bench *bench, const char *name,
 enum ag_result bench_create_renderer(const struct bench *bench, struct ag_scene *scene,
                                      const char *gi, const char *frame_options,
                                      struct ag_renderer **out);
+// The same with bakes that are there already, for several renderers of one bake.
+enum ag_result bench_create_baked(const struct bench *bench, struct ag_scene *scene, const char *gi,
+                                  const char *frame_options, const struct bench_bakes *bakes,
+                                  struct ag_renderer **out);
 // GPU memory of a renderer's owner, as "vct"; NULL: of all.
 uint64_t bench_memory_of(struct ag_renderer *renderer, const char *owner);
 double bench_now_ms(void);
