@@ -1,4 +1,4 @@
-// What reading and copying so many bytes once takes, beside which a pass that is bound by memory
+// The time of reading and of copying bytes once, beside which a pass that is bound by memory
 // is judged.
 #pragma once
 

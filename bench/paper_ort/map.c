@@ -32,7 +32,7 @@ static enum ag_result measure(struct ag_scene *scene, const char *options, int t
     return result;
 }
 
-// Of the logarithm of the size.
+// Steps of the logarithm of the size.
 static double error_of(const struct map_size *size)
 {
     return log((double)size->width * size->height / ((double)size->side * size->side));

@@ -28,12 +28,12 @@ struct ort_view {
 enum ag_result ort_view_open(struct ort_view *view, const char *scene, int spp);
 void ort_view_close(struct ort_view *view);
 
-// Of irradiance over pixels with a surface; NaN without a reference.
+// Errors of irradiance over pixels with a surface; NaN without a reference.
 struct ort_error {
     double l2; // root mean square over that of the reference
     double relmse, flip, energy;
 };
-// Of any GI spec.
+// Figures of any GI spec.
 enum ag_result ort_error_of(const struct ort_view *view, const char *gi, struct ort_error *out);
 
 struct ort_result {
@@ -53,6 +53,6 @@ struct ort_setting {
 // map and offsets are given.
 enum ag_result ort_setting_measure(const struct ort_view *view, struct ort_setting *out);
 
-// Times of the passes with so many point lights about the scene's bounds instead of its lights.
+// Times of the passes with a number of point lights about the scene's bounds instead of its lights.
 enum ag_result ort_lights_measure(const struct ort_view *view, const struct ort_setting *setting,
                                   int lights, double stage_ms[ORT_STAGES]);

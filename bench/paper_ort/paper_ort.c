@@ -214,7 +214,7 @@ static FILE *open_table(const struct ort_bench *b, const char *name, const char 
     return csv_open(path, header, &file) ? file : NULL;
 }
 
-// What other techniques reach in the same image: normal maps are in it, and noise.
+// The error of other techniques in the same image, which has normal maps and noise.
 static enum ag_result measure_beside(const struct ort_bench *b, const struct ort_view *view,
                                      struct curves *curves)
 {

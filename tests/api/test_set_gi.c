@@ -29,6 +29,8 @@ static const struct {
     { "mrt", ",probes=true", 0 },
     { "drt", "", 0 },
     { "radiosity", "", 0 },
+    { "ort", "", 0 },
+    { "ort", ",order=slices,parts=3,precision=byte", 0 },
     { "dnrt", "", 0 },
 };
 

@@ -23,7 +23,6 @@ static const struct {
     { "drt", "", 0 },
     { "radiosity", "", 0 },
     { "ort", "", 0 },
-    { "ort", ":transfer=both", 0 },
     { "dnrt", "", 0.005 }, // on lpv
     { "vct", ":resolution=32", 0 },
     { "vct", ":resolution=32,specular=true,temporal=true", 0 },

@@ -100,7 +100,7 @@ struct cut {
     uint32_t off_middle; // twice the distance of the cut and the middle of the box
 };
 
-// Of equal costs the cut nearest to the middle is better: the tree is less deep.
+// The cut nearest to the middle wins among equal costs: the tree is less deep.
 static bool is_better(const struct cut *cut, const struct cut *than)
 {
     if (cut->cost != than->cost) return cut->cost < than->cost;

@@ -87,7 +87,7 @@ static void list_pipelines(const struct ort *s, struct gpu_objects *out)
         GPU_ADD(out, 0, { GPU_PIPELINE, PIPELINE(replace), .shader = &shader_ort_replace_comp });
 }
 
-// What ort_upload creates.
+// Objects that ort_upload creates.
 static void list_uploads(struct gpu_objects *out)
 {
 #define IMAGE(thing) { GPU_IMAGE, .member = TABLE(thing) }
@@ -174,8 +174,8 @@ static uint32_t more_needs(const void *options)
            (o->transfer != ORT_RADIOSITY ? FRAME_NEEDS_DIRECT_IRRADIANCE : 0);
 }
 
-// Of a square light map that texels fill by two thirds. Pieces of maps cover a third of it in the
-// mean, measured.
+// The estimate is for a square light map that texels fill by two thirds. Pieces of maps cover a
+// third of it in the mean, measured.
 static uint64_t memory_estimate(const void *options)
 {
     const struct ort_options *o = options;

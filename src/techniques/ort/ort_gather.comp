@@ -43,7 +43,7 @@ run unpack_bytes(uvec2 words)
     return run(vec4(words.xxxx >> shifts & 0xffu), vec4(words.yyyy >> shifts & 0xffu));
 }
 
-// What is the same for all pieces of an invocation: the copy saves loads in the loop.
+// Values of an invocation for all pieces: the copy saves loads in the loop.
 struct receiver {
     uint y;
     int x, from_x_end, from_y_end;

@@ -1,5 +1,7 @@
 #include "techniques/ort/ort_map.h"
 
+#include "techniques/ort/bins.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -97,6 +99,16 @@ static bool make_groups(struct ort_map *map, uint32_t most)
 
 // ----
 
+// Images of bins and of light, which has a margin, are within the limits of all devices.
+static bool check_side(const struct ort_map *map, const char *side, uint32_t texels)
+{
+    const uint32_t most = ORT_MAX_MAP_SIDE - 2 * ORT_MARGIN;
+    return texels <= most ||
+           host_fail(map->host, FAIL_UNSUPPORTED,
+                     "ort: the light map has a %s of %u texels, above %u; give fewer texels", side,
+                     texels, most);
+}
+
 bool ort_map_init(struct ort_map *out, struct host *host, const struct scene_pose *pose,
                   const struct ort_options *options)
 {
@@ -105,7 +117,9 @@ bool ort_map_init(struct ort_map *out, struct host *host, const struct scene_pos
     out->texel_count = out->charts.side_texel_count;
     out->width = out->charts.width;
     out->height = charts_sides(&out->charts) * out->charts.height;
-    if (make_plane(out) && make_groups(out, (uint32_t)options->local)) return true;
+    if (check_side(out, "width", out->width) && check_side(out, "height", out->height) &&
+        make_plane(out) && make_groups(out, (uint32_t)options->local))
+        return true;
     ort_map_finish(out);
     return false;
 }

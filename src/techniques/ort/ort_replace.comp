@@ -1,5 +1,5 @@
-// Where light scatters below surfaces, the light map has all light that leaves a texel diffusely:
-// the irradiance that FRAME_DIRECT has reflected already is taken off. Pixels without a light map
+// The light map of a scene whose surfaces scatter has all light that leaves a texel diffusely: the
+// irradiance that FRAME_DIRECT has reflected already is taken off. Pixels without a light map
 // keep it.
 #version 460
 #extension GL_EXT_scalar_block_layout : require

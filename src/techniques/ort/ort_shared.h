@@ -8,8 +8,8 @@
 // texel of 16 bytes in a table. Pieces of maps begin and end at multiples of it.
 #define ORT_RUN 8
 
-// Bins are atlases of so many texels squared, on the GPU columns of runs: the run of column s and
-// row y is three texels, by colour, of row s from 3 · y on.
+// Bins are square atlases of this side in texels, on the GPU columns of runs: the run of column s
+// and row y is three texels, by colour, of row s from 3 · y on.
 #define ORT_BIN_SIDE 1024
 
 #define ORT_LOCAL 64 // workgroup size over texels and places

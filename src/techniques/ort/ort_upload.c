@@ -62,7 +62,7 @@ static bool fill_mask(void *user, uint32_t k, uint8_t *mask)
     return true;
 }
 
-// Of 8 bits: the largest weight of a map is 255.
+// Steps of 8 bits: the largest weight of a map is 255.
 static void find_scales(const struct ort *s, struct content *c)
 {
     for (uint32_t i = 0; i < s->map.texel_count; i++) {

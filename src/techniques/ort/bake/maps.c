@@ -106,7 +106,7 @@ static void write_row(const struct ort_receiver *r, const struct row *row, bool 
     }
 }
 
-// Of the row as the offsets give it, and of the exact one.
+// Sums of the row as the offsets give it, and of the exact one.
 static void add_energy(const struct ort_receiver *r, const struct row *row, float energy[6])
 {
     for (int c = 0; c < 3; c++) {
@@ -160,7 +160,7 @@ bool ort_add_maps(struct bake_plan *plan, const struct ort_scene *scene)
         { ORT_MAPS, TENSOR_F16, 3, { texels, offsets, 3 }, BAKE_ROWS, BAKE_SAVED },
         { ORT_ENERGY, TENSOR_F32, 2, { 2, 3 }, BAKE_SUM, BAKE_SAVED },
     };
-    // Of the offsets a quarter face the texel; a ray takes as long as the bounces of so many
+    // A quarter of the offsets face the texel; a ray takes as long as the bounces of that many
     // patches.
     enum { PATCHES_PER_RAY = 400 };
     return bake_plan_add(

@@ -10,7 +10,8 @@ struct ort_offset {
     int32_t x, y;
 };
 
-// Of an atlas: the triangulation of offsets is exact up to it (delaunay.h), and products fit.
+// A limit for atlases: the triangulation of offsets is exact up to it (delaunay.h), and products
+// fit.
 enum { ORT_MOST_SIDE = 1 << 16 };
 
 struct ort_offset_set {

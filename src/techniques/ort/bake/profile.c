@@ -50,7 +50,7 @@ struct ort_profile ort_profile_of(const struct ort_options *options, int colour)
     return dipole_of(&MATERIALS[options->material - 1], colour);
 }
 
-// Of a source at a depth: its flux through the plane, 1/mm², without α′/4π.
+// Flux of a source at a depth through the plane, 1/mm², without α′/4π.
 static double source_at(const struct ort_profile *p, double depth, double r)
 {
     const double distance = sqrt(r * r + depth * depth);

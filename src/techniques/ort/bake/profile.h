@@ -7,7 +7,7 @@
 
 #include "techniques/ort/ort_options.h"
 
-// Of one colour. Lengths in mm.
+// The profile of one colour. Lengths are in mm.
 struct ort_profile {
     bool exponential;
     double falloff; // mean distance along a ray of the plane, of the exponential

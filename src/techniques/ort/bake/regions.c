@@ -43,7 +43,7 @@ static int64_t divide_down(int64_t a, int64_t b) // b > 0
 static int64_t first_nearer(const struct site *left, const struct site *right, int64_t y)
 {
     const int64_t left_rise = left->y - y, right_rise = right->y - y;
-    // Where 2x · between exceeds `twice`, right is nearer.
+    // Right is nearer where 2x · between exceeds `twice`.
     const int64_t between = right->x - left->x;
     const int64_t twice =
         right->x * right->x + right_rise * right_rise - left->x * left->x - left_rise * left_rise;

@@ -1,4 +1,4 @@
-// What all tasks of a bake share, and the names of tensors that live during the bake alone.
+// Data that all tasks of a bake share, and names of tensors that live during the bake alone.
 #pragma once
 
 #include "scene/statics.h"
@@ -33,7 +33,7 @@ struct ort_patch {
     float diffuse;        // factor of light from all sides, see light_map_first_order
 };
 
-// What a texel has of the bake's first stage.
+// The surface of a texel, from the first stage of the bake.
 struct ort_texel {
     vec3s position, normal;
     float reach; // offset of rays that leave it, m

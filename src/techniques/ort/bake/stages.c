@@ -49,7 +49,7 @@ static void destroy(void *argument)
     ort_map_finish(&scene->map);
 }
 
-// Of a trace scene for each triangle: Embree's hierarchy, corners and facets; of the map for each
+// The trace scene has Embree's hierarchy, corners and facets of each triangle; the map of each
 // place and texel.
 static size_t prepared_bytes(const struct ort_map *map)
 {

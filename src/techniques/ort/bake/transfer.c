@@ -138,7 +138,7 @@ void ort_transfer_single(const struct ort_transfer *transfer, const struct ort_r
     for (int c = 0; c < 3; c++) out[c] = factor * source.reflectance[c];
 }
 
-// What comes from a patch is from its texels by area and reflectance.
+// Light of a patch comes from its texels by area and reflectance.
 static void share_patch(const struct ort_transfer *transfer, const float *of_patches, uint32_t from,
                         float out[3])
 {
