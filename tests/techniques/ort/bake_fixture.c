@@ -1,0 +1,149 @@
+#include "techniques/ort/bake_fixture.h"
+
+#include "core/half.h"
+#include "core/rng.h"
+#include "techniques/ort/ort_tensors.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+// ---- scenes
+
+void ort_fixture_facing(struct ort_fixture *f)
+{
+    *f = (struct ort_fixture){ 0 };
+    fixture_init(&f->s, NULL);
+    fixture_floor(&f->s, 1, fixture_matte(&f->s, vec3_of(0.8f, 0.5f, 0.2f)));
+    fixture_quad(&f->s, vec3_of(-1, 1, -1), vec3_of(1, 1, -1), vec3_of(1, 1, 1), vec3_of(-1, 1, 1),
+                 fixture_matte(&f->s, vec3_of(0.3f, 0.5f, 0.9f)));
+}
+
+void ort_fixture_boxes(struct ort_fixture *f)
+{
+    *f = (struct ort_fixture){ 0 };
+    fixture_init(&f->s, NULL);
+    const int white = fixture_matte(&f->s, vec3_of(0.7f, 0.7f, 0.7f));
+    const int orange = fixture_matte(&f->s, vec3_of(0.8f, 0.5f, 0.2f));
+    fixture_box(&f->s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, white);
+    fixture_box(&f->s, vec3_of(-0.6f, 0.5f, -0.8f), vec3_of(0.7f, 1.6f, 0.4f), false, orange);
+}
+
+void ort_fixture_open(struct ort_fixture *f, const char *options)
+{
+    struct gi_spec spec;
+    char text[256];
+    f->options = options;
+    snprintf(text, sizeof text, "ort:%s", options);
+    CHECK(gi_spec_parse(&spec, test_host(), text));
+    CHECK(pose_init(&f->s.pose, f->s.scene, -1, 0.0f));
+    CHECK(scene_statics_init(&f->statics, test_host(), &f->s.pose));
+    CHECK(ort_map_init(&f->map, test_host(), &f->statics.pose, spec.options[0]));
+    f->trace = trace_scene_create(test_host(), &f->statics.pose);
+    assert_non_null(f->trace);
+    gi_spec_finish(&spec);
+}
+
+void ort_fixture_close(struct ort_fixture *f)
+{
+    trace_scene_destroy(f->trace);
+    ort_map_finish(&f->map);
+    scene_statics_finish(&f->statics);
+    fixture_finish(&f->s);
+}
+
+// ---- bakes
+
+struct bake *ort_fixture_plan(const struct ort_fixture *f, const char *more, uint64_t seed)
+{
+    struct gi_spec spec;
+    char text[256];
+    snprintf(text, sizeof text, "ort:%s%s%s", f->options, more[0] ? "," : "", more);
+    CHECK(gi_spec_parse(&spec, test_host(), text));
+    const struct technique_bake how = { .pose = &f->s.pose, .options = spec.options[0] };
+    struct bake *bake = gi_bake_create(test_host(), spec.technique[0], &how,
+                                       (struct bake_identity){ .program = "test", .seed = seed });
+    gi_spec_finish(&spec);
+    assert_non_null(bake);
+    return bake;
+}
+
+struct ort_baked ort_fixture_bake(const struct ort_fixture *f, const char *more, uint64_t seed)
+{
+    struct ort_baked baked = { .bake = ort_fixture_plan(f, more, seed) };
+    CHECK(bake_run(baked.bake, &(struct bake_run_options){ 0 }));
+    baked.tensors = bake_tensors(baked.bake);
+    return baked;
+}
+
+void ort_baked_finish(struct ort_baked *baked)
+{
+    bake_destroy(baked->bake);
+}
+
+// ---- light
+
+float *ort_texel_floats(const struct ort_fixture *f)
+{
+    float *out = calloc(3 * (size_t)f->map.texel_count, sizeof *out);
+    assert_non_null(out);
+    return out;
+}
+
+static void gather_texel(const struct ort_fixture *f, const struct ort_baked *baked, uint32_t texel,
+                         const float *light, float *out)
+{
+    const struct tensor *offsets = tensors_find(baked->tensors, ORT_OFFSETS);
+    const size_t count = offsets->shape[1];
+    const int32_t *offset = (const int32_t *)offsets->data + 2 * f->map.group_of[texel] * count;
+    const uint16_t *weight = tensors_find(baked->tensors, ORT_MAPS)->data;
+    const struct ort_place place = ort_place_of(&f->map, texel);
+    double sum[3] = { 0 };
+    for (size_t k = 0; k < count; k++) {
+        const uint32_t from = ort_texel_at(&f->map, place, offset[2 * k], offset[2 * k + 1]);
+        const uint16_t *w = weight + 3 * (texel * count + k);
+        for (size_t c = 0; from != CHART_NONE && c < 3; c++)
+            sum[c] += (double)float_from_half(w[c]) * (double)light[3 * (size_t)from + c];
+    }
+    for (int c = 0; c < 3; c++) out[c] = (float)(sum[c] / (double)ORT_MAP_SCALE);
+}
+
+void ort_indirect(const struct ort_fixture *f, const struct ort_baked *baked, const float *light,
+                  float *out)
+{
+    for (uint32_t i = 0; i < f->map.texel_count; i++)
+        gather_texel(f, baked, i, light, out + 3 * (size_t)i);
+}
+
+// 1 plus a wave of about the scene's size: positive.
+static float smooth_light(struct rng rng, vec3s at)
+{
+    const float phase = 2.0f * GLM_PIf * rng_float(&rng);
+    vec3s wave;
+    for (int a = 0; a < 3; a++) wave.raw[a] = 2.0f * rng_float(&rng) - 1.0f;
+    return 1.0f + 0.9f * cosf(2.0f * glms_vec3_dot(wave, at) + phase);
+}
+
+static float spotty_light(const struct ort_fixture *f, struct rng rng, vec3s at)
+{
+    enum { SPOTS = 4 };
+    static const float RADIUS = 0.25f;
+    float sum = 0.0f;
+    for (int i = 0; i < SPOTS; i++) {
+        const uint32_t center = rng_u32(&rng) % f->map.texel_count;
+        const vec3s to = glms_vec3_sub(at, chart_texel_of(&f->map.charts, center)->position);
+        sum += expf(-glms_vec3_norm2(to) / (2.0f * RADIUS * RADIUS));
+    }
+    return sum;
+}
+
+void ort_random_light(const struct ort_fixture *f, enum ort_light kind, uint32_t seed, float *light)
+{
+    for (uint32_t i = 0; i < f->map.texel_count; i++)
+        for (uint32_t c = 0; c < 3; c++) {
+            const struct rng rng = rng_for(seed, c, 0);
+            const vec3s at = chart_texel_of(&f->map.charts, i)->position;
+            light[3 * i + c] =
+                kind == ORT_SMOOTH ? smooth_light(rng, at) : spotty_light(f, rng, at);
+        }
+}
