@@ -43,6 +43,36 @@ struct visit {
     uint32_t count;
 };
 
+static bool sees_texel(const struct ort_scene *scene, vec3s from, uint32_t texel, float reach)
+{
+    const vec3s middle = chart_texel_of(&scene->map.charts, texel)->position;
+    const vec3s to =
+        glms_vec3_muladds(chart_texel_normal(&scene->map.charts, texel), reach, middle);
+    return !trace_occluded(scene->trace, from, glms_vec3_sub(to, from), 1.0f);
+}
+
+// A texel may reach through a thin wall. Where a hit does not see its middle, the hit is of a
+// neighbour in the chart that it sees.
+static uint32_t texel_seen_from(const struct ort_scene *scene, vec3s hit, uint32_t texel)
+{
+    static const int32_t NEAR[8][2] = { { -1, 0 },  { 1, 0 },  { 0, -1 }, { 0, 1 },
+                                        { -1, -1 }, { 1, -1 }, { -1, 1 }, { 1, 1 } };
+    const struct charts *charts = &scene->map.charts;
+    const struct chart_triangle *of = chart_triangle_of(charts, texel);
+    const float reach = trace_mesh_of(scene->trace, of->instance)->facets[of->triangle].reach;
+    const vec3s from = glms_vec3_muladds(chart_texel_normal(charts, texel), reach, hit);
+    const struct ort_place place = ort_place_of(&scene->map, texel);
+    if (sees_texel(scene, from, texel, reach)) return texel;
+    for (int i = 0; i < 8; i++) {
+        const uint32_t near = ort_texel_at(&scene->map, place, NEAR[i][0], NEAR[i][1]);
+        if (near != CHART_NONE && chart_triangle_of(charts, near)->chart == of->chart &&
+            chart_is_back(charts, near) == chart_is_back(charts, texel) &&
+            sees_texel(scene, from, near, reach))
+            return near;
+    }
+    return texel;
+}
+
 // Rays that meet no texel leave no entry: those that do come first.
 static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit, vec3s local,
                     const struct texel_seen *seen)
@@ -51,8 +81,10 @@ static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit
     const int instance = v->scene->trace->meshes[hit->geometry].instance;
     const uint32_t texel =
         chart_texel_at(&v->scene->map.charts, instance, hit->triangle, hit->u, hit->v, seen->back);
-    (void)ray, (void)local;
-    if (!seen->inside && texel != CHART_NONE) v->hits[v->count++] = texel;
+    const vec3s at = glms_vec3_muladds(ray->direction, hit->distance, ray->origin);
+    (void)local;
+    if (!seen->inside && texel != CHART_NONE)
+        v->hits[v->count++] = texel_seen_from(v->scene, at, texel);
 }
 
 static void gather(const struct bake_task *task, uint32_t texel, vec3s position, uint64_t row)
