@@ -7,7 +7,10 @@
 
 // Small bakes; the default has four times the texels.
 #define RADIOSITY "radiosity:texels=16384"
-// Both have one dictionary. FINE: a patch of 0.5 m is seen by texels of less than that.
+#define ORT       "ort:texels=4096,offsets=400,coordinates=charts"
+#define ORT_FINE  "ort:texels=16384,offsets=400,coordinates=charts"
+// Both have one dictionary. FINE, also of ort: a patch of 0.5 m is seen by texels of less than
+// that.
 #define DICTIONARY(texels)                                                                         \
     ":texels=" #texels ",rays=256,prior_modes=16,modes=12,lightfield_positions=4,"                 \
     "lightfield_directions=6,lightfield_modes=16,response_modes=12,block_probes=2"
@@ -43,6 +46,7 @@ TEST_GPU(a_closed_room_beside_a_sunlit_one_stays_dark)
                   { "vct:trace=rays", 0.01 },
                   { "vct:trace=rays,resolution=128", 0.005 },
                   { RADIOSITY, 0.005 },
+                  { ORT, 0.005 },
                   { MRT, 1e-4 },
                   { DRT, 1e-4 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
@@ -77,8 +81,8 @@ TEST_GPU(an_open_plane_in_the_sun_gets_nothing_of_its_own_light)
         double most;
     } cases[] = { { "lpv", 0.01 },  { "holpv", 0.015 },
                   { "vct", 0.01 },  { "vct:resolution=128", 0.01 },
-                  { RADIOSITY, 0 }, { MRT, 0.15 },
-                  { DRT, 0 } };
+                  { RADIOSITY, 0 }, { ORT, 0 },
+                  { MRT, 0.15 },    { DRT, 0 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         CHECK(fmax(own_light(gpu, cases[i].gi, false), own_light(gpu, cases[i].gi, true)) <=
               cases[i].most);
@@ -113,9 +117,10 @@ TEST_GPU(an_open_plane_gets_the_whole_sky)
     const struct {
         const char *gi;
         struct sky_range bound;
-    } cases[] = { { "lpv", { 0.77, 1.02, 0.1 } },  { "holpv", { 0.83, 1.13, 0.035 } },
-                  { "vct", { 0.98, 1.01, 0.02 } }, { RADIOSITY, { 0.999, 1.001, 0.001 } },
-                  { MRT, { 0.44, 1.57, 0.34 } },   { DRT, { 0.999, 1.001, 0.001 } } };
+    } cases[] = { { "lpv", { 0.77, 1.02, 0.1 } },   { "holpv", { 0.83, 1.13, 0.035 } },
+                  { "vct", { 0.98, 1.01, 0.02 } },  { RADIOSITY, { 0.999, 1.001, 0.001 } },
+                  { ORT, { 0.999, 1.001, 0.001 } }, { MRT, { 0.44, 1.57, 0.34 } },
+                  { DRT, { 0.999, 1.001, 0.001 } } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const struct sky_range got = sky_share(gpu, cases[i].gi), bound = cases[i].bound;
         CHECK(got.least >= bound.least && got.most <= bound.most);
@@ -149,12 +154,14 @@ static void check_shares(struct gpu *gpu, trial_scene build, const char *name, i
     }
 }
 
+// Offsets of ort meet a spot by chance: twice the error of 5.6 % that spots have between two
+// squares at 400 offsets.
 TEST_GPU(light_crosses_an_empty_room)
 {
     static const struct share_case cases[] = { { "lpv", 0.8 },      { "holpv", 0.9 },
                                                { "vct", 0.85 },     { "vct:trace=rays", 0.9 },
-                                               { RADIOSITY, 0.93 }, { MRT, 0.95 },
-                                               { DRT, 0.95 } };
+                                               { RADIOSITY, 0.93 }, { ORT, 0.89 },
+                                               { MRT, 0.95 },       { DRT, 0.95 } };
     check_shares(gpu, trial_empty_room, "across an empty room", 1, cases,
                  sizeof cases / sizeof cases[0], 1.3);
 }
@@ -162,10 +169,9 @@ TEST_GPU(light_crosses_an_empty_room)
 TEST_GPU(a_small_sunlit_patch_lights_its_room)
 {
     static const struct share_case cases[] = {
-        { "lpv", 0.85 },           { "lpv:quality=high", 0.85 },
-        { "holpv", 0.95 },         { "vct", 0.5 },
-        { "vct:trace=rays", 0.5 }, { RADIOSITY, 0.9 },
-        { MRT_FINE, 0.95 },        { DRT_FINE, 0.95 }
+        { "lpv", 0.85 },   { "lpv:quality=high", 0.85 }, { "holpv", 0.95 },
+        { "vct", 0.5 },    { "vct:trace=rays", 0.5 },    { RADIOSITY, 0.9 },
+        { ORT_FINE, 0.9 }, { MRT_FINE, 0.95 },           { DRT_FINE, 0.95 }
     };
     check_shares(gpu, trial_small_patch, "small patch", -1, cases, sizeof cases / sizeof cases[0],
                  1.5);
@@ -175,7 +181,8 @@ TEST_GPU(many_small_emitters_give_their_light)
 {
     static const struct share_case cases[] = { { "lpv", 0.8 },  { "holpv", 0.9 },
                                                { "vct", 0.85 }, { RADIOSITY, 0.95 },
-                                               { MRT, 0.97 },   { DRT, 0.97 } };
+                                               { ORT, 0.95 },   { MRT, 0.97 },
+                                               { DRT, 0.97 } };
     check_shares(gpu, trial_strips, "strips", -1, cases, sizeof cases / sizeof cases[0], 1.6);
 }
 
@@ -190,6 +197,7 @@ TEST_GPU(nothing_is_black_beside_a_panel)
                   { "lpv", 0.004 },
                   { "vct", 0.1 },
                   { RADIOSITY, 0.1 },
+                  { ORT, 0.1 },
                   { MRT, 0.6 },
                   { DRT, 0.6 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -218,8 +226,8 @@ TEST_GPU(a_hidden_surface_does_not_dilute_the_colour_before_it)
     const struct {
         const char *gi;
         double tolerance;
-    } cases[] = { { "lpv", 0.3 },      { "holpv", 0.15 }, { "vct", 0.03 },
-                  { RADIOSITY, 0.02 }, { MRT, 0.01 },     { DRT, 0.01 } };
+    } cases[] = { { "lpv", 0.3 }, { "holpv", 0.15 }, { "vct", 0.03 }, { RADIOSITY, 0.02 },
+                  { ORT, 0.02 },  { MRT, 0.01 },     { DRT, 0.01 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const double alone = red_over_green(gpu, cases[i].gi, 0),
                      hidden = red_over_green(gpu, cases[i].gi, 0.02f);
