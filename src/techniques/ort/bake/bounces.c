@@ -96,18 +96,53 @@ static bool sum_bounces(struct work *w, const struct matrix_f32 *f, const struct
     return true;
 }
 
-static bool write_colours(const struct bake_task *task, const struct matrix_f32 *f,
-                          const struct ort_patch *patches)
+// The patches that have texels, about half of them.
+struct used {
+    uint32_t *patch;           // [f.rows] of all patches
+    struct ort_patch *patches; // [f.rows]
+    struct matrix_f32 f;
+};
+
+static bool used_init(struct used *out, struct host *host, const struct matrix_f32 *f,
+                      const struct ort_patch *patches)
+{
+    size_t count = 0;
+    *out = (struct used){ .patch = host_alloc(host, f->rows, sizeof *out->patch),
+                          .patches = host_alloc(host, f->rows, sizeof *out->patches) };
+    if (!out->patch || !out->patches) return false;
+    for (size_t p = 0; p < f->rows; p++) {
+        if (!(patches[p].area > 0.0f)) continue;
+        out->patch[count] = (uint32_t)p;
+        out->patches[count++] = patches[p];
+    }
+    if (!matrix_f32_init(host, &out->f, count, count)) return false;
+    for (size_t p = 0; p < count; p++)
+        for (size_t q = 0; q < count; q++)
+            out->f.at[p * out->f.stride + q] = f->at[out->patch[p] * f->stride + out->patch[q]];
+    return true;
+}
+
+static void used_finish(struct used *used, struct host *host)
+{
+    host_free(host, used->patch);
+    host_free(host, used->patches);
+    matrix_f32_finish(host, &used->f);
+}
+
+// all: number of patches.
+static bool write_colours(const struct bake_task *task, const struct used *used, size_t all)
 {
     struct work w = { .host = task->host };
-    const size_t n = f->rows;
+    const size_t n = used->f.rows;
     float *out = task->out[OUT_TRANSFER];
     bool ok = matrix_f32_init(w.host, &w.power, n, n) && matrix_f32_init(w.host, &w.sum, n, n) &&
               matrix_f32_init(w.host, &w.next, n, n);
-    for (int c = 0; ok && c < 3; c++) {
-        ok = !bake_task_cancelled(task) && sum_bounces(&w, f, patches, c);
+    for (size_t c = 0; ok && c < 3; c++) {
+        ok = !bake_task_cancelled(task) && sum_bounces(&w, &used->f, used->patches, (int)c);
         for (size_t p = 0; ok && p < n; p++)
-            memcpy(out + ((size_t)c * n + p) * n, w.sum.at + p * w.sum.stride, n * sizeof *out);
+            for (size_t q = 0; q < n; q++)
+                out[(c * all + used->patch[p]) * all + used->patch[q]] =
+                    w.sum.at[p * w.sum.stride + q];
     }
     matrix_f32_finish(w.host, &w.power);
     matrix_f32_finish(w.host, &w.sum);
@@ -120,11 +155,14 @@ static bool run(const struct bake_task *task)
     const struct ort_scene *scene = task->job;
     struct ort_texels texels;
     struct matrix_f32 f = { 0 };
+    struct used used = { 0 };
     const size_t n = ort_patch_count(scene->map.texel_count);
     if (scene->map.texel_count == 0) return true;
     if (!ort_find_texels(&texels, task) || !matrix_f32_init(task->host, &f, n, n)) return false;
     fill_patches(&texels, task->out[OUT_PATCHES], &f);
-    const bool ok = write_colours(task, &f, task->out[OUT_PATCHES]);
+    const bool ok = used_init(&used, task->host, &f, task->out[OUT_PATCHES]) &&
+                    (used.f.rows == 0 || write_colours(task, &used, n));
+    used_finish(&used, task->host);
     matrix_f32_finish(task->host, &f);
     return ok;
 }
@@ -133,6 +171,7 @@ bool ort_add_bounces(struct bake_plan *plan, const struct ort_scene *scene)
 {
     enum { WAVE = 1, LAST_WAVE = 4 };
     const uint64_t n = ort_patch_count(scene->map.texel_count);
+    const double used = 0.5 * (double)n;     // patches that have texels
     const double products = 3.0 * 2.0 * 7.0; // colours, per doubling, doublings of a white room
     return bake_plan_add(
         plan,
@@ -142,6 +181,6 @@ bool ort_add_bounces(struct bake_plan *plan, const struct ort_scene *scene)
                               .run = run,
                               BAKE_OUTPUTS(BAKE_F32(BAKE_ROWS, ORT_BOUNCES, LAST_WAVE, 3, n, n),
                                            BAKE_F32(BAKE_ROWS, ORT_PATCHES, LAST_WAVE, n, 5)),
-                              .flops = products * 2.0 * (double)(n * n * n),
-                              .scratch_bytes = (size_t)(4 * n * n * sizeof(float)) });
+                              .flops = products * 2.0 * used * used * used,
+                              .scratch_bytes = (size_t)(5 * n * n * sizeof(float)) });
 }
