@@ -1,7 +1,6 @@
 // Clutter's texels as a geometry image.
 #include "techniques/mrt/clutter/clutter_light.h"
 
-#include "trace/reflectance.h"
 #include "trace/texels/texels.h"
 
 static struct mrt_geometry_texel look_at(const struct trace_scene *objects,
@@ -14,7 +13,7 @@ static struct mrt_geometry_texel look_at(const struct trace_scene *objects,
     return (struct mrt_geometry_texel){
         .position = t->position,
         .normal = normal,
-        .albedo = surface_reflectance(&surface),
+        .albedo = glms_vec3_scale(surface.material.albedo, 1.0f - surface.material.metallic),
         .emission = surface.emission,
         .found = true,
     };

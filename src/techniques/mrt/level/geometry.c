@@ -4,7 +4,6 @@
 #include "techniques/mrt/level/wall.h"
 
 #include "core/parallel.h"
-#include "trace/reflectance.h"
 
 // Rays start in the middle of the block, which scenes fill less than their walls, and end behind
 // the wall by a quarter of the block.
@@ -38,11 +37,8 @@ static enum sight look_at_wall(const struct geometry_job *job, const struct mrt_
     vec3s from = mrt_warp_point(block->corner, mrt_wall_middle(block, tile->face, s, t));
     vec3s to = mrt_warp_point(block->corner, wall);
     bool solid = is_in_solid(job->scene, from, mrt_block_middle(block));
-    const struct ray ray = { from, glms_vec3_sub(to, from), 0.0f, RAY_END };
-    struct ray_hit hit;
-    struct surface surface;
-    bool found = embree_closest(job->scene->embree, &ray, NULL, false, &hit);
-    if (found) surface_at(job->scene, &ray, &hit, NULL, &surface);
+    struct trace_hit hit;
+    bool found = trace_closest(job->scene, from, glms_vec3_sub(to, from), RAY_END, &hit);
     if (!found)
         *out = (struct mrt_geometry_texel){
             .position = to,
@@ -50,14 +46,14 @@ static enum sight look_at_wall(const struct geometry_job *job, const struct mrt_
         };
     else
         *out = (struct mrt_geometry_texel){
-            .position = surface.position,
-            .normal = surface.normal,
-            .albedo = surface_reflectance(&surface),
-            .emission = surface.emission,
+            .position = hit.position,
+            .normal = hit.normal,
+            .albedo = glms_vec3_scale(hit.albedo, 1.0f - hit.metallic),
+            .emission = hit.emission,
             .found = true,
         };
     if (solid) return SIGHT_BACK;
-    return !found ? SIGHT_NONE : surface.front ? SIGHT_FRONT : SIGHT_BACK;
+    return !found ? SIGHT_NONE : hit.front ? SIGHT_FRONT : SIGHT_BACK;
 }
 
 // The texel nearest to texel k that sees a front; −1: none.

@@ -9,7 +9,7 @@
 struct mrt_geometry_texel {
     vec3s position; // world
     vec3s normal;   // unit, towards the middle of the block
-    vec3s albedo;   // for light that bounces (trace/reflectance.h); 0 where there is no surface
+    vec3s albedo;   // of the diffuse lobe; 0 where there is no surface
     vec3s emission; // towards the middle of the block, cd/m²
     bool found;     // false: no surface, the wall of the block stands for it
 };
