@@ -70,19 +70,19 @@ static void list_pipelines(const struct ort *s, struct gpu_objects *out)
 {
     if (s->map.texel_count == 0) return;
     const uint32_t first = LIGHT_MAP_CONSTANTS;
+    const struct gpu_shader *gather = s->options.precision == ORT_BYTE
+                                          ? &shader_ort_gather_byte_comp
+                                          : &shader_ort_gather_half_comp;
     out->constants[first] = (struct gpu_constant){ ORT_GATHER_ROWS, s->rows };
     out->constants[first + 1] =
-        (struct gpu_constant){ ORT_GATHER_BYTES, s->options.precision == ORT_BYTE };
-    out->constants[first + 2] =
         (struct gpu_constant){ ORT_GATHER_SLICES, s->options.order == ORT_SLICES };
-    out->constants[first + 3] =
+    out->constants[first + 2] =
         (struct gpu_constant){ ORT_FINISH_SCATTERS, s->options.transfer != ORT_RADIOSITY };
     GPU_ADD(out, 0, { GPU_PIPELINE, PIPELINE(direct), .shader = &shader_ort_direct_comp },
             { GPU_PIPELINE, PIPELINE(spread), .shader = &shader_ort_spread_comp },
-            { GPU_PIPELINE, PIPELINE(gather), .shader = &shader_ort_gather_comp,
-              .consts = 7u << first },
+            { GPU_PIPELINE, PIPELINE(gather), .shader = gather, .consts = 3u << first },
             { GPU_PIPELINE, PIPELINE(finish), .shader = &shader_ort_finish_comp,
-              .consts = 8u << first });
+              .consts = 4u << first });
     if (s->options.transfer != ORT_RADIOSITY)
         GPU_ADD(out, 0, { GPU_PIPELINE, PIPELINE(replace), .shader = &shader_ort_replace_comp });
 }

@@ -9,7 +9,7 @@
 #include "techniques/ort/ort_shared.h"
 
 layout(local_size_x_id = ORT_GATHER_ROWS) in;
-layout(constant_id = ORT_GATHER_BYTES) const bool BYTES = false;
+const bool BYTES = ORT_BYTES != 0; // maps have 8 bits
 // A piece may end within the rows of a workgroup, where another one begins; beyond tiles are zeros.
 layout(constant_id = ORT_GATHER_SLICES) const bool SLICES = false;
 
@@ -21,7 +21,11 @@ layout(push_constant, scalar) uniform push_block
 layout(set = 0, binding = 0, rg32ui) uniform readonly uimage2D ort_lists; // first entry, entries
 // struct entry of ort_lists.c.
 layout(set = 0, binding = 1, rgba32ui) uniform readonly uimage2D ort_entries;
+#if ORT_BYTES
+layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2DArray ort_bins;
+#else
 layout(set = 0, binding = 2, rgba32ui) uniform readonly uimage2DArray ort_bins;
+#endif
 layout(set = 0, binding = 3, rgba32ui) uniform readonly uimage2D ort_light;
 layout(set = 0, binding = 4, rgba32f) uniform image2D ort_sums;
 

@@ -21,10 +21,8 @@
 // Weights are mostly far below 1, where half floats are coarse: maps have them times this.
 #define ORT_MAP_SCALE 4096.0f
 
-// Specialization constants of the gather: the rows of a workgroup; maps have 8 bits; pieces are
-// slices.
+// Specialization constants of the gather: the rows of a workgroup; pieces are slices.
 #define ORT_GATHER_ROWS   0
-#define ORT_GATHER_BYTES  1
 #define ORT_GATHER_SLICES 2
 // And of the finish: all light of a texel, its own too, scatters below the surface.
 #define ORT_FINISH_SCATTERS 3
