@@ -86,7 +86,7 @@ static void check_pixel(struct counts *counts, const float *direct, const float 
     for (int k = 0; k < 3; k++) {
         const double product = (double)albedo[k] * (double)direct[3] / PI * (double)irradiance[k];
         const double expected = product + (double)emissive[k];
-        // Of the layer, of direct light, and of its alpha.
+        // Rounding of the layer, of direct light, and of its alpha.
         const double rounding = ROUNDING * (product + expected + product) + LEAST;
         CHECK_NEAR(direct[k], expected, rounding);
         counts->worst = fmax(counts->worst, fabs((double)direct[k] - expected) / rounding);

@@ -24,8 +24,8 @@ struct unwraps {
     enum unwrap_fault fault; // of the first
 };
 
-// Of TEXCOORD_0, which is seldom made for light maps: a fold of some texels in a scan is no reason
-// to leave a good unwrap.
+// The tolerance of TEXCOORD_0, which is seldom made for light maps: a fold of some texels in a scan
+// is no reason to leave a good unwrap.
 static const double TOLERANCE_0 = 1e-3;
 
 static bool try_set(struct unwraps *u, int mesh, int set, enum unwrap_fault *fault)

@@ -80,7 +80,7 @@ void test_maps_finish(struct test_maps *maps)
 
 // ---- masks
 
-// Of −0.9 to 0.9 of a side, more often near 0.
+// An offset of −0.9 to 0.9 of a side, more often near 0.
 static int draw_offset(struct rng *rng, uint32_t side)
 {
     const float u = 2.0f * rng_float(rng) - 1.0f;

@@ -11,7 +11,7 @@
 
 enum { MOST = 7000 };
 
-// What the importance callback saw.
+// Offsets that the importance callback saw.
 struct record {
     struct ort_offset seen[2000];
     uint32_t count, calls, largest_later; // calls after the first

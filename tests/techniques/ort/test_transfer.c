@@ -10,7 +10,7 @@
 
 enum { LIGHTS = 3 };
 
-// What a stage beside that of the maps finds with its inputs.
+// Sums of a stage beside that of the maps, from the same inputs.
 struct sums {
     float *light[LIGHTS];       // [texels][3], first-order
     double *by_texels[LIGHTS];  // [texels][3], equation 3

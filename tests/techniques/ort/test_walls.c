@@ -11,7 +11,7 @@ struct count {
     size_t hits, beyond;
 };
 
-// Of the dark room, x in 0.025…4: the light of others does not reach it.
+// The dark room, x in 0.025…4: the light of others does not reach it.
 static bool is_in_dark_room(const struct ort_scene *scene, uint32_t texel)
 {
     const vec3s at = glms_vec3_muladds(chart_texel_normal(&scene->map.charts, texel), 0.01f,
