@@ -53,10 +53,15 @@ static void list_tables(const struct ort *s, struct gpu_objects *out)
                                                 .width = map->width,
                                                 .height = map->height,
                                                 .usage = GPU_SAMPLED | GPU_STORAGE };
-    const struct gpu_image_desc light = { .format = GPU_RGBA32U,
+    const struct gpu_image_desc light = { .dimension = GPU_2D_ARRAY,
+                                          .format = GPU_RGBA32U,
                                           .width = map->height,
                                           .height = map->width + 2 * ORT_MARGIN,
+                                          .depth = s->levels,
                                           .usage = GPU_STORAGE };
+    const struct gpu_image_desc filtered = {
+        .format = GPU_RGBA16F, .width = map->height, .height = map->width, .usage = GPU_STORAGE
+    };
     if (texels == 0) return;
     GPU_ADD(out, 0, { GPU_IMAGE, "first_order", TABLE(first_order), .image = first_order },
             { GPU_IMAGE, "light", TABLE(light), .image = light },
@@ -64,6 +69,8 @@ static void list_tables(const struct ort *s, struct gpu_objects *out)
               .image = light_map_table(GPU_RGBA32F, 6 * height * ort_columns(map)) },
             { GPU_IMAGE, "texel_light", TABLE(texel_light),
               .image = light_map_table(GPU_RG32U, 3 * texels) });
+    if (s->levels > 1)
+        GPU_ADD(out, 0, { GPU_IMAGE, "filtered", TABLE(filtered), .image = filtered });
 }
 
 static void list_pipelines(const struct ort *s, struct gpu_objects *out)
@@ -83,6 +90,10 @@ static void list_pipelines(const struct ort *s, struct gpu_objects *out)
             { GPU_PIPELINE, PIPELINE(gather), .shader = gather, .consts = 3u << first },
             { GPU_PIPELINE, PIPELINE(finish), .shader = &shader_ort_finish_comp,
               .consts = 4u << first });
+    if (s->levels > 1)
+        GPU_ADD(out, 0,
+                { GPU_PIPELINE, PIPELINE(prefilter_x), .shader = &shader_ort_prefilter_x_comp },
+                { GPU_PIPELINE, PIPELINE(prefilter_y), .shader = &shader_ort_prefilter_y_comp });
     if (s->options.transfer != ORT_RADIOSITY)
         GPU_ADD(out, 0, { GPU_PIPELINE, PIPELINE(replace), .shader = &shader_ort_replace_comp });
 }
@@ -91,7 +102,8 @@ static void list_pipelines(const struct ort *s, struct gpu_objects *out)
 static void list_uploads(struct gpu_objects *out)
 {
 #define IMAGE(thing) { GPU_IMAGE, .member = TABLE(thing) }
-    GPU_ADD(out, 0, IMAGE(texels), IMAGE(places), IMAGE(lists), IMAGE(entries), IMAGE(bins));
+    GPU_ADD(out, 0, IMAGE(texels), IMAGE(places), IMAGE(lists), IMAGE(entries), IMAGE(bins),
+            IMAGE(steps));
 }
 
 static void list(const struct ort *s, struct gpu_objects *out)
@@ -196,7 +208,7 @@ const struct technique technique_ort = {
     .role = ROLE_SOURCE,
     .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID,
-    .bake_version = 2,
+    .bake_version = 3,
     .options = OPTION_TABLE(struct ort_options, option_rows, NULL),
     .presets = presets,
     .state_size = sizeof(struct ort),

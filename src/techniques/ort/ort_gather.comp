@@ -26,7 +26,7 @@ layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2DArray ort_bins;
 #else
 layout(set = 0, binding = 2, rgba32ui) uniform readonly uimage2DArray ort_bins;
 #endif
-layout(set = 0, binding = 3, rgba32ui) uniform readonly uimage2D ort_light;
+layout(set = 0, binding = 3, rgba32ui) uniform readonly uimage2DArray ort_light;
 layout(set = 0, binding = 4, rgba32f) uniform image2D ort_sums;
 
 vec4 low[3] = { vec4(0.0), vec4(0.0), vec4(0.0) }, high[3] = { vec4(0.0), vec4(0.0), vec4(0.0) };
@@ -57,13 +57,13 @@ void add_piece(uvec4 entry, receiver to)
 {
     bool inside = !SLICES || to.y - (entry.z & 0xffffu) < entry.z >> 16;
     int map = inside ? 3 * (int(entry.x << 16) >> 16) + 3 * int(to.y) : 0;
-    int column = int(entry.y & 0xffffu), bin = int(entry.y >> 16);
+    int column = int(entry.y & 0xfffu), level = int(entry.y >> 12 & 0xfu), bin = int(entry.y >> 16);
     ivec2 offset = ivec2(entry.w << 16, entry.w) >> 16;
     int from_x = clamp(to.x + offset.x, 0, to.from_x_end);
     int from_y = clamp(int(to.y) + offset.y, 0, to.from_y_end);
     uvec4 light[ORT_RUN / 2];
     for (int k = 0; k < ORT_RUN / 2; k++)
-        light[k] = imageLoad(ort_light, ivec2(from_y, from_x + 2 * k));
+        light[k] = imageLoad(ort_light, ivec3(from_y, from_x + 2 * k, level));
     float factor = BYTES ? unpackHalf2x16(entry.x).y : 1.0;
     if (SLICES && !inside) factor = 0.0;
     for (int c = 0; c < 3; c++) {

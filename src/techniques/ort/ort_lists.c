@@ -6,7 +6,7 @@
 
 struct entry {
     uint32_t row;    // scale as a half << 16 | row in the bin less that in the map, 16 bits
-    uint32_t column; // bin << 16 | column of runs in it
+    uint32_t column; // bin << 16 | level << 12 | column of runs in the bin
     uint32_t rows;   // rows << 16 | first row
     uint32_t offset; // y << 16 | x
 };
@@ -30,7 +30,8 @@ static struct entry entry_of(const struct lists *l, const struct ort_piece *p, u
     const uint32_t in_bin = p->bin_x / ORT_RUN + column - p->x / ORT_RUN;
     return (struct entry){ (uint32_t)half_from_float(l->scale[p->map]) << 16 |
                                ((p->bin_y - p->y) & 0xffffu),
-                           p->bin << 16 | in_bin, p->height << 16 | p->y,
+                           p->bin << 16 | (uint32_t)l->maps->level[p->map] << 12 | in_bin,
+                           p->height << 16 | p->y,
                            (uint32_t)offset[1] << 16 | ((uint32_t)offset[0] & 0xffffu) };
 }
 

@@ -27,6 +27,33 @@ static void record_spread(struct ort *s, struct gpu_cmd *cmd)
     gpu_scope_end(cmd);
 }
 
+static void record_prefilter(struct ort *s, struct gpu_cmd *cmd)
+{
+    struct ort_level_push push = { s->map.width, s->map.height, 1, 1 };
+    const uint32_t groups = gpu_groups(push.height, ORT_LOCAL);
+    if (s->levels == 1) return;
+    gpu_scope_begin(cmd, "prefilter");
+    for (; push.level < (int32_t)s->levels; push.level++, push.stride *= 3) {
+        gpu_dispatch(cmd, s->pipelines.prefilter_x,
+                     GPU_BIND({ .name = "ort_steps", .image = s->tables.steps },
+                              { .name = "ort_light", .image = s->tables.light },
+                              { .name = "ort_filtered", .image = s->tables.filtered }),
+                     &push, sizeof push, groups, push.width, 1);
+        gpu_dispatch(cmd, s->pipelines.prefilter_y,
+                     GPU_BIND({ .name = "ort_steps", .image = s->tables.steps },
+                              { .name = "ort_filtered", .image = s->tables.filtered },
+                              { .name = "ort_light", .image = s->tables.light }),
+                     &push, sizeof push, groups, push.width + 2 * ORT_MARGIN, 1);
+    }
+    gpu_scope_end(cmd);
+}
+
+void ort_record_levels(struct ort *s, struct gpu_cmd *cmd)
+{
+    record_spread(s, cmd);
+    record_prefilter(s, cmd);
+}
+
 static void record_gather(struct ort *s, struct gpu_cmd *cmd)
 {
     const uint32_t columns = ort_columns(&s->map), blocks = ort_blocks(s);
@@ -74,7 +101,7 @@ static void record_map(struct ort *s, struct gpu_cmd *cmd)
 void ort_record_update(struct ort *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     record_direct(s, cmd, view);
-    record_spread(s, cmd);
+    ort_record_levels(s, cmd);
     record_gather(s, cmd);
     record_finish(s, cmd, view);
     record_map(s, cmd);

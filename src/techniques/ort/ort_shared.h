@@ -15,8 +15,12 @@
 #define ORT_LOCAL 64 // workgroup size over texels and places
 
 // Light in pairs, since runs of it begin at any x: for each colour the halves of the texels x and
-// x + 1, from x = −ORT_MARGIN to width + ORT_MARGIN − 1, at the texel (y, x + ORT_MARGIN).
+// x + 1, from x = −ORT_MARGIN to width + ORT_MARGIN − 1, at the texel (y, x + ORT_MARGIN); a layer
+// for each level.
 #define ORT_MARGIN (ORT_RUN - 1)
+
+// Levels of prefiltered light: level 0 is the light of single texels (levels.h).
+#define ORT_LEVELS 5
 
 // Weights are mostly far below 1, where half floats are coarse: maps have them times this.
 #define ORT_MAP_SCALE 4096.0f
@@ -37,6 +41,11 @@ struct ort_spread_push {
     uint32_t width, height;
 };
 
+struct ort_level_push {
+    uint32_t width, height, stride; // of the taps, texels
+    int32_t level;
+};
+
 // A workgroup has a list of the pieces that its rows have in the column: (first, count) in the
 // entries. `lists`: those before the part's.
 struct ort_gather_push {
@@ -52,6 +61,7 @@ struct ort_finish_push {
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct ort_direct_push) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct ort_spread_push) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct ort_level_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct ort_gather_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct ort_finish_push) == 12, "layout is shared with GLSL");
 #endif

@@ -12,7 +12,7 @@ layout(push_constant, scalar) uniform push_block
     ort_spread_push push;
 };
 layout(set = 0, binding = 0) uniform sampler2D first_order;
-layout(set = 0, binding = 1, rgba32ui) uniform writeonly uimage2D ort_light;
+layout(set = 0, binding = 1, rgba32ui) uniform writeonly uimage2DArray ort_light;
 
 vec3 light_at(int x, int y)
 {
@@ -26,5 +26,5 @@ void main()
     vec3 light = light_at(x, y), next = light_at(x + 1, y);
     uvec4 words = uvec4(0u);
     for (int c = 0; c < 3; c++) words[c] = packHalf2x16(vec2(light[c], next[c]));
-    imageStore(ort_light, ivec2(y, x + ORT_MARGIN), words);
+    imageStore(ort_light, ivec3(y, x + ORT_MARGIN, 0), words);
 }

@@ -11,12 +11,13 @@
 struct ort_tables {
     gpu_image texels, places;       // of texels
     gpu_image lists, entries, bins; // of the gather
-    gpu_image first_order, light;   // of the newest light: by place, in runs
+    gpu_image first_order, light;   // of the newest light: by place; in pairs, levels of it
+    gpu_image steps, filtered;      // between linked texels; light along rows
     gpu_image sums, texel_light;    // what the maps transfer; light of texels
 };
 
 struct ort_pipelines {
-    gpu_pipeline direct, spread, gather, finish, replace;
+    gpu_pipeline direct, spread, prefilter_x, prefilter_y, gather, finish, replace;
 };
 
 struct ort {
@@ -25,6 +26,7 @@ struct ort {
     struct gpu *gpu;
     struct ort_map map; // without texels: an empty scene
     uint32_t rows;      // of a workgroup of the gather
+    uint32_t levels;    // of light that offsets use, at least 1
     struct light_map light_map;
     struct ort_tables tables;
     struct ort_pipelines pipelines;
@@ -53,6 +55,7 @@ struct ort_maps {
     const int32_t *offset; // [count][2]
     const uint16_t *weight;
     const uint8_t *bytes; // the same in steps of the maps' scales; NULL: of 16 bits
+    const uint8_t *level; // [count] of light
     uint32_t offsets;     // of a texel
     uint32_t count;       // of all groups
 };
@@ -72,5 +75,7 @@ bool ort_upload_lists(struct ort *state, const struct ort_maps *maps, const stru
 
 // The light map under the lights of a frame.
 void ort_record_update(struct ort *state, struct gpu_cmd *cmd, const struct frame_view *view);
+// From first-order light by place to its levels: a part of the former.
+void ort_record_levels(struct ort *state, struct gpu_cmd *cmd);
 // A view's pixels.
 void ort_record_apply(struct ort *state, struct gpu_cmd *cmd, const struct frame_view *view);

@@ -10,7 +10,11 @@
 
 #define ORT_OFFSETS "offsets" // I32 [offsets][2]
 #define ORT_ENERGY  "energy"  // F32 [2][3], see ort_energy_ratio
+#define ORT_LINKS   "links"   // U8 [texels]: ORT_LINK_X | ORT_LINK_Y
 #define ORT_MAPS    "maps"    // F16 [texels][offsets][3], times ORT_MAP_SCALE
+
+// The light of a texel may be averaged with that of the next one, to the right or below.
+enum { ORT_LINK_X = 1, ORT_LINK_Y = 2 };
 
 // Light that all texels get of uniform first-order light by the points of the offsets, over that
 // they ought to get: rows of ORT_ENERGY, lumen. With `rows=exact` the maps have the latter.

@@ -1,6 +1,6 @@
 // From a bake, which is untrusted, to tables on the GPU.
 #include "techniques/ort/bins.h"
-#include "techniques/ort/ort_state.h"
+#include "techniques/ort/levels.h"
 
 #include "core/half.h"
 
@@ -9,7 +9,9 @@
 
 struct content {
     struct ort_maps maps;
-    const float *energy; // ORT_ENERGY
+    const float *energy;  // ORT_ENERGY
+    const uint8_t *links; // ORT_LINKS
+    uint8_t *level;       // as ort_maps.level
     struct light_map_texels texels;
     uint32_t *shown; // [texels] whose light each one shows
     float *scale;    // [maps] of bytes
@@ -25,6 +27,7 @@ static bool find_tensors(struct ort *s, const struct tensors *bake, struct conte
     return (out->energy = TENSORS_EXPECT(s->host, bake, ORT_ENERGY, TENSOR_F32, 2, 3)) &&
            (out->maps.offset =
                 TENSORS_EXPECT(s->host, bake, ORT_OFFSETS, TENSOR_I32, groups, k, 2)) &&
+           (out->links = TENSORS_EXPECT(s->host, bake, ORT_LINKS, TENSOR_U8, n)) &&
            (out->maps.weight = TENSORS_EXPECT(s->host, bake, ORT_MAPS, TENSOR_F16, n, k, 3)) &&
            light_map_find_texels(&out->texels, s->host, &s->map.charts, bake);
 }
@@ -141,6 +144,34 @@ static bool upload_places(struct ort *s)
                                   &s->tables.places);
 }
 
+static bool find_levels(struct ort *s, struct content *c)
+{
+    s->levels = 1;
+    c->maps.level = c->level = host_alloc(s->host, c->maps.count, sizeof *c->level);
+    if (!c->level) return false;
+    if (s->options.prefilter && !ort_find_levels(&s->map, &c->maps, c->level)) return false;
+    for (uint32_t k = 0; k < c->maps.count; k++)
+        if (c->level[k] >= s->levels) s->levels = c->level[k] + 1u;
+    return true;
+}
+
+static bool upload_steps(struct ort *s, const struct content *c)
+{
+    const size_t places = (size_t)s->map.width * s->map.height;
+    struct gpu_image_desc desc = { .name = "steps",
+                                   .format = GPU_R32U,
+                                   .width = s->map.height,
+                                   .height = s->map.width,
+                                   .usage = GPU_STORAGE };
+    if (s->levels == 1) return true;
+    uint32_t *steps = host_alloc(s->host, places, sizeof *steps);
+    if (steps) ort_find_steps(&s->map, c->links, steps);
+    const bool ok = steps && gpu_image_create(s->gpu, &desc, &s->tables.steps) &&
+                    gpu_image_upload(s->gpu, s->tables.steps, 0, 0, steps, places * sizeof *steps);
+    host_free(s->host, steps);
+    return ok;
+}
+
 bool ort_upload(struct ort *s, const struct tensors *bake)
 {
     struct content c;
@@ -149,10 +180,12 @@ bool ort_upload(struct ort *s, const struct tensors *bake)
     if (!check_offsets(s, &c.maps)) return false;
     c.shown = light_map_shown(&c.texels, s->host);
     const bool ok =
-        c.shown && upload_maps(s, &c) && upload_places(s) &&
+        c.shown && find_levels(s, &c) && upload_steps(s, &c) && upload_maps(s, &c) &&
+        upload_places(s) &&
         light_map_upload_texels(&c.texels, s->host, s->gpu, &s->tables.texels) &&
         light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c.shown, bake);
     host_free(s->host, c.shown);
+    host_free(s->host, c.level);
     host_free(s->host, c.scale);
     host_free(s->host, c.bytes);
     return ok;

@@ -1,5 +1,5 @@
-// The stages of a bake, in the order of their waves: texels · bounces, seams · offsets · areas ·
-// maps.
+// The stages of a bake, in the order of their waves: texels · bounces, seams, links · offsets ·
+// areas · maps.
 #include "techniques/ort/bake/stages.h"
 
 #include "bake/plan.h"
@@ -80,7 +80,7 @@ static bool add_stages(struct bake_plan *plan, struct ort_scene *scene,
     bake_plan_set_light_map(
         plan, (struct bake_light_map){ map->charts.count, map->charts.texels_per_m, plan_at });
     return ort_add_texels(plan, scene) && ort_add_bounces(plan, scene) &&
-           light_map_add_seams(plan, &scene->closing, &map->charts) &&
+           light_map_add_seams(plan, &scene->closing, &map->charts) && ort_add_links(plan, scene) &&
            ort_add_offsets(plan, scene) && ort_add_areas(plan, scene) && ort_add_maps(plan, scene);
 }
 

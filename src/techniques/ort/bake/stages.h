@@ -5,4 +5,5 @@
 
 bool ort_add_offsets(struct bake_plan *plan, const struct ort_scene *scene);
 bool ort_add_areas(struct bake_plan *plan, const struct ort_scene *scene);
+bool ort_add_links(struct bake_plan *plan, const struct ort_scene *scene);
 bool ort_add_maps(struct bake_plan *plan, const struct ort_scene *scene);
