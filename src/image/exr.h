@@ -1,6 +1,6 @@
-// OpenEXR files through the C core. Written: scan lines, ZIP, 32-bit floats, named layers. Read:
-// also half floats, unsigned integers and every compression of the library; tiled, deep, multi-part
-// and subsampled files are refused (FAIL_UNSUPPORTED). The layer "color" is stored in the channels
+// OpenEXR files through the C core. Written: scan lines, ZIP, floats or half floats, named layers.
+// Read: also unsigned integers and every compression of the library; tiled, deep, multi-part and
+// subsampled files are refused (FAIL_UNSUPPORTED). The layer "color" is stored in the channels
 // R G B (which any viewer shows), a one-channel layer "depth" as Z, any other layer X as X.R X.G
 // X.B (X.A), or as X.Y when it has one channel.
 #pragma once
@@ -16,9 +16,12 @@ struct exr_attribute { // a text attribute of the header
     const char *name, *value;
 };
 
-// All layers have the same size. The file is replaced atomically.
+// 32-bit floats. All layers have the same size. The file is replaced atomically.
 bool exr_write(struct host *host, const char *path, const struct exr_layer *layers, int layer_count,
                const struct exr_attribute *attributes, int attribute_count);
+// The same in 16-bit floats, the nearest ones.
+bool exr_write_half(struct host *host, const char *path, const struct exr_layer *layers,
+                    int layer_count, const struct exr_attribute *attributes, int attribute_count);
 // Reads one layer (NULL: "color") over the file's data window. The error for a missing layer lists
 // those present. Vectors (X.X X.Y X.Z) and depths (X.Z) of other programs are layers too. Untrusted
 // input.

@@ -1,5 +1,5 @@
-// Writing OpenEXR through its C core: one part, scan lines, ZIP, 32-bit floats, channels sorted by
-// name. One thread packs the chunks in order, so the same layers give the same bytes.
+// Writing OpenEXR through its C core: one part, scan lines, ZIP, floats, channels sorted by name.
+// One thread packs the chunks in order, so the same layers give the same bytes.
 #include "image/exr_file.h"
 
 #include <errno.h>
@@ -31,6 +31,7 @@ struct written_channel {
 struct channel_list {
     struct written_channel *items;
     int count;
+    exr_pixel_type_t type; // in the file
 };
 
 static bool refuse_layer(struct exr_file *file, const char *name, const char *why)
@@ -177,7 +178,7 @@ static exr_result_t write_header(exr_context_t context, const struct channel_lis
     if (code == EXR_ERR_SUCCESS)
         code = exr_attr_set_chromaticities(context, 0, "chromaticities", &rec709);
     for (int i = 0; code == EXR_ERR_SUCCESS && i < channels->count; i++)
-        code = exr_add_channel(context, 0, channels->items[i].name, EXR_PIXEL_FLOAT,
+        code = exr_add_channel(context, 0, channels->items[i].name, channels->type,
                                EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     for (int i = 0; code == EXR_ERR_SUCCESS && i < attribute_count; i++)
         code = exr_attr_set_string(context, 0, attributes[i].name, attributes[i].value);
@@ -222,11 +223,12 @@ static exr_result_t write_chunks(exr_context_t context, const struct channel_lis
     return code;
 }
 
-bool exr_write(struct host *host, const char *path, const struct exr_layer *layers, int layer_count,
-               const struct exr_attribute *attributes, int attribute_count)
+static bool write_as(exr_pixel_type_t type, struct host *host, const char *path,
+                     const struct exr_layer *layers, int layer_count,
+                     const struct exr_attribute *attributes, int attribute_count)
 {
     struct exr_file file = { .host = host, .path = path };
-    struct channel_list channels = { 0 };
+    struct channel_list channels = { .type = type };
     exr_context_initializer_t init = exr_initializer(&file);
     init.write_fn = write_bytes;
     init.zip_level = EXR_ZIP_LEVEL;
@@ -250,4 +252,16 @@ fail:
     host_free(host, channels.items);
     file_abort(&file.writer);
     return false;
+}
+
+bool exr_write(struct host *host, const char *path, const struct exr_layer *layers, int layer_count,
+               const struct exr_attribute *attributes, int attribute_count)
+{
+    return write_as(EXR_PIXEL_FLOAT, host, path, layers, layer_count, attributes, attribute_count);
+}
+
+bool exr_write_half(struct host *host, const char *path, const struct exr_layer *layers,
+                    int layer_count, const struct exr_attribute *attributes, int attribute_count)
+{
+    return write_as(EXR_PIXEL_HALF, host, path, layers, layer_count, attributes, attribute_count);
 }

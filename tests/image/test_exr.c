@@ -3,6 +3,7 @@
 #include "image/exr.h"
 
 #include "core/file.h"
+#include "core/half.h"
 
 #include <openexr.h>
 
@@ -61,6 +62,24 @@ static void write_layers(const char *path, struct image images[5])
         { "an.attribute.whose.name.is.longer.than.31", "µ → ok" },
     };
     CHECK(exr_write(test_host(), path, layers, 5, attributes, 3));
+}
+
+// Every finite half, a value between two halves, and values beyond the largest.
+TEST(half_floats_survive_exactly_and_others_are_rounded)
+{
+    struct image image, back;
+    CHECK(image_init(&image, test_host(), 256, 256, 1));
+    for (uint32_t i = 0; i < 65536; i++)
+        image.pixels[i] = (i & 0x7c00) == 0x7c00 ? 1e6f : float_from_half((uint16_t)i);
+    image.pixels[1] = 1.0f + 0.0003f;
+    const char *path = test_path("half.exr");
+    CHECK(exr_write_half(test_host(), path, &(struct exr_layer){ "color", &image }, 1, NULL, 0));
+    CHECK(exr_read(test_host(), path, NULL, &back));
+    for (uint32_t i = 2; i < 65536; i++)
+        CHECK((i & 0x7c00) == 0x7c00 ? isinf(back.pixels[i]) : back.pixels[i] == image.pixels[i]);
+    CHECK(back.pixels[1] == 1.0f);
+    image_finish(&image, test_host());
+    image_finish(&back, test_host());
 }
 
 TEST(every_layer_comes_back_by_its_name)
