@@ -29,8 +29,9 @@ static uint32_t places_of(const struct ort_regions *regions, uint32_t region)
     return sum;
 }
 
-bool ort_find_levels(const struct ort_map *map, const struct ort_maps *maps, uint8_t *level)
+bool ort_find_levels(const struct ort_maps *maps, uint8_t *level)
 {
+    const struct ort_map *map = maps->map;
     struct ort_offset *offsets = host_alloc(map->host, maps->offsets, sizeof *offsets);
     bool ok = offsets != NULL;
     for (uint32_t first = 0; ok && first < maps->count; first += maps->offsets) {

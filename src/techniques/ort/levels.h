@@ -4,11 +4,11 @@
 // (the à-trous scheme of Holschneider et al. 1989), and stays where texels are linked.
 #pragma once
 
-#include "techniques/ort/ort_state.h"
+#include "techniques/ort/ort_maps.h"
 
 // The level of each offset: that whose standard deviation is the nearest to half the radius of a
 // disk of the region's area, by their ratio. level: [maps->count].
-bool ort_find_levels(const struct ort_map *map, const struct ort_maps *maps, uint8_t *level);
+bool ort_find_levels(const struct ort_maps *maps, uint8_t *level);
 
 // Linked texels to the left, the right, above and below of each place, at most 255, as four bytes.
 // links: ORT_LINKS; steps: [width][height].

@@ -7,7 +7,6 @@
 enum { RUN_WORDS = 4 }; // of halves; of bytes half as many
 
 struct filling {
-    const struct ort *state;
     const struct ort_maps *maps;
     uint32_t *words; // of a bin
 };
@@ -26,13 +25,10 @@ static void put_weight(const struct filling *f, size_t entry, uint32_t in_run, s
 static void put_texel(const struct filling *f, const struct ort_piece *piece, uint32_t x,
                       uint32_t y)
 {
-    const struct ort_map *map = &f->state->map;
-    const int32_t *offset = f->maps->offset + 2 * (size_t)piece->map;
-    const struct ort_place at = { piece->x + x, piece->y + y };
-    const uint32_t texel = ort_texel_at(map, at, 0, 0);
-    if (texel == CHART_NONE || map->group_of[texel] != piece->map / f->maps->offsets) return;
-    if (ort_texel_at(map, at, offset[0], offset[1]) == CHART_NONE) return;
-    const size_t weight = 3 * ((size_t)texel * f->maps->offsets + piece->map % f->maps->offsets);
+    size_t weight;
+    if (!ort_maps_at(f->maps, piece->map, (struct ort_place){ piece->x + x, piece->y + y },
+                     &weight))
+        return;
     const size_t column = (piece->bin_x + x) / ORT_RUN;
     const size_t run = column * ORT_BIN_SIDE + piece->bin_y + y;
     for (size_t c = 0; c < 3; c++)
@@ -73,7 +69,7 @@ bool ort_upload_bins(struct ort *s, const struct ort_maps *maps, const struct or
     const enum gpu_format format = maps->bytes ? GPU_RG32U : GPU_RGBA32U;
     const size_t bytes =
         (size_t)(3 * ORT_BIN_SIDE * ORT_BIN_SIDE / ORT_RUN) * (size_t)gpu_format_bytes(format);
-    const struct filling f = { s, maps, host_alloc(s->host, bytes, 1) };
+    const struct filling f = { maps, host_alloc(s->host, bytes, 1) };
     const uint32_t count = bins->bin_count > 0 ? bins->bin_count : 1;
     bool ok = f.words && create_image(s, count, format);
     for (uint32_t bin = 0, piece = 0; ok && bin < bins->bin_count; bin++) {

@@ -5,8 +5,8 @@
 #include "techniques/common/light_map/follow.h"
 #include "techniques/common/light_map/map.h"
 #include "techniques/common/light_map/texels.h"
+#include "techniques/ort/ort_maps.h"
 #include "techniques/ort/ort_shared.h"
-#include "techniques/ort/ort_tensors.h"
 
 struct ort_tables {
     gpu_image texels, places;       // of texels
@@ -49,20 +49,6 @@ static inline uint32_t ort_blocks(const struct ort *state)
 // Tables of the light map and of a bake, which is untrusted, on the GPU.
 bool ort_upload(struct ort *state, const struct tensors *bake);
 
-// Transfer maps of a bake: maps[texel][offset][colour], halves times ORT_MAP_SCALE. Map
-// group · offsets + offset has the texels of a group.
-struct ort_maps {
-    const int32_t *offset; // [count][2]
-    const uint16_t *weight;
-    const uint8_t *bytes; // the same in steps of the maps' scales; NULL: of 16 bits
-    const uint8_t *level; // [count] of light
-    uint32_t offsets;     // of a texel
-    uint32_t count;       // of all groups
-};
-static inline const uint16_t *ort_weight(const struct ort_maps *maps, uint32_t texel, uint32_t map)
-{
-    return maps->weight + 3 * ((size_t)texel * maps->offsets + map % maps->offsets);
-}
 struct ort_bins;
 // The weights of pieces in bins.
 bool ort_upload_bins(struct ort *state, const struct ort_maps *maps, const struct ort_bins *bins);

@@ -1,6 +1,7 @@
 // From a bake, which is untrusted, to tables on the GPU.
 #include "techniques/ort/bins.h"
 #include "techniques/ort/levels.h"
+#include "techniques/ort/ort_state.h"
 
 #include "core/half.h"
 
@@ -20,49 +21,12 @@ struct content {
 
 static bool find_tensors(struct ort *s, const struct tensors *bake, struct content *out)
 {
-    const uint64_t n = light_map_rows(s->map.texel_count);
-    const uint64_t k = ort_offset_count(&s->map, &s->options);
-    const uint64_t groups = s->map.group_count;
-    *out = (struct content){ .maps = { .offsets = (uint32_t)k, .count = (uint32_t)(groups * k) } };
+    *out = (struct content){ 0 };
     return (out->energy = TENSORS_EXPECT(s->host, bake, ORT_ENERGY, TENSOR_F32, 2, 3)) &&
-           (out->maps.offset =
-                TENSORS_EXPECT(s->host, bake, ORT_OFFSETS, TENSOR_I32, groups, k, 2)) &&
-           (out->links = TENSORS_EXPECT(s->host, bake, ORT_LINKS, TENSOR_U8, n)) &&
-           (out->maps.weight = TENSORS_EXPECT(s->host, bake, ORT_MAPS, TENSOR_F16, n, k, 3)) &&
+           (out->links = TENSORS_EXPECT(s->host, bake, ORT_LINKS, TENSOR_U8,
+                                        light_map_rows(s->map.texel_count))) &&
+           ort_maps_find(&out->maps, &s->map, &s->options, bake) &&
            light_map_find_texels(&out->texels, s->host, &s->map.charts, bake);
-}
-
-static bool check_offsets(const struct ort *s, const struct ort_maps *maps)
-{
-    const int64_t limit[2] = { s->map.width, s->map.height };
-    for (size_t i = 0; i < 2 * (size_t)maps->count; i++)
-        if (maps->offset[i] <= -limit[i % 2] || maps->offset[i] >= limit[i % 2])
-            return host_fail(s->host, FAIL_FORMAT, "bake of ort: offset %d beyond the light map",
-                             maps->offset[i]);
-    return true;
-}
-
-struct masking {
-    const struct ort_map *map;
-    const struct ort_maps *maps;
-};
-
-// Weights that no texel an offset away belongs to are left out, whatever the bake has there.
-static bool fill_mask(void *user, uint32_t k, uint8_t *mask)
-{
-    const struct masking *m = user;
-    const int32_t *offset = m->maps->offset + 2 * (size_t)k;
-    memset(mask, 0, (size_t)m->map->width * m->map->height);
-    const uint32_t group = k / m->maps->offsets;
-    for (uint32_t i = m->map->first[group]; i < m->map->first[group + 1]; i++) {
-        const struct ort_place at = ort_place_of(m->map, m->map->members[i]);
-        const uint16_t *w = ort_weight(m->maps, m->map->members[i], k);
-        const bool lit = ((w[0] | w[1] | w[2]) & 0x7fff) != 0;
-        if (lit)
-            mask[at.y * (size_t)m->map->width + at.x] =
-                ort_texel_at(m->map, at, offset[0], offset[1]) != CHART_NONE;
-    }
-    return true;
 }
 
 // Steps of 8 bits: the largest weight of a map is 255.
@@ -109,7 +73,6 @@ static bool quantise(struct ort *s, struct content *c)
 static bool upload_maps(struct ort *s, struct content *c)
 {
     struct ort_bins bins;
-    const struct masking masking = { &s->map, &c->maps };
     c->scale = host_alloc(s->host, c->maps.count, sizeof *c->scale);
     if (!c->scale) return false;
     if (s->options.precision == ORT_BYTE && !quantise(s, c)) return false;
@@ -117,8 +80,8 @@ static bool upload_maps(struct ort *s, struct content *c)
                                         .width = s->map.width,
                                         .height = s->map.height,
                                         .tile_rows = s->options.order == ORT_TILES ? s->rows : 0,
-                                        .mask = fill_mask,
-                                        .user = (void *)&masking };
+                                        .mask = ort_maps_mask,
+                                        .user = &c->maps };
     if (!ort_bins_init(&bins, s->host, &wish)) return false;
     const bool ok =
         ort_upload_bins(s, &c->maps, &bins) && ort_upload_lists(s, &c->maps, &bins, c->scale);
@@ -149,7 +112,7 @@ static bool find_levels(struct ort *s, struct content *c)
     s->levels = 1;
     c->maps.level = c->level = host_alloc(s->host, c->maps.count, sizeof *c->level);
     if (!c->level) return false;
-    if (s->options.prefilter && !ort_find_levels(&s->map, &c->maps, c->level)) return false;
+    if (s->options.prefilter && !ort_find_levels(&c->maps, c->level)) return false;
     for (uint32_t k = 0; k < c->maps.count; k++)
         if (c->level[k] >= s->levels) s->levels = c->level[k] + 1u;
     return true;
@@ -177,7 +140,6 @@ bool ort_upload(struct ort *s, const struct tensors *bake)
     struct content c;
     if (!find_tensors(s, bake, &c)) return false;
     if (s->map.texel_count == 0) return true;
-    if (!check_offsets(s, &c.maps)) return false;
     c.shown = light_map_shown(&c.texels, s->host);
     const bool ok =
         c.shown && find_levels(s, &c) && upload_steps(s, &c) && upload_maps(s, &c) &&

@@ -8,6 +8,7 @@
 #include "framework/gpu_test.h"
 #include "technique_shaders.h"
 #include "techniques/ort/levels.h"
+#include "techniques/ort/ort_state.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -69,8 +70,8 @@ static uint8_t level_of_spacing(const struct ort_map *map, int32_t spacing)
             offset[count][0] = x;
             offset[count++][1] = y;
         }
-    const struct ort_maps maps = { .offset = offset[0], .offsets = count, .count = count };
-    CHECK(ort_find_levels(map, &maps, level));
+    const struct ort_maps maps = { map, .offset = offset[0], .offsets = count, .count = count };
+    CHECK(ort_find_levels(&maps, level));
     for (uint32_t k = 0; k < count; k++) most = level[k] > most ? level[k] : most;
     return most;
 }
