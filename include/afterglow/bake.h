@@ -84,6 +84,11 @@ ag_bake_run(struct ag_bake *bake,
 /// Writes the file of a complete bake and removes its checkpoint. record_seconds: add
 /// ag_bake_info.seconds to the file, which differ from run to run.
 AG_API enum ag_result ag_bake_save(struct ag_bake *bake, const char *path, bool record_seconds);
+/// Writes the data of a complete bake for other programs into an existing folder: of ort,
+/// index.json and the images that it names (docs/techniques/ort.md). Files of the same names are
+/// replaced, each completely or not at all, index.json last. AG_ERROR_ARGUMENT where the bake is
+/// incomplete, a light map, or of a technique without such data (ag_technique_info.exports_bake).
+AG_API enum ag_result ag_bake_export(const struct ag_bake *bake, const char *folder);
 /// Reads a file, untrusted, instead of a run. AG_ERROR_FORMAT if it is damaged or of another
 /// technique, version, scene or options; its seed may be any.
 AG_API enum ag_result ag_bake_load(struct ag_bake *bake, const char *path);

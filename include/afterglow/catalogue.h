@@ -25,6 +25,7 @@ struct ag_technique_info {
     const char *role; ///< "source", "delta" or "visibility"
     bool moving_geometry, moving_lights, needs_bake, makes_specular, publishes_probes;
     bool has_lightmap; ///< see lightmap.h
+    bool exports_bake; ///< see ag_bake_export
     int option_count, preset_count, debug_view_count;
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };

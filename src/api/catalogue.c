@@ -94,6 +94,7 @@ bool ag_technique_get(int index, struct ag_technique_info *out)
                                        .makes_specular = can & MAKES_SPECULAR,
                                        .publishes_probes = can & PUBLISHES_PROBES,
                                        .has_lightmap = technique->light_map != NULL,
+                                       .exports_bake = technique->bake_export != NULL,
                                        .option_count = (int)technique->options.count,
                                        .preset_count = preset_count(technique),
                                        .debug_view_count = debug_view_count(technique) };

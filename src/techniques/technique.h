@@ -98,6 +98,11 @@ struct technique {
     // Adds members to the report of a complete bake. After a run bake_reported has the
     // BAKE_REPORTED tensors too, after reading a file it has not.
     bool (*bake_report)(struct report *report, struct bake *bake, const struct technique_bake *how);
+    // Writes the data of a complete bake, whose content is untrusted, for other programs into an
+    // existing folder: each file completely or not at all, index.json last. `how`: as for `bake`.
+    // NULL: it has no such data.
+    bool (*bake_export)(struct host *host, const struct tensors *bake,
+                        const struct technique_bake *how, const char *folder);
     bool (*create)(void *state, const struct technique_create *how);
     // After `create`: takes what it needs of a bake, whose identity has been checked and whose
     // content is untrusted (tensors_expect). The tensors end with the call.

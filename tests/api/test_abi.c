@@ -180,6 +180,7 @@ static const struct {
     AT(ag_technique_info, makes_specular, 35),
     AT(ag_technique_info, publishes_probes, 36),
     AT(ag_technique_info, has_lightmap, 37),
+    AT(ag_technique_info, exports_bake, 38),
     AT(ag_technique_info, option_count, 40),
     AT(ag_technique_info, preset_count, 44),
     AT(ag_technique_info, debug_view_count, 48),

@@ -6,6 +6,7 @@ add_library(ag_test_renderer_fixture STATIC ${CMAKE_CURRENT_LIST_DIR}/renderer_f
 target_link_libraries(ag_test_renderer_fixture PUBLIC ag_test_gpu ag_test_own_device ag_api PRIVATE afterglow_flags)
 ag_test(api/odd_scenes USES api LIBRARIES ag_test_gpu)
 ag_test(api/bake USES api LIBRARIES ag_test_renderer_fixture)
+ag_test(api/bake_export USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/lightmap USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/bake_run USES api LIBRARIES ag_test_renderer_fixture)
 target_sources(test_api_bake_run PRIVATE $<TARGET_OBJECTS:ag_test_sample_registry>)

@@ -4,6 +4,7 @@
 // computes first-order light at the texels and one gather over all maps.
 #include "techniques/ort/ort.h"
 
+#include "techniques/ort/export.h"
 #include "techniques/ort/ort_state.h"
 #include "bake/report.h"
 #include "scene/statics.h"
@@ -215,6 +216,7 @@ const struct technique technique_ort = {
     .more_needs = more_needs,
     .bake = ort_bake,
     .bake_report = bake_report,
+    .bake_export = ort_bake_export,
     .create = create,
     .load = load,
     .invalidate = invalidate,

@@ -1,0 +1,49 @@
+// Data of bakes for other programs.
+#include "api/bake_state.h"
+
+#include "techniques/registry.h"
+
+#include <stdio.h>
+
+enum { LIST_SIZE = 256 };
+
+// "ort, other": techniques that have such data.
+static void list_exporters(char out[LIST_SIZE])
+{
+    size_t used = 0;
+    out[0] = 0;
+    for (int i = 0; techniques[i] && used < LIST_SIZE; i++) {
+        if (!techniques[i]->bake_export) continue;
+        const int wrote =
+            snprintf(out + used, LIST_SIZE - used, "%s%s", used ? ", " : "", techniques[i]->name);
+        used += wrote > 0 ? (size_t)wrote : 0;
+    }
+}
+
+static bool export_to(const struct ag_bake *b, const char *folder)
+{
+    struct host *host = &b->context->host;
+    const struct technique *technique = b->spec.technique[b->term];
+    char list[LIST_SIZE];
+    list_exporters(list);
+    if (!technique->bake_export)
+        return host_fail(host, FAIL_ARGUMENT,
+                         "cannot export the bake of %s: it has no data for other programs; "
+                         "techniques that have: %s",
+                         technique->name, list);
+    if (!bake_is_complete(b->bake))
+        return host_fail(host, FAIL_ARGUMENT,
+                         "cannot export the bake of %s: it is incomplete; run or load it first",
+                         technique->name);
+    return technique->bake_export(host, bake_tensors(b->bake), &b->how, folder);
+}
+
+enum ag_result ag_bake_export(const struct ag_bake *b, const char *folder)
+{
+    struct ag_context *context = b ? b->context : NULL;
+    AG_REQUIRE(context, b, "bake is NULL");
+    AG_REQUIRE(context, folder && folder[0], "folder is empty");
+    AG_REQUIRE(context, b->lightmap_samples == 0,
+               "the bake is of a light map: use ag_lightmap_write");
+    return api_done(context, export_to(b, folder));
+}
