@@ -311,6 +311,13 @@ static bool set_lightmap(struct arguments *a, const char *value, const char **wh
     return value[0] != 0;
 }
 
+static bool set_export(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be the name of a folder";
+    a->exported = value;
+    return value[0] != 0;
+}
+
 static bool set_denoise(struct arguments *a, const char *value, const char **why)
 {
     (void)value, (void)why;

@@ -60,6 +60,7 @@ struct arguments {
     long long max_memory_mib; // 0: no limit
     const char *report;       // NULL: none
     const char *lightmap;     // a folder; NULL: none
+    const char *exported;     // likewise
     bool denoise;
     bool clear; // cache
     bool all;   // list

@@ -1,4 +1,5 @@
 // afterglow bake: what a technique precomputes, to a file or to the cache.
+#include "bake_export.h"
 #include "baking.h"
 #include "commands.h"
 #include "light_map.h"
@@ -11,6 +12,7 @@ struct job {
     const struct arguments *arguments;
     struct session session;
     struct baking baking;
+    struct bake_export exported;
     struct ag_bake_origin origin; // of the parts, with --merge
 };
 
@@ -23,6 +25,9 @@ static enum status check_usage(const struct arguments *a)
     if (!a->merge && !a->has_gi)
         return wrong_usage("cannot bake %s: --gi SPEC is missing (see afterglow list)",
                            a->positional[0]);
+    if (a->exported && a->shard_count > 0)
+        return wrong_usage("cannot use --export with --shard: the bake is complete after --merge; "
+                           "give it there");
     return light_map_check_others(a);
 }
 
@@ -53,6 +58,13 @@ static enum status find_origin(struct job *job)
         return fail("cannot merge %s: it is part of a light map; add --lightmap DIR",
                     a->positional[0]);
     return status;
+}
+
+static enum status begin_export(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    return bake_export_begin(&job->exported, &job->session, a->exported,
+                             a->merge ? job->origin.gi : a->gi);
 }
 
 static enum status begin(struct job *job)
@@ -102,6 +114,7 @@ static json_t *report_json(struct job *job)
     json_object_set_new(report, "estimate_seconds", json_double(job->baking.estimate_seconds));
     json_object_set_new(report, "cached", json_boolean(job->baking.loaded));
     json_object_set_new(report, "output", json_text(job->baking.path));
+    if (job->exported.facts) json_object_set(report, "export", job->exported.facts);
     return report;
 }
 
@@ -170,12 +183,15 @@ static enum status bake(const struct arguments *arguments)
     if (status == DONE) status = check_outputs(arguments);
     if (status == DONE) status = session_begin(&job->session, arguments);
     if (status == DONE) status = find_origin(job);
+    if (status == DONE) status = begin_export(job);
     if (status == DONE)
         status = session_load(&job->session,
                               arguments->merge ? job->origin.scene_name : arguments->positional[0]);
     if (status == DONE) status = begin(job);
     if (status == DONE) status = bake_it(job);
+    if (status == DONE) status = bake_export_write(&job->exported, &job->baking);
     if (status == DONE) status = report(job);
+    bake_export_end(&job->exported);
     baking_end(&job->baking);
     session_end(&job->session);
     free(job);
@@ -197,6 +213,8 @@ const struct command command_bake = {
         "Neither threads, parts nor interruptions change the file.\n"
         "\n"
         "With --lightmap, writes a light map for other engines instead: see docs/lightmaps.md.\n"
+        "With --export, writes the transfer maps of ort as images too: see\n"
+        "docs/techniques/ort.md.\n"
         "\n"
         "The file is in the safetensors format: in Python,\n"
         "safetensors.numpy.load_file('maze.safetensors') returns its arrays by name.\n",
@@ -215,6 +233,8 @@ const struct command command_bake = {
         "  afterglow bake --merge part0.safetensors part1.safetensors --shard 0/2 -o "
         "next0.safetensors\n"
         "      joined, and half of the next work that is worth splitting\n"
+        "  afterglow bake head.glb --gi ort:offsets=100 --export bins\n"
+        "      into the cache, and its maps for other programs: bins/index.json\n"
         "  afterglow bake house.glb --lightmap maps\n"
         "      light map of radiosity: maps/irradiance.exr and maps/scene.glb\n"
         "  afterglow bake house.glb --lightmap maps --spp 256\n"

@@ -92,13 +92,14 @@ static json_t *debug_views_json(int technique)
 
 static json_t *technique_json(int i, const struct ag_technique_info *t)
 {
-    return json_pack("{s:s, s:s, s:s, s:s, s:b, s:b, s:b, s:b, s:b, s:b, s:o, s:o, s:o}", "name",
-                     t->name, "title", t->title, "paper", t->paper, "role", t->role,
+    return json_pack("{s:s, s:s, s:s, s:s, s:b, s:b, s:b, s:b, s:b, s:b, s:b, s:o, s:o, s:o}",
+                     "name", t->name, "title", t->title, "paper", t->paper, "role", t->role,
                      "moving_geometry", t->moving_geometry, "moving_lights", t->moving_lights,
                      "needs_bake", t->needs_bake, "makes_specular", t->makes_specular,
                      "publishes_probes", t->publishes_probes, "has_lightmap", t->has_lightmap,
-                     "options", options_json(ag_technique_option_get, i), "presets",
-                     presets_json(i), "debug_views", debug_views_json(i));
+                     "exports_bake", t->exports_bake, "options",
+                     options_json(ag_technique_option_get, i), "presets", presets_json(i),
+                     "debug_views", debug_views_json(i));
 }
 
 static json_t *scene_json(int i, const struct ag_builtin_scene_info *scene)
@@ -267,6 +268,7 @@ static void print_technique(int technique, const struct ag_technique_info *t, bo
     if (!t->moving_lights) printf("    static lights only\n");
     if (t->needs_bake) printf("    needs a bake\n");
     if (t->has_lightmap) printf("    has a light map\n");
+    if (t->exports_bake) printf("    exports its bake for other programs\n");
     int before = whole ? -1 : same_options_before(technique);
     if (before >= 0)
         print_other_defaults(technique, before);

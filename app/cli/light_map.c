@@ -1,6 +1,7 @@
 // Light maps as files: by the path tracer, through a bake, or by a renderer of a technique.
 #include "light_map.h"
 #include "baking.h"
+#include "technique_names.h"
 #include "cli/files/folder.h"
 #include "cli/files/interrupt.h"
 #include "cli/files/json.h"
@@ -62,6 +63,7 @@ static enum status check_usage(const struct arguments *a)
 {
     const char *option = a->report                  ? "--report"
                          : a->report_full           ? "--report-full"
+                         : a->exported              ? "--export"
                          : a->output && !is_part(a) ? "-o"
                                                     : NULL;
     if (option) return wrong_usage("cannot use %s with --lightmap: choose one", option);
@@ -95,17 +97,9 @@ static enum status find_origin(struct job *job)
     return status;
 }
 
-// "radiosity, other": techniques that have a light map.
-static void list_techniques(char *out, size_t size)
+static bool has_lightmap(const struct ag_technique_info *info)
 {
-    struct ag_technique_info info;
-    size_t used = 0;
-    out[0] = 0;
-    for (int i = 0; ag_technique_get(i, &info) && used < size; i++) {
-        if (!info.has_lightmap) continue;
-        const int wrote = snprintf(out + used, size - used, "%s%s", used ? ", " : "", info.name);
-        used += wrote > 0 ? (size_t)wrote : 0;
-    }
+    return info->has_lightmap;
 }
 
 static enum status check_technique(const struct job *job)
@@ -114,7 +108,7 @@ static enum status check_technique(const struct job *job)
     char list[SPEC_SIZE];
     const enum ag_result result = ag_lightmap_technique(job->session.context, gi_of(job), &found);
     if (result != AG_OK) return fail_library(job->session.context, result);
-    list_techniques(list, sizeof list);
+    technique_names(has_lightmap, list, sizeof list);
     return found ? DONE
                  : wrong_usage("cannot bake a light map with --gi %s: no technique of it has one; "
                                "techniques that do: %s",
