@@ -2,11 +2,12 @@
 
 #include "core/half.h"
 #include "core/rng.h"
-#include "techniques/ort/ort_tensors.h"
+#include "techniques/ort/levels.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 // ---- scenes
 
@@ -90,20 +91,23 @@ float *ort_texel_floats(const struct ort_fixture *f)
     return out;
 }
 
+// level: of the offsets of all groups; NULL: 0. light: [level][texels][3].
 static void gather_texel(const struct ort_fixture *f, const struct ort_baked *baked, uint32_t texel,
-                         const float *light, float *out)
+                         const uint8_t *level, const float *const *light, float *out)
 {
     const struct tensor *offsets = tensors_find(baked->tensors, ORT_OFFSETS);
     const size_t count = offsets->shape[1];
-    const int32_t *offset = (const int32_t *)offsets->data + 2 * f->map.group_of[texel] * count;
+    const size_t first = f->map.group_of[texel] * count;
+    const int32_t *offset = (const int32_t *)offsets->data + 2 * first;
     const uint16_t *weight = tensors_find(baked->tensors, ORT_MAPS)->data;
     const struct ort_place place = ort_place_of(&f->map, texel);
     double sum[3] = { 0 };
     for (size_t k = 0; k < count; k++) {
         const uint32_t from = ort_texel_at(&f->map, place, offset[2 * k], offset[2 * k + 1]);
         const uint16_t *w = weight + 3 * (texel * count + k);
-        for (size_t c = 0; from != CHART_NONE && c < 3; c++)
-            sum[c] += (double)float_from_half(w[c]) * (double)light[3 * (size_t)from + c];
+        if (from == CHART_NONE) continue;
+        const float *sent = light[level ? level[first + k] : 0] + 3 * (size_t)from;
+        for (size_t c = 0; c < 3; c++) sum[c] += (double)float_from_half(w[c]) * (double)sent[c];
     }
     for (int c = 0; c < 3; c++) out[c] = (float)(sum[c] / (double)ORT_MAP_SCALE);
 }
@@ -112,7 +116,90 @@ void ort_indirect(const struct ort_fixture *f, const struct ort_baked *baked, co
                   float *out)
 {
     for (uint32_t i = 0; i < f->map.texel_count; i++)
-        gather_texel(f, baked, i, light, out + 3 * (size_t)i);
+        gather_texel(f, baked, i, NULL, &light, out + 3 * (size_t)i);
+}
+
+// Whether all links from a texel to the place `count` away along an axis are there.
+static bool is_reached(const struct ort_map *map, const uint8_t *links, size_t place, int axis,
+                       int count)
+{
+    const size_t step = axis ? map->width : 1, first = count < 0 ? (size_t)-count * step : 0;
+    const size_t from = axis ? place / map->width : place % map->width;
+    if (count < 0 && from < (size_t)-count) return false;
+    for (size_t k = 0, at = place - first; k < (size_t)abs(count); k++, at += step) {
+        const uint32_t texel =
+            at < (size_t)map->width * map->height ? map->texel_at[at] : CHART_NONE;
+        if (texel == CHART_NONE || !(links[texel] & (axis ? ORT_LINK_Y : ORT_LINK_X))) return false;
+    }
+    return true;
+}
+
+void ort_filter_light(const struct ort_map *map, const uint8_t *links, int axis, int stride,
+                      const float *from, float *to)
+{
+    static const float TAP[5] = { 1, 4, 6, 4, 1 };
+    const ptrdiff_t step = stride * (axis ? (ptrdiff_t)map->width : 1);
+    for (size_t i = 0; i < (size_t)map->width * map->height; i++) {
+        float sum[3] = { 0 }, weight = 0;
+        for (int k = -2; k <= 2; k++) {
+            if (!is_reached(map, links, i, axis, k * stride)) continue;
+            const float *at = from + 3 * ((ptrdiff_t)i + k * step);
+            weight += TAP[k + 2];
+            for (int c = 0; c < 3; c++) sum[c] += TAP[k + 2] * at[c];
+        }
+        for (int c = 0; c < 3; c++)
+            to[3 * i + (size_t)c] = float_from_half(half_from_float(sum[c] / weight));
+    }
+}
+
+// Between light of texels and that of places.
+static void to_plane(const struct ort_map *map, const float *texels, float *plane)
+{
+    for (size_t i = 0; i < (size_t)map->width * map->height; i++)
+        for (size_t c = 0; map->texel_at[i] != CHART_NONE && c < 3; c++)
+            plane[3 * i + c] = texels[3 * (size_t)map->texel_at[i] + c];
+}
+static void from_plane(const struct ort_map *map, const float *plane, float *texels)
+{
+    for (size_t i = 0; i < (size_t)map->width * map->height; i++)
+        for (size_t c = 0; map->texel_at[i] != CHART_NONE && c < 3; c++)
+            texels[3 * (size_t)map->texel_at[i] + c] = plane[3 * i + c];
+}
+
+static void make_levels(const struct ort_map *map, const uint8_t *links, float *light[ORT_LEVELS])
+{
+    const size_t floats = 3 * (size_t)map->width * map->height;
+    float *plane = calloc(floats, sizeof *plane), *rows = calloc(floats, sizeof *rows);
+    assert_true(plane && rows);
+    to_plane(map, light[0], plane);
+    for (int level = 1, stride = 1; level < ORT_LEVELS; level++) {
+        ort_filter_light(map, links, 0, stride, plane, rows);
+        ort_filter_light(map, links, 1, stride, rows, plane);
+        from_plane(map, plane, light[level]);
+        stride *= 3;
+    }
+    free(plane);
+    free(rows);
+}
+
+void ort_indirect_prefiltered(const struct ort_fixture *f, const struct ort_baked *baked,
+                              const float *light, float *out)
+{
+    const struct tensor *offsets = tensors_find(baked->tensors, ORT_OFFSETS);
+    const uint32_t count = (uint32_t)offsets->shape[1], maps = f->map.group_count * count;
+    float *levels[ORT_LEVELS];
+    uint8_t *level = calloc(maps, 1);
+    assert_non_null(level);
+    for (int l = 0; l < ORT_LEVELS; l++) levels[l] = ort_texel_floats(f);
+    memcpy(levels[0], light, 3 * (size_t)f->map.texel_count * sizeof *light);
+    make_levels(&f->map, tensors_find(baked->tensors, ORT_LINKS)->data, levels);
+    CHECK(ort_find_levels(
+        &(struct ort_maps){ &f->map, .offset = offsets->data, .offsets = count, .count = maps },
+        level));
+    for (uint32_t i = 0; i < f->map.texel_count; i++)
+        gather_texel(f, baked, i, level, (const float *const *)levels, out + 3 * (size_t)i);
+    for (int l = 0; l < ORT_LEVELS; l++) free(levels[l]);
+    free(level);
 }
 
 // 1 plus a wave of about the scene's size: positive.

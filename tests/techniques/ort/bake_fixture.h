@@ -44,6 +44,13 @@ void ort_baked_finish(struct ort_baked *baked);
 // Irradiance of texels, [texels][3]; `light` is first-order, `out` indirect: equation 9.
 void ort_indirect(const struct ort_fixture *f, const struct ort_baked *baked, const float *light,
                   float *out);
+// The same with `prefilter`: offsets read levels of the light.
+void ort_indirect_prefiltered(const struct ort_fixture *f, const struct ort_baked *baked,
+                              const float *light, float *out);
+// The next level of light along an axis, 0: x, from and to [height][width][3], by links of texels
+// one after another; rounded to halves.
+void ort_filter_light(const struct ort_map *map, const uint8_t *links, int axis, int stride,
+                      const float *from, float *to);
 // First-order light of a random kind: smooth over the scene, or of spots.
 enum ort_light { ORT_SMOOTH, ORT_SPOTS };
 void ort_random_light(const struct ort_fixture *f, enum ort_light kind, uint32_t seed,

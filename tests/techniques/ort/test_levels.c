@@ -104,35 +104,6 @@ static void random_links(struct ort_map *map, uint8_t *links)
     }
 }
 
-// Whether all links from a place to the one `count` away along an axis are there.
-static bool is_reached(const uint8_t *links, int x, int y, int axis, int count)
-{
-    const int first = count < 0 ? count : 0, last = count < 0 ? 0 : count;
-    for (int k = first; k < last; k++) {
-        const int at_x = x + (axis == 0 ? k : 0), at_y = y + (axis == 1 ? k : 0);
-        if (at_x < 0 || at_y < 0 || at_x >= WIDTH || at_y >= HEIGHT) return false;
-        if (!(links[at_y * WIDTH + at_x] & (axis ? ORT_LINK_Y : ORT_LINK_X))) return false;
-    }
-    return true;
-}
-
-// The next level of light along an axis; rounded as images are.
-static void filter(const uint8_t *links, int axis, int stride, const float *from, float *to)
-{
-    static const float TAP[5] = { 1, 4, 6, 4, 1 };
-    for (int i = 0; i < PLACES; i++) {
-        float sum[3] = { 0 }, weight = 0;
-        for (int k = -2; k <= 2; k++) {
-            if (!is_reached(links, i % WIDTH, i / WIDTH, axis, k * stride)) continue;
-            const int at = i + k * stride * (axis ? WIDTH : 1);
-            weight += TAP[k + 2];
-            for (int c = 0; c < 3; c++) sum[c] += TAP[k + 2] * from[3 * at + c];
-        }
-        for (int c = 0; c < 3; c++)
-            to[3 * i + c] = float_from_half(half_from_float(sum[c] / weight));
-    }
-}
-
 static float half_of(const uint32_t *words, size_t pair, int c, int of_pair)
 {
     return float_from_half((uint16_t)(words[4 * pair + (size_t)c] >> 16 * of_pair));
@@ -228,8 +199,8 @@ TEST_GPU(levels_of_light_are_the_sums_over_linked_texels)
         const double worst = worst_difference(gpu, &s, (uint32_t)level, light);
         print_message("level %d: relative difference %.2g\n", level, worst);
         CHECK(worst <= 2 * level * 0x1p-10);
-        filter(links, 0, stride, light, rows);
-        filter(links, 1, stride, rows, light);
+        ort_filter_light(&s.map, links, 0, stride, light, rows);
+        ort_filter_light(&s.map, links, 1, stride, rows, light);
         stride *= 3;
     }
     close_levels(&s);
