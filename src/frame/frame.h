@@ -190,6 +190,7 @@ struct frame_input {
     const struct world_light *lights; // physical units
     int light_count;                  // ≤ FRAME_MAX_LIGHTS
     struct environment environment;   // of the scene
+    float painted;                    // largest painted irradiance, lux
     bool auto_exposure;               // from the frame's radiance, see image/exposure.h
     float exposure_ev;                // used if auto_exposure is false
     bool camera_cut;                  // invalidate history

@@ -80,6 +80,7 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
         .sky = environment_mean(&input->environment),
         .max_emissive = f->common->scene.max_emissive,
         .emitted_flux = f->common->emitters.flux,
+        .painted = input->painted,
         .bounds = input->pose->bounds,
     };
     c->radiance_scale = frame_scale(&light);

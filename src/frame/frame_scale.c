@@ -71,7 +71,7 @@ float frame_scale(const struct scale_input *in)
     float most = strongest(in->sky) * GLM_PIf;
     float emitter = strongest(in->emitted_flux) / (GLM_PIf * distance * distance);
     most = fmaxf(most, fminf(in->max_emissive * GLM_PIf, emitter));
-    most = fmaxf(most, typical_irradiance(in));
+    most = fmaxf(most, fmaxf(typical_irradiance(in), in->painted));
     bool lit = most > 0.0f && isfinite(most);
     bool emissive = in->max_emissive > 0.0f && isfinite(in->max_emissive);
     if (!lit && !emissive) return 1.0f;

@@ -9,6 +9,7 @@ struct scale_input {
     vec3s sky;          // mean of the environment, cd/m²
     float max_emissive; // cd/m²
     vec3s emitted_flux; // of all emissive surfaces, lumen
+    float painted;      // largest painted irradiance, lux
     struct box3 bounds; // of the scene
 };
 
