@@ -68,6 +68,10 @@ bool gi_has_debug_view(const struct gi *gi);
 bool gi_probes(const struct gi *gi, struct probe_volume *out);
 // The term whose technique has a light map that the newest update filled; host_fail where none has.
 bool gi_light_map(const struct gi *gi, int *term, gpu_image *out);
+// Sets the painted light of texels, from the next update on. false, and nothing changed: no
+// technique takes it, or as light_map_paint_set.
+bool gi_paint(struct gi *gi, const struct light_map_area *area);
+float gi_painted(const struct gi *gi); // largest painted irradiance, lux
 uint64_t gi_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height);
 uint32_t gi_spec_needs(const struct gi_spec *spec); // frame_need bits
 // What a further view of this size adds; apart: it shares no memory.

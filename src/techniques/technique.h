@@ -8,6 +8,7 @@
 #include "frame/frame.h"
 #include "gpu/gpu.h"
 #include "scene/pose.h"
+#include "techniques/common/light_map/paint.h"
 #include "techniques/common/probes/volume.h"
 
 enum technique_role { ROLE_SOURCE, ROLE_DELTA, ROLE_VISIBILITY };
@@ -138,6 +139,8 @@ struct technique {
     bool (*charts)(const struct scene_pose *statics, const void *options, struct host *host,
                    struct charts *out);
     gpu_image (*light_map)(void *state);
+    // Painted first-order light of the light map's texels, which `update` records.
+    struct light_map_paint *(*paint)(void *state);
     void (*destroy)(void *state); // before that of `objects`; accepts any half-built state
     // Bytes of GPU memory for these options, beside that of `objects`: of what `load` creates.
     uint64_t (*memory_estimate)(const void *options);

@@ -34,6 +34,7 @@ static bool create(void *state, const struct technique_create *how)
     // A processor has eight lanes, each of a row; a piece seldom ends inside of them.
     s->rows = gpu_info(s->gpu)->type == GPU_CPU ? 8 : ORT_LOCAL;
     light_map_init(&s->light_map, s->host, s->gpu, &s->map.charts);
+    light_map_paint_init(&s->paint, s->host, s->gpu, &s->map.charts);
     if (!how->pose) return true;
     struct scene_statics statics;
     const bool ok = scene_statics_init(&statics, s->host, how->pose) &&
@@ -153,6 +154,7 @@ static void follow(void *state, const struct scene_pose *pose, bool wait)
 static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct ort *s = state;
+    if (light_map_paint_record(&s->paint, cmd)) s->kept.lit = false;
     kept_update(&s->kept, view, view->light_hash);
     if (s->map.texel_count > 0 && !(view->keep && s->kept.same)) ort_record_update(s, cmd, view);
 }
@@ -169,6 +171,12 @@ static gpu_image light_map(void *state)
     return s->light_map.images[s->light_map.shown];
 }
 
+static struct light_map_paint *paint(void *state)
+{
+    struct ort *s = state;
+    return &s->paint;
+}
+
 static void destroy(void *state)
 {
     struct ort *s = state;
@@ -176,6 +184,7 @@ static void destroy(void *state)
     struct gpu_objects objects;
     list(s, &objects);
     gpu_objects_destroy(s->gpu, &objects, s);
+    light_map_paint_finish(&s->paint);
     light_map_followed_finish(&s->followed);
     ort_map_finish(&s->map);
 }
@@ -225,6 +234,7 @@ const struct technique technique_ort = {
     .record = record,
     .charts = ort_charts,
     .light_map = light_map,
+    .paint = paint,
     .destroy = destroy,
     .memory_estimate = memory_estimate,
 };

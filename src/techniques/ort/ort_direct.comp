@@ -8,6 +8,7 @@
 #define SHADOW_SUN_MAPS_BINDING  12
 #define LIGHT_MAP_TEXELS_BINDING 4
 #define LIGHT_MAP_LIGHTS_BINDING 5
+#define LIGHT_MAP_PAINT_BINDING  8
 #define FRAME_CONSTANTS_COPIED
 #include "techniques/common/light_map/first_order.glsl"
 #include "techniques/ort/ort_shared.h"
@@ -30,7 +31,7 @@ void main()
     if (i >= push.texels) return;
     uint place = texelFetch(ort_places, light_map_at(i), 0).x;
     vec3 irradiance = light_map_first_order(light_map_texel_of(i, push.texels), i, push.texels,
-                                            push.emitters, push.shadow_radius);
+                                            push.sources, push.shadow_radius);
     imageStore(first_order, ivec2(place & 0xffffu, place >> 16),
                vec4(min(irradiance, vec3(HALF_MAX)), 1.0));
 }

@@ -1,11 +1,12 @@
-// Light of each texel: what the maps transfer, and the first-order light of the sky and emissive
-// surfaces, unless that scatters below surfaces and is in the maps. The maps have no directions:
-// their vector irradiance is along the normal.
+// Light of each texel: what the maps transfer, and the first-order light of the sky, emissive
+// surfaces and paint, unless that scatters below surfaces and is in the maps. The maps have no
+// directions: their vector irradiance is along the normal.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
 #define LIGHT_MAP_TEXELS_BINDING 1
+#define LIGHT_MAP_PAINT_BINDING  5
 #include "techniques/common/light_map/texels.glsl"
 #include "techniques/ort/ort_shared.h"
 
@@ -31,7 +32,7 @@ void main()
     for (int c = 0; c < 3; c++) {
         float sum = imageLoad(ort_sums, light_map_at(run + 2 * c))[x % 4u] / ORT_MAP_SCALE;
         vec4 light = vec4(sum, sum * normal);
-        if (!SCATTERS) light += light_map_unbounced(i, push.texels, c, push.emitters);
+        if (!SCATTERS) light += light_map_unbounced(i, push.texels, c, push.sources);
         imageStore(texel_light, light_map_at(c * push.texels + i),
                    uvec4(light_map_pack(light), 0u, 0u));
     }

@@ -4,11 +4,11 @@
 static void record_direct(struct ort *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const struct ort_direct_push push = { s->map.texel_count, view->shadow_radius,
-                                          s->options.emitters ? 1.0f : 0.0f };
+                                          light_map_sources(&s->paint, s->options.emitters) };
     gpu_scope_begin(cmd, "direct");
     gpu_dispatch(cmd, s->pipelines.direct,
                  GPU_BIND(FRAME_LIGHT_BINDINGS(view),
-                          { .name = "light_map_texels", .image = s->tables.texels },
+                          LIGHT_MAP_TEXEL_BINDINGS(&s->paint, s->tables.texels),
                           { .name = "ort_places", .image = s->tables.places },
                           { .name = "first_order", .image = s->tables.first_order }),
                  &push, sizeof push, gpu_groups(push.texels, ORT_LOCAL), 1, 1);
@@ -75,11 +75,11 @@ static void record_gather(struct ort *s, struct gpu_cmd *cmd)
 static void record_finish(struct ort *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const struct ort_finish_push push = { s->map.texel_count, s->map.height,
-                                          s->options.emitters ? 1.0f : 0.0f };
+                                          light_map_sources(&s->paint, s->options.emitters) };
     gpu_scope_begin(cmd, "finish");
     gpu_dispatch(cmd, s->pipelines.finish,
                  GPU_BIND(view->constants_binding,
-                          { .name = "light_map_texels", .image = s->tables.texels },
+                          LIGHT_MAP_TEXEL_BINDINGS(&s->paint, s->tables.texels),
                           { .name = "ort_places", .image = s->tables.places },
                           { .name = "ort_sums", .image = s->tables.sums },
                           { .name = "texel_light", .image = s->tables.texel_light }),

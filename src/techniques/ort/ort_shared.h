@@ -4,6 +4,8 @@
 
 #include "core/shared.h"
 
+#include "techniques/common/light_map/map_shared.h"
+
 // Texels of a row that an invocation of the gather handles: those whose halves of one colour are a
 // texel of 16 bytes in a table. Pieces of maps begin and end at multiples of it.
 #define ORT_RUN 8
@@ -34,7 +36,7 @@
 struct ort_direct_push {
     uint32_t texels;
     int32_t shadow_radius; // texels of the shadow map
-    float emitters;        // factor of the light of emissive surfaces
+    AG_STRUCT(light_map_sources) sources;
 };
 
 struct ort_spread_push {
@@ -55,15 +57,15 @@ struct ort_gather_push {
 
 struct ort_finish_push {
     uint32_t texels, height;
-    float emitters;
+    AG_STRUCT(light_map_sources) sources;
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct ort_direct_push) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct ort_direct_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct ort_spread_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct ort_level_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct ort_gather_push) == 16, "layout is shared with GLSL");
-_Static_assert(sizeof(struct ort_finish_push) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct ort_finish_push) == 16, "layout is shared with GLSL");
 #endif
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "techniques/common/kept.h"
 #include "techniques/common/light_map/follow.h"
+#include "techniques/common/light_map/paint.h"
 #include "techniques/common/light_map/map.h"
 #include "techniques/common/light_map/texels.h"
 #include "techniques/ort/ort_maps.h"
@@ -28,6 +29,7 @@ struct ort {
     uint32_t rows;      // of a workgroup of the gather
     uint32_t levels;    // of light that offsets use, at least 1
     struct light_map light_map;
+    struct light_map_paint paint;
     struct ort_tables tables;
     struct ort_pipelines pipelines;
     struct light_map_followed followed;

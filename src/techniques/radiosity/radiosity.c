@@ -31,6 +31,7 @@ static bool create(void *state, const struct technique_create *how)
     s->host = how->host;
     s->gpu = how->gpu;
     light_map_init(&s->light_map, s->host, s->gpu, &s->map.charts);
+    light_map_paint_init(&s->paint, s->host, s->gpu, &s->map.charts);
     if (!how->pose) return true;
     struct scene_statics statics;
     const bool ok =
@@ -138,6 +139,7 @@ static void gather_probes(struct radiosity *s, struct gpu_cmd *cmd, const struct
 static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct radiosity *s = state;
+    if (light_map_paint_record(&s->paint, cmd)) s->kept.lit = false;
     kept_update(&s->kept, view, view->light_hash);
     s->update.at_once |= !s->kept.follows;
     s->update.changed |= !(view->keep && s->kept.same);
@@ -163,6 +165,12 @@ static gpu_image light_map(void *state)
 {
     const struct radiosity *s = state;
     return s->light_map.images[s->light_map.shown];
+}
+
+static struct light_map_paint *paint(void *state)
+{
+    struct radiosity *s = state;
+    return &s->paint;
 }
 
 static bool probes(void *state, struct probe_volume *out)
@@ -192,6 +200,7 @@ static void destroy(void *state)
     gpu_objects_destroy(s->gpu, &objects, s);
     radiosity_destroy_rows(s, &s->tables.factors);
     radiosity_destroy_rows(s, &s->tables.cluster_factors);
+    light_map_paint_finish(&s->paint);
     light_map_followed_finish(&s->followed);
     radiosity_map_finish(&s->map);
 }
@@ -255,6 +264,7 @@ const struct technique technique_radiosity = {
     .debug_view = debug_view,
     .charts = radiosity_charts,
     .light_map = light_map,
+    .paint = paint,
     .probes = probes,
     .destroy = destroy,
     .memory_estimate = memory_estimate,

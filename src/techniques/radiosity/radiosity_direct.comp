@@ -8,6 +8,7 @@
 #define SHADOW_SUN_MAPS_BINDING  12
 #define LIGHT_MAP_TEXELS_BINDING 4
 #define LIGHT_MAP_LIGHTS_BINDING 5
+#define LIGHT_MAP_PAINT_BINDING  7
 #define FRAME_CONSTANTS_COPIED
 #include "techniques/common/light_map/first_order.glsl"
 #include "techniques/radiosity/radiosity_shared.h"
@@ -29,7 +30,7 @@ void main()
     uint i = push.first + gl_GlobalInvocationID.x;
     light_map_texel texel = light_map_texel_of(i, push.texels);
     vec3 irradiance =
-        light_map_first_order(texel, i, push.texels, push.emitters, push.shadow_radius);
+        light_map_first_order(texel, i, push.texels, push.sources, push.shadow_radius);
     imageStore(radiosity_flux, light_map_at(i),
                vec4(texel.place.w * texel.reflectance.rgb * irradiance, 0.0));
 }

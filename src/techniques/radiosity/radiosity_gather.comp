@@ -1,10 +1,11 @@
-// Light of each texel: F B of the clusters, the sky and emissive surfaces. By colour: irradiance
-// along the normal and the vector irradiance.
+// Light of each texel: F B of the clusters, the sky, emissive surfaces and paint. By colour:
+// irradiance along the normal and the vector irradiance.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
 #define LIGHT_MAP_TEXELS_BINDING 1
+#define LIGHT_MAP_PAINT_BINDING  7
 #include "core/basis.glsl"
 #include "techniques/radiosity/radiosity_pack.glsl"
 #include "techniques/common/light_map/texels.glsl"
@@ -38,14 +39,14 @@ void add_entry(uvec2 word)
     sum.by_v += along.y * light;
 }
 
-// Of clusters, the sky and emissive surfaces.
+// Of clusters, the sky, emissive surfaces and paint.
 void store_light(uint texel)
 {
     mat3 basis = basis_of(light_map_texel_part(texel, push.texels, TEXEL_NORMAL).xyz);
     for (int c = 0; c < 3; c++) {
         vec4 light = vec4(sum.irradiance[c], sum.irradiance[c] * basis[2] + sum.by_u[c] * basis[0] +
                                                  sum.by_v[c] * basis[1]) +
-                     light_map_unbounced(texel, push.texels, c, push.emitters);
+                     light_map_unbounced(texel, push.texels, c, push.sources);
         imageStore(texel_light, light_map_at(c * push.texels + texel),
                    uvec4(light_map_pack(light), 0u, 0u));
     }

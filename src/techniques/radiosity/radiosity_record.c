@@ -11,10 +11,10 @@ static void record_direct(struct radiosity *s, struct gpu_cmd *cmd, const struct
 {
     const struct radiosity_direct_push push = { rows.first, rows.count, s->map.texel_count,
                                                 view->shadow_radius,
-                                                s->options.emitters ? 1.0f : 0.0f };
+                                                light_map_sources(&s->paint, s->options.emitters) };
     gpu_dispatch(cmd, s->pipelines.direct,
                  GPU_BIND(FRAME_LIGHT_BINDINGS(view),
-                          { .name = "light_map_texels", .image = s->tables.texels },
+                          LIGHT_MAP_TEXEL_BINDINGS(&s->paint, s->tables.texels),
                           { .name = "radiosity_flux", .image = s->tables.flux }),
                  &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
@@ -97,10 +97,10 @@ static void record_gather_of(struct radiosity *s, struct gpu_cmd *cmd,
                              struct span rows)
 {
     const struct radiosity_gather_push push = { rows.first, rows.count, s->map.texel_count,
-                                                s->options.emitters ? 1.0f : 0.0f };
+                                                light_map_sources(&s->paint, s->options.emitters) };
     gpu_dispatch(cmd, s->pipelines.gather,
                  GPU_BIND(view->constants_binding,
-                          { .name = "light_map_texels", .image = s->tables.texels },
+                          LIGHT_MAP_TEXEL_BINDINGS(&s->paint, s->tables.texels),
                           { .name = "radiosity_order", .image = s->tables.factors.order },
                           { .name = "radiosity_tiles", .image = s->tables.factors.tiles },
                           { .name = "radiosity_factors", .image = block->table },

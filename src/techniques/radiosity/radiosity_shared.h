@@ -46,7 +46,7 @@ struct radiosity_gpu_label {
 struct radiosity_direct_push {
     uint32_t first, count, texels;
     int32_t shadow_radius; // texels of the shadow map
-    float emitters;        // 1: emissive surfaces are sources, 0: they are not
+    AG_STRUCT(light_map_sources) sources;
 };
 
 struct radiosity_clusters_push {
@@ -64,7 +64,7 @@ struct radiosity_nodes_push {
 
 struct radiosity_gather_push {
     uint32_t first, count, texels;
-    float emitters;
+    AG_STRUCT(light_map_sources) sources;
 };
 
 struct radiosity_smooth_push {
@@ -80,11 +80,11 @@ struct radiosity_view_push {
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct radiosity_gpu_label) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_view_push) == 20, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_direct_push) == 20, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_direct_push) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_clusters_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_solve_push) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_nodes_push) == 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_gather_push) == 16, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_gather_push) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_smooth_push) == 12, "layout is shared with GLSL");
 #endif
 

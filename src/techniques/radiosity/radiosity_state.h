@@ -6,6 +6,7 @@
 #include "techniques/common/light_map/map.h"
 #include "techniques/common/light_map/texels.h"
 #include "techniques/common/light_map/follow.h"
+#include "techniques/common/light_map/paint.h"
 #include "techniques/radiosity/radiosity_shared.h"
 #include "techniques/radiosity/radiosity_tensors.h"
 
@@ -69,6 +70,7 @@ struct radiosity {
     struct gpu *gpu;
     struct radiosity_map map; // without texels: an empty scene
     struct light_map light_map;
+    struct light_map_paint paint;
     uint32_t group_count;
     float spectral_radius; // of ρ F, at least
     struct radiosity_tables tables;

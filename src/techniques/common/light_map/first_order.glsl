@@ -1,5 +1,6 @@
-// First-order irradiance of texels: all lights with shadows, emissive surfaces and the sky. Define
-// LIGHT_MAP_LIGHTS_BINDING, LIGHT_MAP_TEXELS_BINDING and those of shadow.glsl first.
+// First-order irradiance of texels: all lights with shadows, emissive surfaces, the sky and paint.
+// Define LIGHT_MAP_LIGHTS_BINDING, LIGHT_MAP_TEXELS_BINDING, LIGHT_MAP_PAINT_BINDING and those of
+// shadow.glsl first.
 #ifndef AG_LIGHT_MAP_FIRST_ORDER_GLSL
 #define AG_LIGHT_MAP_FIRST_ORDER_GLSL
 
@@ -27,14 +28,14 @@ light_map_texel light_map_texel_of(uint i, uint texels)
                            light_map_texel_part(i, texels, TEXEL_REFLECTANCE));
 }
 
-// Irradiance of texel i in the units of the frame; 0 where the texel is inside geometry. emitters:
-// factor of the light of emissive surfaces. shadow_radius: texels of the shadow map.
-vec3 light_map_first_order(light_map_texel texel, uint i, uint texels, float emitters,
+// Irradiance of texel i in the units of the frame; 0 where the texel is inside geometry.
+// shadow_radius: texels of the shadow map.
+vec3 light_map_first_order(light_map_texel texel, uint i, uint texels, light_map_sources sources,
                            int shadow_radius)
 {
     vec3 irradiance = vec3(0.0);
     if (texel.place.w > 0.0) {
-        for (int c = 0; c < 3; c++) irradiance[c] = light_map_unbounced(i, texels, c, emitters).x;
+        for (int c = 0; c < 3; c++) irradiance[c] = light_map_unbounced(i, texels, c, sources).x;
         // Shading normals n of mean cosine c to the surface's receive c of the light of a
         // direction, and E(n) = (E + n·V)/2 of light of all: (1 + c)/2.
         irradiance *= 0.5 + 0.5 * texel.reflectance.w;

@@ -19,8 +19,24 @@
 #define TEXEL_EMITTED_0   4 // the same by colour, lux
 #define TEXEL_PARTS       7
 
+// First-order light besides that of punctual lights and the sky.
+struct light_map_sources {
+    float emitters;   // factor of the light of emissive surfaces
+    uint32_t painted; // 0: no texel has painted light, and its table is another one
+};
+
+// Painted irradiance of a texel (paint.h).
+struct light_map_painted {
+    uint32_t texel;
+    vec3s lux;
+};
+
 // Entries of a sum of texels side by side in a texel of its table: (texel, weight).
 #define LIGHT_MAP_PAIR 2
+
+struct light_map_paint_push {
+    uint32_t count;
+};
 
 // Passes over rows `first` … `first` + `count` − 1. texels: of the light.
 struct light_map_show_push {
@@ -43,6 +59,9 @@ struct light_map_apply_push {
 #define LIGHT_MAP_APPLY_DIELECTRIC 2
 
 #ifndef AG_GLSL
+_Static_assert(sizeof(struct light_map_sources) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct light_map_painted) == 16, "layout is shared with GLSL");
+_Static_assert(sizeof(struct light_map_paint_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_show_push) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_seams_push) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_apply_push) == 24, "layout is shared with GLSL");
