@@ -20,6 +20,8 @@ struct ag_lightmap_desc {
     bool indirect_only; ///< without direct light of punctual lights, which engines compute in each
                         ///< frame; default false
     bool denoise;       ///< each chart for itself, with Open Image Denoise; default false
+    bool no_light;      ///< info and positions alone: no ray is traced, and neither a frame nor the
+                        ///< GPU is needed; ag_lightmap_read and _write are refused; default false
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 AG_API void ag_lightmap_desc_default(struct ag_lightmap_desc *desc);
@@ -51,10 +53,39 @@ AG_API enum ag_result ag_lightmap_get_info(const struct ag_lightmap *lightmap,
 /// A copy of a map, 3 channels, lux. Texels of no chart are 0.
 AG_API enum ag_result ag_lightmap_read(const struct ag_lightmap *lightmap, bool back,
                                        struct ag_image **out);
+/// World-space positions of texels, 3 channels, metres: of the middle of the part of a texel that
+/// the surface covers. NaN where a texel is on no surface, as in gutters. Both sides of a surface
+/// have one position; only texels with a back have one there.
+AG_API enum ag_result ag_lightmap_positions(const struct ag_lightmap *lightmap, bool back,
+                                            struct ag_image **out);
 /// Writes the maps, irradiance.exr and irradiance_back.exr, and scene.glb, a copy of the scene with
 /// coordinates of the maps, into an existing folder; docs/lightmaps.md describes them. Each file is
 /// written completely or not at all.
 AG_API enum ag_result ag_lightmap_write(const struct ag_lightmap *lightmap, const char *folder);
+
+/// Painted light: first-order irradiance that a program gives the texels of a renderer's light map,
+/// in addition to that of lights, the sky and emissive surfaces.
+struct ag_light_paint {
+    int x, y, width, height; ///< rectangle of texels, as in ag_lightmap_read; default 0: none
+    bool back;               ///< of the backs of double-sided materials; default false
+    /// [height][width][3] irradiance, lux, finite and at least 0; default NULL: 0. Texels on no
+    /// surface, as in gutters, and those inside geometry ignore it.
+    const float *lux;
+    uint64_t reserved[8]; ///< 0; see ABI in types.h
+};
+AG_API void ag_light_paint_default(struct ag_light_paint *paint);
+/// Replaces the painted light of the rectangle's texels, from the next frame on. It is light from
+/// all directions, which bounces and scatters; surfaces show it as they show that of the sky. The
+/// direct layer and the path-traced reference do not have it. Does not wait for the GPU.
+///
+/// Paint lasts until ag_renderer_set_gi creates the technique again, as for options of effect
+/// recreate and rebake; options of other effects, frame options and ag_renderer_resize keep it. The
+/// first call allocates 20 bytes per texel, and 16 on the GPU.
+///
+/// AG_ERROR_ARGUMENT, and nothing has changed: no technique of the renderer takes painted light
+/// (radiosity and ort do), the rectangle is empty or not in the light map, or a value is wrong.
+AG_API enum ag_result ag_renderer_paint_light(struct ag_renderer *renderer,
+                                              const struct ag_light_paint *paint);
 
 AG_END
 

@@ -13,6 +13,7 @@ struct ag_lightmap {
     struct ag_scene *scene;
     struct lightmap map;
     struct lightmap_facts facts;
+    bool no_light;
     char *gi;
 };
 
@@ -66,6 +67,7 @@ static enum ag_result begin(const char *function, struct ag_scene *scene,
     l->context = context;
     l->scene = scene;
     l->facts.punctual = !desc->indirect_only;
+    l->no_light = desc->no_light;
     scene->bakes++;
     *out = l;
     return AG_OK;
@@ -74,7 +76,7 @@ static enum ag_result begin(const char *function, struct ag_scene *scene,
 static enum ag_result done(struct ag_lightmap *l, const struct ag_lightmap_desc *desc, bool ok,
                            struct ag_lightmap **out)
 {
-    ok = ok && (!desc->denoise || lightmap_denoise(&l->map));
+    ok = ok && (!desc->denoise || desc->no_light || lightmap_denoise(&l->map));
     const enum ag_result result = api_done(l->context, ok);
     if (ok)
         *out = l;
@@ -98,8 +100,9 @@ enum ag_result ag_lightmap_from_bake(const struct ag_bake *bake,
     const enum ag_result begun = begin(__func__, bake->scene, desc, &l);
     if (begun != AG_OK) return begun;
     l->facts.samples = bake->lightmap_samples;
-    const bool ok = make_map(l, &bake->spec, bake->term, &bake->pose) &&
-                    lightmap_set_paths(&l->map, bake_tensors(bake->bake), !desc->indirect_only);
+    bool ok = make_map(l, &bake->spec, bake->term, &bake->pose);
+    if (!desc->no_light)
+        ok = ok && lightmap_set_paths(&l->map, bake_tensors(bake->bake), !desc->indirect_only);
     return done(l, desc, ok, out);
 }
 
@@ -136,6 +139,7 @@ static bool set_layers(struct ag_lightmap *l, struct ag_renderer *r, gpu_image i
     if (!has_size_of(&l->map, gpu_image_info(r->device->gpu, image)))
         return host_fail(host, FAIL_ARGUMENT, "light map of %s: its static surfaces have changed",
                          l->scene->scene->name);
+    if (l->no_light) return true;
     const size_t texels = (size_t)l->map.charts.width * l->map.charts.height;
     float *pixels = host_alloc(host, texels * 6, CHANNELS * sizeof *pixels);
     const bool ok = pixels && download(r, &l->map, image, pixels, &layers) &&
@@ -150,14 +154,14 @@ enum ag_result ag_lightmap_from_renderer(struct ag_renderer *r, const struct ag_
     struct ag_context *context = renderer_context(r);
     AG_REQUIRE_OUT(context, out);
     AG_REQUIRE(context, r, "renderer is NULL");
-    AG_REQUIRE(context, r->main.rendered, "no frame has been rendered");
     const struct ag_lightmap_desc fallback = { 0 };
     struct ag_lightmap *l = NULL;
     gpu_image image;
     int term;
     if (!desc) desc = &fallback;
+    AG_REQUIRE(context, r->main.rendered || desc->no_light, "no frame has been rendered");
     if (!gi_light_map(r->gi, &term, &image)) return api_done(context, false);
-    enum ag_result result = ag_renderer_wait(r);
+    enum ag_result result = desc->no_light ? AG_OK : ag_renderer_wait(r);
     if (result == AG_OK) result = begin(__func__, r->scene, desc, &l);
     if (result != AG_OK) return result;
     return done(l, desc, make_map(l, &r->spec, term, &r->pose) && set_layers(l, r, image), out);
@@ -189,12 +193,16 @@ enum ag_result ag_lightmap_get_info(const struct ag_lightmap *l, struct ag_light
     return AG_OK;
 }
 
+#define REQUIRE_LIGHT(context, l)                                                                  \
+    AG_REQUIRE(context, !(l)->no_light, "the light map was created with no_light")
+
 enum ag_result ag_lightmap_read(const struct ag_lightmap *l, bool back, struct ag_image **out)
 {
     struct ag_context *context = context_of(l);
     AG_REQUIRE_OUT(context, out);
     AG_REQUIRE(context, l, "lightmap is NULL");
     AG_REQUIRE(context, !back || l->map.has_back, "no material is double-sided");
+    REQUIRE_LIGHT(context, l);
     const struct image *map = &l->map.irradiance[back ? LIGHTMAP_BACK : LIGHTMAP_FRONT];
     struct image copy = { 0 };
     const bool ok = image_init(&copy, &context->host, map->width, map->height, map->channels);
@@ -204,10 +212,22 @@ enum ag_result ag_lightmap_read(const struct ag_lightmap *l, bool back, struct a
     return api_give_image(context, ok, &copy, out);
 }
 
+enum ag_result ag_lightmap_positions(const struct ag_lightmap *l, bool back, struct ag_image **out)
+{
+    struct ag_context *context = context_of(l);
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE(context, l, "lightmap is NULL");
+    AG_REQUIRE(context, !back || l->map.has_back, "no material is double-sided");
+    struct image positions = { 0 };
+    const bool ok = lightmap_positions(&l->map, back ? LIGHTMAP_BACK : LIGHTMAP_FRONT, &positions);
+    return api_give_image(context, ok, &positions, out);
+}
+
 enum ag_result ag_lightmap_write(const struct ag_lightmap *l, const char *folder)
 {
     struct ag_context *context = context_of(l);
     AG_REQUIRE(context, l, "lightmap is NULL");
     AG_REQUIRE(context, folder && folder[0], "folder is empty");
+    REQUIRE_LIGHT(context, l);
     return api_done(context, lightmap_write(&l->map, l->scene->scene, &l->facts, folder));
 }

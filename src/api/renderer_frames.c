@@ -160,7 +160,8 @@ static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc, str
     struct frame_input common = { .pose = &r->pose,
                                   .lights = r->lights,
                                   .light_count = renderer_scene_lights(r),
-                                  .environment = r->scene->scene->environment };
+                                  .environment = r->scene->scene->environment,
+                                  .painted = gi_painted(r->gi) };
     *hook = gi_hook(r->gi);
     for (int i = 0; i < shots->count; i++) {
         common.pick = i == 0 && desc->pick;

@@ -40,6 +40,20 @@ static float *texel_at(const struct lightmap *map, uint32_t texel)
     return image_at(&map->irradiance[chart_is_back(&map->charts, texel)], (int)t->x, (int)t->y);
 }
 
+bool lightmap_positions(const struct lightmap *map, enum lightmap_side side, struct image *out)
+{
+    const struct image *like = &map->irradiance[side];
+    if (!image_init(out, map->host, like->width, like->height, 3)) return false;
+    const size_t count = 3 * (size_t)out->width * (size_t)out->height;
+    for (size_t i = 0; i < count; i++) out->pixels[i] = NAN;
+    for (uint32_t i = 0; i < map->charts.side_texel_count; i++) {
+        const struct chart_texel *t = chart_texel_of(&map->charts, i);
+        if (chart_is_back(&map->charts, i) != (side == LIGHTMAP_BACK)) continue;
+        memcpy(image_at(out, (int)t->x, (int)t->y), t->position.raw, sizeof t->position.raw);
+    }
+    return true;
+}
+
 // ---- hidden texels and gutters
 
 static bool fill(struct lightmap *map, const bool *hidden)

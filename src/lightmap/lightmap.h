@@ -39,6 +39,9 @@ struct lightmap {
 bool lightmap_init(struct lightmap *out, struct charts *charts, const struct scene *scene);
 void lightmap_finish(struct lightmap *map);
 
+// World positions of a side's texels, m; NaN where there is none. *out is zero before.
+bool lightmap_positions(const struct lightmap *map, enum lightmap_side side, struct image *out);
+
 // punctual: with direct light of punctual lights. FAIL_FORMAT: the tensors are not of these charts.
 bool lightmap_set_paths(struct lightmap *map, const struct tensors *bake, bool punctual);
 // Light of a technique, for each side and colour an image of irradiance along the surface's normal

@@ -44,6 +44,7 @@ TEST(default_functions_accept_nothing)
     ag_material_maps_default(NULL);
     ag_light_desc_default(NULL, AG_LIGHT_SUN);
     ag_compare_desc_default(NULL);
+    ag_light_paint_default(NULL);
 }
 
 TEST(a_null_context_is_refused)
