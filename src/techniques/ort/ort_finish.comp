@@ -29,8 +29,10 @@ void main()
     uint x = place & 0xffffu, y = place >> 16;
     uint run = ((x / ORT_RUN) * push.height + y) * 6u + x % ORT_RUN / 4u;
     vec3 normal = light_map_texel_part(i, push.texels, TEXEL_NORMAL).xyz;
+    vec3 painted = SCATTERS ? vec3(0.0) : light_map_painted_light(i, push.sources);
     for (int c = 0; c < 3; c++) {
         float sum = imageLoad(ort_sums, light_map_at(run + 2 * c))[x % 4u] / ORT_MAP_SCALE;
+        sum += painted[c];
         vec4 light = vec4(sum, sum * normal);
         if (!SCATTERS) light += light_map_unbounced(i, push.texels, c, push.sources);
         imageStore(texel_light, light_map_at(c * push.texels + i),

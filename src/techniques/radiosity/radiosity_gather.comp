@@ -42,6 +42,7 @@ void add_entry(uvec2 word)
 // Of clusters, the sky, emissive surfaces and paint.
 void store_light(uint texel)
 {
+    sum.irradiance += light_map_painted_light(texel, push.sources);
     mat3 basis = basis_of(light_map_texel_part(texel, push.texels, TEXEL_NORMAL).xyz);
     for (int c = 0; c < 3; c++) {
         vec4 light = vec4(sum.irradiance[c], sum.irradiance[c] * basis[2] + sum.by_u[c] * basis[0] +

@@ -36,6 +36,7 @@ vec3 light_map_first_order(light_map_texel texel, uint i, uint texels, light_map
     vec3 irradiance = vec3(0.0);
     if (texel.place.w > 0.0) {
         for (int c = 0; c < 3; c++) irradiance[c] = light_map_unbounced(i, texels, c, sources).x;
+        irradiance += light_map_painted_light(i, sources);
         // Shading normals n of mean cosine c to the surface's receive c of the light of a
         // direction, and E(n) = (E + n·V)/2 of light of all: (1 + c)/2.
         irradiance *= 0.5 + 0.5 * texel.reflectance.w;

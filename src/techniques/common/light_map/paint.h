@@ -1,5 +1,5 @@
 // Painted light: first-order irradiance that a program sets for texels of a light map. Nothing is
-// created before the first call. Passes read it by light_map_unbounced (texels.glsl).
+// created before the first call. Passes read it by light_map_painted_light (texels.glsl).
 #pragma once
 
 #include "gpu/gpu.h"

@@ -15,22 +15,20 @@ vec4 light_map_texel_part(uint texel, uint texels, int part)
     return imageLoad(light_map_texels, light_map_at(part * texels + texel));
 }
 
-// Irradiance x and vector irradiance yzw of a colour, as of light from all directions.
-vec4 light_map_painted_of(uint texel, uint texels, int colour)
-{
-    float lux = imageLoad(light_map_paint, light_map_at(texel))[colour];
-    vec3 normal = light_map_texel_part(texel, texels, TEXEL_NORMAL).xyz;
-    return min(lux * frame.radiance_scale, HALF_MAX) * vec4(1.0, normal);
-}
-
-// The same of the sky, emissive surfaces and paint.
+// Irradiance x and vector irradiance yzw of a colour, of the sky and of emissive surfaces.
 vec4 light_map_unbounced(uint texel, uint texels, int colour, light_map_sources sources)
 {
-    vec4 light = light_map_texel_part(texel, texels, TEXEL_SKY_LIGHT) * environment_mean()[colour] +
-                 light_map_texel_part(texel, texels, TEXEL_EMITTED_0 + colour) *
-                     (sources.emitters * frame.radiance_scale);
-    if (sources.painted != 0u) light += light_map_painted_of(texel, texels, colour);
-    return light;
+    return light_map_texel_part(texel, texels, TEXEL_SKY_LIGHT) * environment_mean()[colour] +
+           light_map_texel_part(texel, texels, TEXEL_EMITTED_0 + colour) *
+               (sources.emitters * frame.radiance_scale);
+}
+
+// Irradiance of paint, whose vector irradiance is along the normal.
+vec3 light_map_painted_light(uint texel, light_map_sources sources)
+{
+    if (sources.painted == 0u) return vec3(0.0);
+    vec3 lux = imageLoad(light_map_paint, light_map_at(texel)).rgb;
+    return min(lux * frame.radiance_scale, vec3(HALF_MAX));
 }
 
 #endif
