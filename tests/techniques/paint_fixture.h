@@ -21,5 +21,5 @@ void paint_fixture_close(struct paint_fixture *p);
 void paint_fixture_paint(struct paint_fixture *p, vec3s (*lux)(vec3s position, vec3s normal));
 // The same with values for each texel, [texels of both sides][3].
 void paint_fixture_set(struct paint_fixture *p, const float *lux);
-// Paint with 0 by no values.
+// Sets all paint to 0, without values.
 void paint_fixture_clear(struct paint_fixture *p);

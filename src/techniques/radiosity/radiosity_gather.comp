@@ -39,7 +39,7 @@ void add_entry(uvec2 word)
     sum.by_v += along.y * light;
 }
 
-// Of clusters, the sky, emissive surfaces and paint.
+// Light of clusters, the sky, emissive surfaces and paint.
 void store_light(uint texel)
 {
     sum.irradiance += light_map_painted_light(texel, push.sources);

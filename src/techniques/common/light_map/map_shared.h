@@ -22,7 +22,7 @@
 // First-order light besides that of punctual lights and the sky.
 struct light_map_sources {
     float emitters;   // factor of the light of emissive surfaces
-    uint32_t painted; // 0: no texel has painted light, and its table is another one
+    uint32_t painted; // 0: no texel has paint, and another table is bound for it
 };
 
 // Painted irradiance of a texel (paint.h).

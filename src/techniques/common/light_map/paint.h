@@ -36,8 +36,8 @@ bool light_map_paint_set(struct light_map_paint *paint, const struct light_map_a
 // Before the passes of a frame that read it. Whether paint has changed since the last frame.
 bool light_map_paint_record(struct light_map_paint *paint, struct gpu_cmd *cmd);
 
-// Of the shaders that include texels.glsl: in GPU_BIND, and in their push constants. The table of
-// texels stands for that of an unpainted light map.
+// Bindings, in GPU_BIND, and push constants of shaders that include texels.glsl. Without paint the
+// table of texels is bound for its table and not read.
 #define LIGHT_MAP_TEXEL_BINDINGS(paint, texels)                                                    \
     { .name = "light_map_texels", .image = (texels) },                                             \
     {                                                                                              \
