@@ -14,8 +14,8 @@ struct ort_kernel {
     float per_m2[3][ORT_KERNEL_STEPS + 2]; // 1/m²
 };
 void ort_kernel_init(struct ort_kernel *out, const struct ort_options *options);
-// Share per area of the light of a texel of this area that leaves at a distance, 1/m². At 0 it is
-// the mean over a disk of the area.
+// Share per area of the light of a texel of this area that leaves at a distance from its middle,
+// 1/m²: the mean over a square of the area, or at 0 over a disk.
 void ort_kernel_at(const struct ort_kernel *kernel, float distance_m, float area_m2, float out[3]);
 
 struct ort_near_item {
