@@ -123,6 +123,26 @@ static void check_texels_lie_on_triangles(const struct charts *charts)
     CHECK_RELATIVE(area, expected, 1e-3);
 }
 
+static void add_moment(double sum[3], float area_m2, vec3s at)
+{
+    for (int c = 0; c < 3; c++) sum[c] += (double)area_m2 * (double)at.raw[c];
+}
+
+// The centroid of all texels is that of all triangles.
+static void check_centroids(const struct charts *charts)
+{
+    double got[3] = { 0 }, expected[3] = { 0 }, scale = 0.0;
+    for (uint32_t i = 0; i < charts->texel_count; i++)
+        add_moment(got, charts->texels[i].area_m2, charts->texels[i].centroid);
+    for (uint32_t i = 0; i < charts->triangle_count; i++) {
+        const struct chart_triangle *t = &charts->triangles[i];
+        const vec3s sum = glms_vec3_add(t->corner[0], glms_vec3_add(t->corner[1], t->corner[2]));
+        add_moment(expected, t->area_m2, glms_vec3_scale(sum, 1.0f / 3.0f));
+        scale += (double)t->area_m2 * largest_coordinate(t);
+    }
+    for (int c = 0; c < 3; c++) CHECK_NEAR(got[c], expected[c], 1e-3 * scale);
+}
+
 // A bilinear lookup anywhere on a triangle reads texels of its chart alone.
 static void check_lookups_stay_in_the_chart(const struct charts *charts)
 {
@@ -163,6 +183,7 @@ static void check_laws(const char *name, float texels_per_m, uint32_t max_texels
     check_rectangles_are_apart(&charts);
     check_stretch_is_bounded(&charts);
     check_texels_lie_on_triangles(&charts);
+    check_centroids(&charts);
     check_lookups_stay_in_the_chart(&charts);
     charts_finish(&charts);
     close_scene(scene, &pose);

@@ -80,6 +80,7 @@ struct chart_texel {
     float u, v;        // barycentric weights of its second and third corner
     vec3s position;    // world, on that triangle and inside the texel: of that part's middle
     float area_m2;     // of the surface inside the texel, all triangles
+    vec3s centroid;    // world, of the same surface; beside it where that is curved
 };
 
 struct charts {

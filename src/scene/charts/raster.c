@@ -101,12 +101,28 @@ struct raster_polygon raster_clip(const struct raster_polygon *polygon, int axis
     return clip_side(&above, axis, low + 1.0, -1.0);
 }
 
+// Twice the signed area of a triangle of the fan around corner 0.
+static double fan_area2(const struct raster_polygon *p, int i)
+{
+    const double *o = p->at[0], *a = p->at[i], *b = p->at[i + 1];
+    return (a[0] - o[0]) * (b[1] - o[1]) - (b[0] - o[0]) * (a[1] - o[1]);
+}
+
 double raster_polygon_area(const struct raster_polygon *p)
 {
     double sum = 0.0;
-    for (int i = 1; i + 1 < p->count; i++) {
-        const double *o = p->at[0], *a = p->at[i], *b = p->at[i + 1];
-        sum += (a[0] - o[0]) * (b[1] - o[1]) - (b[0] - o[0]) * (a[1] - o[1]);
-    }
+    for (int i = 1; i + 1 < p->count; i++) sum += fan_area2(p, i);
     return 0.5 * fabs(sum);
+}
+
+void raster_polygon_centroid(const struct raster_polygon *p, double out[2])
+{
+    double sum = 0.0, moment[2] = { 0.0, 0.0 };
+    for (int i = 1; i + 1 < p->count; i++) {
+        const double area2 = fan_area2(p, i);
+        sum += area2;
+        for (int k = 0; k < 2; k++)
+            moment[k] += area2 * (p->at[0][k] + p->at[i][k] + p->at[i + 1][k]) / 3.0;
+    }
+    for (int k = 0; k < 2; k++) out[k] = moment[k] / sum;
 }

@@ -10,6 +10,7 @@
 struct cell {
     double area_m2, largest; // of all parts; of the largest one, in texels
     double middle[2];        // of the largest part, in the atlas
+    double moment[3];        // of all parts: area times position, world
     uint32_t triangle;
 };
 
@@ -17,6 +18,30 @@ struct cells {
     const struct chart *chart;
     struct cell *at; // [chart->width × chart->height]
 };
+
+// Barycentric weights of a place in the triangle; rounding may leave it by a little.
+static void weigh(const struct chart_triangle *t, const double at[2], double weight[3])
+{
+    const struct raster_triangle whole = { { { (double)t->place[0].x, (double)t->place[0].y },
+                                             { (double)t->place[1].x, (double)t->place[1].y },
+                                             { (double)t->place[2].x, (double)t->place[2].y } } };
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++) {
+        struct raster_triangle part = whole;
+        memcpy(part.at[k], at, sizeof part.at[k]);
+        weight[k] = fmax(raster_area2(&part) / raster_area2(&whole), 0.0);
+        sum += weight[k];
+    }
+    for (int k = 0; k < 3; k++) weight[k] /= sum;
+}
+
+static void position_at(const struct chart_triangle *t, const double weight[3], double out[3])
+{
+    for (int c = 0; c < 3; c++) {
+        out[c] = 0.0;
+        for (int k = 0; k < 3; k++) out[c] += weight[k] * (double)t->corner[k].raw[c];
+    }
+}
 
 static void range_of(const struct raster_polygon *polygon, int axis, double *low, double *high)
 {
@@ -29,12 +54,24 @@ static void range_of(const struct raster_polygon *polygon, int axis, double *low
     *low = floor(*low);
 }
 
-static void add_part(struct cell *cell, const struct raster_polygon *part, uint32_t triangle,
-                     double m2_per_texel)
+static void add_moment(struct cell *cell, const struct chart_triangle *t, const double at[2],
+                       double area_m2)
+{
+    double weight[3], position[3];
+    weigh(t, at, weight);
+    position_at(t, weight, position);
+    for (int c = 0; c < 3; c++) cell->moment[c] += area_m2 * position[c];
+}
+
+static void add_part(struct cell *cell, const struct raster_polygon *part,
+                     const struct charts *charts, uint32_t triangle, double m2_per_texel)
 {
     const double area = raster_polygon_area(part);
+    double centroid[2];
     if (!(area > 0.0)) return;
+    raster_polygon_centroid(part, centroid);
     cell->area_m2 += area * m2_per_texel;
+    add_moment(cell, &charts->triangles[triangle], centroid, area * m2_per_texel);
     if (!(area > cell->largest)) return;
     cell->largest = area;
     cell->triangle = triangle;
@@ -59,7 +96,7 @@ static void add_triangle(const struct charts *charts, uint32_t triangle, struct 
         for (double x = left; x < right; x += 1.0) {
             const struct raster_polygon part = raster_clip(&row, 0, x);
             const size_t column = (size_t)x - cells->chart->x, line = (size_t)y - cells->chart->y;
-            add_part(&cells->at[line * cells->chart->width + column], &part, triangle,
+            add_part(&cells->at[line * cells->chart->width + column], &part, charts, triangle,
                      m2_per_texel);
         }
     }
@@ -91,36 +128,21 @@ static void add_chart(const struct charts *charts, struct cells *cells)
         add_triangle(charts, chart->first_triangle + t, cells);
 }
 
-// Barycentric weights of a place in the triangle; rounding may leave it by a little.
-static void weigh(const struct chart_triangle *t, const double at[2], double weight[3])
-{
-    const struct raster_triangle whole = { { { (double)t->place[0].x, (double)t->place[0].y },
-                                             { (double)t->place[1].x, (double)t->place[1].y },
-                                             { (double)t->place[2].x, (double)t->place[2].y } } };
-    double sum = 0.0;
-    for (int k = 0; k < 3; k++) {
-        struct raster_triangle part = whole;
-        memcpy(part.at[k], at, sizeof part.at[k]);
-        weight[k] = fmax(raster_area2(&part) / raster_area2(&whole), 0.0);
-        sum += weight[k];
-    }
-    for (int k = 0; k < 3; k++) weight[k] /= sum;
-}
-
 static struct chart_texel texel_of(const struct charts *charts, const struct cell *cell, uint32_t x,
                                    uint32_t y)
 {
     const struct chart_triangle *t = &charts->triangles[cell->triangle];
-    double weight[3] = { 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 };
+    const bool is_spot = charts->charts[t->chart].spot;
+    double weight[3] = { 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 }, position[3];
     struct chart_texel texel = { .x = x, .y = y, .triangle = cell->triangle };
-    if (!charts->charts[t->chart].spot) weigh(t, cell->middle, weight);
+    if (!is_spot) weigh(t, cell->middle, weight);
     texel.u = (float)weight[1];
     texel.v = (float)weight[2];
     texel.area_m2 = (float)cell->area_m2;
+    position_at(t, weight, position);
     for (int c = 0; c < 3; c++) {
-        double sum = 0.0;
-        for (int k = 0; k < 3; k++) sum += weight[k] * (double)t->corner[k].raw[c];
-        texel.position.raw[c] = (float)sum;
+        texel.position.raw[c] = (float)position[c];
+        texel.centroid.raw[c] = (float)(is_spot ? position[c] : cell->moment[c] / cell->area_m2);
     }
     return texel;
 }

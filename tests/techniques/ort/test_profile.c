@@ -124,7 +124,7 @@ static void count(void *user, uint32_t texel)
 {
     struct found *f = user;
     f->count++;
-    f->within += glms_vec3_distance(f->charts->texels[texel].position, f->from) <= f->reach_m;
+    f->within += glms_vec3_distance(f->charts->texels[texel].centroid, f->from) <= f->reach_m;
 }
 
 TEST(near_texels_are_all_those_within_the_reach)
@@ -135,17 +135,17 @@ TEST(near_texels_are_all_those_within_the_reach)
                            .charts = { .texels = texels, .texel_count = TEXELS } };
     struct rng rng = rng_for(1, 2, 3);
     for (int i = 0; i < TEXELS; i++)
-        texels[i].position =
+        texels[i].centroid =
             vec3_of(rng_float(&rng) - 0.5f, 0.2f * rng_float(&rng), 7.0f * rng_float(&rng));
     static const float REACH[] = { 1e-4f, 0.05f, 0.3f, 2.0f, 100.0f };
     for (size_t k = 0; k < sizeof REACH / sizeof REACH[0]; k++) {
         struct ort_near near;
         CHECK(ort_near_init(&near, &map, REACH[k]));
         for (int i = 0; i < TEXELS; i += 61) {
-            struct found found = { &map.charts, texels[i].position, REACH[k], 0, 0 };
+            struct found found = { &map.charts, texels[i].centroid, REACH[k], 0, 0 };
             int within = 0;
             for (int j = 0; j < TEXELS; j++)
-                within += glms_vec3_distance(texels[j].position, found.from) <= REACH[k];
+                within += glms_vec3_distance(texels[j].centroid, found.from) <= REACH[k];
             ort_near_visit(&near, found.from, count, &found);
             CHECK(found.within == within && found.count <= TEXELS);
         }

@@ -95,7 +95,7 @@ static void set_grid(struct ort_near *near, const struct ort_map *map, float rea
 {
     struct box3 box = box3_empty();
     for (uint32_t i = 0; i < map->texel_count; i++)
-        box = box3_add_point(box, chart_texel_of(&map->charts, i)->position);
+        box = box3_add_point(box, chart_texel_of(&map->charts, i)->centroid);
     const vec3s size = box3_size(box);
     near->origin = box.min;
     near->per_cell = fminf(1.0f / reach_m, MOST_CELLS / fmaxf(glms_vec3_max(size), 1e-30f));
@@ -110,7 +110,7 @@ bool ort_near_init(struct ort_near *near, const struct ort_map *map, float reach
     if (near->count == 0) return true;
     set_grid(near, map, reach_m);
     for (uint32_t i = 0; i < near->count; i++) {
-        const vec3s p = chart_texel_of(&map->charts, i)->position;
+        const vec3s p = chart_texel_of(&map->charts, i)->centroid;
         near->items[i] =
             (struct ort_near_item){ cell_of(near, cell_along(near, 0, p.x),
                                             cell_along(near, 1, p.y), cell_along(near, 2, p.z)),

@@ -35,6 +35,6 @@ struct ort_near {
 // Cells are as wide as the reach of searches.
 bool ort_near_init(struct ort_near *out, const struct ort_map *map, float reach_m);
 void ort_near_finish(struct ort_near *near);
-// Calls visit for all texels within the reach of a point, and for some beyond.
+// Calls visit for all texels whose centroids are within the reach of a point, and for some beyond.
 void ort_near_visit(const struct ort_near *near, vec3s position,
                     void (*visit)(void *user, uint32_t texel), void *user);

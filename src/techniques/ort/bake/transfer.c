@@ -86,7 +86,7 @@ static void add_near(void *user, uint32_t from)
 static void add_scattered(const struct ort_transfer *transfer, struct ort_receiver *r)
 {
     const struct ort_scene *scene = transfer->texels.scene;
-    ort_near_visit(&scene->near, chart_texel_of(&scene->map.charts, r->texel)->position, add_near,
+    ort_near_visit(&scene->near, chart_texel_of(&scene->map.charts, r->texel)->centroid, add_near,
                    &(struct scattering){ transfer, r });
 }
 
@@ -171,7 +171,7 @@ void ort_transfer_scattered(const struct ort_transfer *transfer, const struct or
     const struct ort_scene *scene = transfer->texels.scene;
     const struct chart_texel *a = chart_texel_of(&scene->map.charts, to->texel);
     const struct chart_texel *b = chart_texel_of(&scene->map.charts, from);
-    const float distance = from == to->texel ? 0.0f : glms_vec3_distance(a->position, b->position);
+    const float distance = from == to->texel ? 0.0f : glms_vec3_distance(a->centroid, b->centroid);
     ort_kernel_at(scene->kernel, fmaxf(distance, from == to->texel ? 0.0f : 1e-30f),
                   ort_texel_area(&transfer->texels, from), out);
 }
