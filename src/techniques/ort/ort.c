@@ -26,6 +26,12 @@ static const struct technique_preset presets[] = {
     { NULL, NULL },
 };
 
+// Light that has scattered leaves the surface: no lobe reflects it.
+static bool has_specular(const struct ort_options *options)
+{
+    return options->specular && options->transfer == ORT_RADIOSITY;
+}
+
 static bool create(void *state, const struct technique_create *how)
 {
     struct ort *s = state;
@@ -113,7 +119,7 @@ static void list(const struct ort *s, struct gpu_objects *out)
     gpu_objects_clear(out);
     list_tables(s, out);
     list_pipelines(s, out);
-    light_map_list(&s->light_map, offsetof(struct ort, light_map), s->options.specular, out);
+    light_map_list(&s->light_map, offsetof(struct ort, light_map), has_specular(&s->options), out);
     list_uploads(out);
 }
 
@@ -192,7 +198,7 @@ static void destroy(void *state)
 static uint32_t more_needs(const void *options)
 {
     const struct ort_options *o = options;
-    return (o->specular ? FRAME_WRITES_SPECULAR : 0) |
+    return (has_specular(o) ? FRAME_WRITES_SPECULAR : 0) |
            (o->transfer != ORT_RADIOSITY ? FRAME_NEEDS_DIRECT_IRRADIANCE : 0);
 }
 

@@ -33,7 +33,8 @@ void main()
     for (int c = 0; c < 3; c++) {
         float sum = imageLoad(ort_sums, light_map_at(run + 2 * c))[x % 4u] / ORT_MAP_SCALE;
         sum += painted[c];
-        vec4 light = vec4(sum, sum * normal);
+        // Pixels have (x + n·yzw) / 2. Light that leaves a surface does not depend on n.
+        vec4 light = SCATTERS ? vec4(2.0 * sum, vec3(0.0)) : vec4(sum, sum * normal);
         if (!SCATTERS) light += light_map_unbounced(i, push.texels, c, push.sources);
         imageStore(texel_light, light_map_at(c * push.texels + i),
                    uvec4(light_map_pack(light), 0u, 0u));
