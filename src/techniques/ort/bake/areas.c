@@ -1,7 +1,6 @@
 // The stage of areas: TVA(t, Δt), the area of all texels whose offset from t is in the Voronoi
 // region of Δt (equation 8, with t as in equation 9), from prefix sums along the rows.
 #include "techniques/ort/bake/offsets.h"
-#include "techniques/ort/bake/regions.h"
 #include "techniques/ort/bake/stages.h"
 #include "techniques/ort/bake/texels.h"
 
@@ -76,7 +75,7 @@ static void sum_region(const struct ort_map *map, const struct prefix *prefix,
     }
 }
 
-static bool find_regions(const struct bake_task *task, uint32_t group, struct ort_regions *out)
+bool ort_find_regions(const struct bake_task *task, uint32_t group, struct ort_regions *out)
 {
     const struct ort_scene *scene = task->job;
     const struct tensor *tensor = bake_task_input(task, ORT_OFFSETS);
@@ -105,7 +104,7 @@ static bool write_group(struct work *w, uint32_t group)
     const struct window window = window_of(map, group);
     struct ort_regions regions;
     uint64_t count, first = bake_task_rows(w->task, 0, &count);
-    if (!find_regions(w->task, group, &regions)) return false;
+    if (!ort_find_regions(w->task, group, &regions)) return false;
     bool ok = true;
     for (uint64_t i = 0; ok && i < count; i++) {
         float *row = bake_row(w->task, 0, i);

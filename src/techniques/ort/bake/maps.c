@@ -1,8 +1,10 @@
 // The stage of transfer maps: R(t, t + Δt) TVA(t, Δt) for all offsets of a texel (equation 10),
 // then its weights are brought to the sum of its row, which the rays know. One bounce and more are
 // treated apart. What the points of the offsets have too much of one bounce is scaled down; what
-// they miss comes from the patches that the rays have met.
+// they miss comes from the patches that the rays have met. Scattered light is integrated over the
+// regions of offsets (shares.c).
 #include "core/half.h"
+#include "techniques/ort/bake/shares.h"
 #include "techniques/ort/bake/stages.h"
 #include "techniques/ort/bake/transfer.h"
 
@@ -71,6 +73,19 @@ static void weigh(const struct ort_transfer *transfer, const struct ort_receiver
     }
 }
 
+// Weights of scattered light by regions, in place of those by points.
+static void weigh_regions(const struct ort_transfer *transfer, const struct ort_receiver *r,
+                          struct ort_shares *shares, struct row *row)
+{
+    float *const *weight = row->weight[SCATTERED];
+    for (int c = 0; c < 3; c++) memset(weight[c], 0, row->offsets * sizeof *weight[c]);
+    ort_shares_add(shares, transfer, r, weight);
+    for (int c = 0; c < 3; c++) {
+        row->sum[SCATTERED][c] = 0.0f;
+        for (size_t k = 0; k < row->offsets; k++) row->sum[SCATTERED][c] += weight[c][k];
+    }
+}
+
 // Factors of the three kinds that give a row its exact sum.
 static void find_factors(const struct ort_receiver *r, const struct row *row, int c, bool exact,
                          float factor[KINDS])
@@ -116,18 +131,34 @@ static void add_energy(const struct ort_receiver *r, const struct row *row, floa
     }
 }
 
-static bool make_rows(const struct bake_task *task, const struct ort_transfer *transfer,
-                      struct ort_receiver *receiver, struct row *row)
+struct work {
+    struct ort_transfer transfer;
+    struct ort_receiver receiver;
+    struct ort_shares shares;
+    struct row row;
+};
+
+static bool make_row(const struct bake_task *task, struct work *w, uint32_t texel, uint16_t *out)
 {
     const struct ort_scene *scene = task->job;
+    const bool exact = scene->options.rows == ORT_ROWS_EXACT;
+    if (!ort_receive(&w->transfer, texel, &w->receiver)) return true;
+    weigh(&w->transfer, &w->receiver, task, &w->row);
+    add_energy(&w->receiver, &w->row, task->out[OUT_ENERGY]);
+    if (exact && scene->kernel) {
+        if (!ort_shares_select(&w->shares, task, scene->map.group_of[texel])) return false;
+        weigh_regions(&w->transfer, &w->receiver, &w->shares, &w->row);
+    }
+    write_row(&w->receiver, &w->row, exact, out);
+    return true;
+}
+
+static bool make_rows(const struct bake_task *task, struct work *w)
+{
     uint64_t count, first = bake_task_rows(task, OUT_MAPS, &count);
     for (uint64_t i = 0; i < count; i++) {
         if (bake_task_cancelled(task)) return false;
-        if (!ort_receive(transfer, (uint32_t)(first + i), receiver)) continue;
-        weigh(transfer, receiver, task, row);
-        add_energy(receiver, row, task->out[OUT_ENERGY]);
-        write_row(receiver, row, scene->options.rows == ORT_ROWS_EXACT,
-                  bake_row(task, OUT_MAPS, i));
+        if (!make_row(task, w, (uint32_t)(first + i), bake_row(task, OUT_MAPS, i))) return false;
     }
     return true;
 }
@@ -135,18 +166,19 @@ static bool make_rows(const struct bake_task *task, const struct ort_transfer *t
 static bool run(const struct bake_task *task)
 {
     const struct ort_scene *scene = task->job;
-    struct ort_transfer transfer;
-    struct ort_receiver receiver;
-    struct row row;
+    struct work w;
     if (scene->map.texel_count == 0) return true;
-    if (!ort_transfer_init(&transfer, task) || !bake_task_input(task, ORT_OFFSETS) ||
+    if (!ort_transfer_init(&w.transfer, task) || !bake_task_input(task, ORT_OFFSETS) ||
         !bake_task_input(task, ORT_AREAS))
         return false;
-    const bool has_row = row_init(&row, task->host, ort_offset_count(&scene->map, &scene->options));
-    const bool ok = ort_receiver_init(&receiver, task->host, transfer.patch_count) && has_row &&
-                    make_rows(task, &transfer, &receiver, &row);
-    ort_receiver_finish(&receiver, task->host);
-    row_finish(&row, task->host);
+    const bool has_row =
+        row_init(&w.row, task->host, ort_offset_count(&scene->map, &scene->options));
+    const bool has_shares = ort_shares_init(&w.shares, task);
+    const bool ok = ort_receiver_init(&w.receiver, task->host, w.transfer.patch_count) && has_row &&
+                    has_shares && make_rows(task, &w);
+    ort_receiver_finish(&w.receiver, task->host);
+    ort_shares_finish(&w.shares);
+    row_finish(&w.row, task->host);
     return ok;
 }
 
