@@ -188,6 +188,8 @@ bool ort_add_maps(struct bake_plan *plan, const struct ort_scene *scene)
     const uint64_t offsets = ort_offset_count(&scene->map, &scene->options);
     const double patches = (double)ort_patch_count(scene->map.texel_count);
     const size_t tasks = (size_t)((texels + TEXELS_PER_TASK - 1) / TEXELS_PER_TASK);
+    const size_t regions =
+        scene->options.transfer == ORT_RADIOSITY ? 0 : ort_shares_bytes(&scene->map);
     const struct bake_output out[] = {
         { ORT_MAPS, TENSOR_F16, 3, { texels, offsets, 3 }, BAKE_ROWS, BAKE_SAVED },
         { ORT_ENERGY, TENSOR_F32, 2, { 2, 3 }, BAKE_SUM, BAKE_SAVED },
@@ -206,5 +208,5 @@ bool ort_add_maps(struct bake_plan *plan, const struct ort_scene *scene)
                   .rays = 0.25 * (double)(texels * offsets) / (double)tasks,
                   .others = (double)texels / (double)tasks *
                             (0.1 * patches * patches / PATCHES_PER_RAY + 0.25 * (double)offsets),
-                  .scratch_bytes = (size_t)(9.0 * patches * sizeof(float)) });
+                  .scratch_bytes = (size_t)(9.0 * patches * sizeof(float)) + regions });
 }

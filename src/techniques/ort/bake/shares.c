@@ -4,9 +4,19 @@
 
 #include "bake/plan.h"
 
-static uint32_t table_width(const struct ort_map *map)
+static size_t table_width(const struct ort_map *map)
 {
-    return 2 * map->width - 1;
+    return 2 * (size_t)map->width - 1;
+}
+
+static size_t table_size(const struct ort_map *map)
+{
+    return table_width(map) * (2 * (size_t)map->height - 1);
+}
+
+size_t ort_shares_bytes(const struct ort_map *map)
+{
+    return table_size(map) * sizeof(uint16_t);
 }
 
 bool ort_shares_init(struct ort_shares *out, const struct bake_task *task)
@@ -18,8 +28,7 @@ bool ort_shares_init(struct ort_shares *out, const struct bake_task *task)
                                 .group = UINT32_MAX,
                                 .count = ort_offset_count(map, &scene->options) };
     if (!scene->kernel) return true;
-    out->region_at = host_alloc(task->host, (size_t)table_width(map) * (2 * map->height - 1),
-                                sizeof *out->region_at);
+    out->region_at = host_alloc(task->host, table_size(map), sizeof *out->region_at);
     out->leads_nearby = host_alloc(task->host, out->count, sizeof *out->leads_nearby);
     return out->region_at && out->leads_nearby;
 }
@@ -34,7 +43,9 @@ void ort_shares_finish(struct ort_shares *shares)
 
 static uint16_t *place_in_table(const struct ort_shares *s, int64_t x, int64_t y)
 {
-    return s->region_at + (y + s->map->height - 1) * table_width(s->map) + x + s->map->width - 1;
+    const size_t column = (size_t)(x + s->map->width - 1);
+    const size_t row = (size_t)(y + s->map->height - 1);
+    return s->region_at + row * table_width(s->map) + column;
 }
 
 bool ort_shares_select(struct ort_shares *s, const struct bake_task *task, uint32_t group)

@@ -14,6 +14,7 @@ struct ort_shares {
     uint8_t *leads_nearby; // [count] whether it leads from the receiver to a texel nearby
     uint16_t *region_at;   // [2 height − 1][2 width − 1] of an offset of the atlas
 };
+size_t ort_shares_bytes(const struct ort_map *map); // about
 bool ort_shares_init(struct ort_shares *out, const struct bake_task *task);
 void ort_shares_finish(struct ort_shares *shares);
 // Prepares for texels of a group.

@@ -50,10 +50,10 @@ static void destroy(void *argument)
 }
 
 // The trace scene has Embree's hierarchy, corners and facets of each triangle; the map of each
-// place and texel.
+// place and texel, of which some are sorted by cells.
 static size_t prepared_bytes(const struct ort_map *map)
 {
-    enum { OF_TRIANGLE = 240, OF_PLACE = 8, OF_TEXEL = 48 };
+    enum { OF_TRIANGLE = 240, OF_PLACE = 8, OF_TEXEL = 76 };
     return map->charts.triangle_count * (sizeof *map->charts.triangles + OF_TRIANGLE) +
            (size_t)map->width * map->height * OF_PLACE + (size_t)map->texel_count * OF_TEXEL;
 }
