@@ -35,7 +35,8 @@ AG_API enum ag_result ag_lightmap_from_bake(const struct ag_bake *bake,
                                             const struct ag_lightmap_desc *desc,
                                             struct ag_lightmap **out);
 /// Of the newest frame; waits for the GPU. AG_ERROR_ARGUMENT where no technique of the renderer has
-/// a light map. Direct light of punctual lights is traced on the CPU.
+/// a light map. Direct light of punctual lights is traced on the CPU; where a technique scatters it
+/// below surfaces, its map has it already, and indirect_only is AG_ERROR_UNSUPPORTED.
 AG_API enum ag_result ag_lightmap_from_renderer(struct ag_renderer *renderer,
                                                 const struct ag_lightmap_desc *desc,
                                                 struct ag_lightmap **out);

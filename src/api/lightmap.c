@@ -132,6 +132,12 @@ static bool has_size_of(const struct lightmap *map, const struct gpu_image_desc 
     return size->width == map->charts.width && size->height == map->charts.height;
 }
 
+// Whether the technique's map has the direct light of punctual lights, as where light scatters.
+static bool has_direct_light(const struct ag_renderer *r)
+{
+    return (gi_spec_needs(&r->spec) & FRAME_NEEDS_DIRECT_IRRADIANCE) != 0;
+}
+
 static bool set_layers(struct ag_lightmap *l, struct ag_renderer *r, gpu_image image)
 {
     struct host *host = &l->context->host;
@@ -142,8 +148,9 @@ static bool set_layers(struct ag_lightmap *l, struct ag_renderer *r, gpu_image i
     if (l->no_light) return true;
     const size_t texels = (size_t)l->map.charts.width * l->map.charts.height;
     float *pixels = host_alloc(host, texels * 6, CHANNELS * sizeof *pixels);
-    const bool ok = pixels && download(r, &l->map, image, pixels, &layers) &&
-                    lightmap_set_layers(&l->map, &r->pose, &layers, l->facts.punctual);
+    const bool ok =
+        pixels && download(r, &l->map, image, pixels, &layers) &&
+        lightmap_set_layers(&l->map, &r->pose, &layers, l->facts.punctual && !has_direct_light(r));
     host_free(host, pixels);
     return ok;
 }
@@ -161,6 +168,11 @@ enum ag_result ag_lightmap_from_renderer(struct ag_renderer *r, const struct ag_
     if (!desc) desc = &fallback;
     AG_REQUIRE(context, r->main.rendered || desc->no_light, "no frame has been rendered");
     if (!gi_light_map(r->gi, &term, &image)) return api_done(context, false);
+    if (desc->indirect_only && !desc->no_light && has_direct_light(r))
+        return api_done(context, host_fail(&context->host, FAIL_UNSUPPORTED,
+                                           "light map of %s: direct light has scattered and cannot "
+                                           "be left out; set indirect_only to false",
+                                           r->spec.technique[term]->name));
     enum ag_result result = desc->no_light ? AG_OK : ag_renderer_wait(r);
     if (result == AG_OK) result = begin(__func__, r->scene, desc, &l);
     if (result != AG_OK) return result;

@@ -9,21 +9,21 @@
 enum { SAMPLES = 64 };
 
 // Complete, of the fixture's scene. samples 0: of the technique.
-static struct ag_bake *bake_of(struct renderer_fixture *s, int samples)
+static struct ag_bake *bake_of(struct renderer_fixture *s, const char *spec, int samples)
 {
     struct ag_bake *bake = NULL;
     struct ag_bake_desc desc;
     ag_bake_desc_default(&desc);
     desc.lightmap_samples = samples;
-    assert_int_equal(ag_bake_create(s->scene, SPEC, &desc, &bake), AG_OK);
+    assert_int_equal(ag_bake_create(s->scene, spec, &desc, &bake), AG_OK);
     assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
     return bake;
 }
 
-static void open_renderer(struct renderer_fixture *s)
+static void open_renderer(struct renderer_fixture *s, const char *spec)
 {
-    struct ag_renderer_desc desc = fixture_renderer_desc(SPEC);
-    struct ag_bake *bake = bake_of(s, 0);
+    struct ag_renderer_desc desc = fixture_renderer_desc(spec);
+    struct ag_bake *bake = bake_of(s, spec, 0);
     const struct ag_bake *bakes[] = { bake };
     desc.bakes = bakes;
     desc.bake_count = 1;
@@ -70,9 +70,9 @@ TEST_GPU(maps_of_radiosity_and_of_paths_agree)
 {
     (void)gpu;
     struct renderer_fixture s = fixture_open(NULL, NULL);
-    open_renderer(&s);
+    open_renderer(&s, SPEC);
     for (int i = 0; i < 2; i++) assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
-    struct ag_bake *paths = bake_of(&s, SAMPLES);
+    struct ag_bake *paths = bake_of(&s, SPEC, SAMPLES);
     double last = 0.0;
     for (int direct = 0; direct < 2; direct++) {
         struct ag_image *a = map_of_renderer(&s, !direct), *b = map_of_paths(paths, !direct);
@@ -85,6 +85,33 @@ TEST_GPU(maps_of_radiosity_and_of_paths_agree)
         ag_image_destroy(s.context, a);
         ag_image_destroy(s.context, b);
     }
+    ag_bake_destroy(paths);
+    ag_renderer_destroy(s.renderer);
+    s.renderer = NULL;
+    fixture_close(&s);
+}
+
+// Of a room, light scatters within texels: the map has the direct light, once.
+TEST_GPU(scattered_light_has_direct_light_once)
+{
+    (void)gpu;
+    static const char SCATTERING[] = "ort:transfer=scattering,texels=8192,rays=16,offsets=50";
+    struct renderer_fixture s = fixture_open(NULL, NULL);
+    open_renderer(&s, SCATTERING);
+    for (int i = 0; i < 2; i++) assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    struct ag_bake *paths = bake_of(&s, SCATTERING, 1);
+    struct ag_image *scattered = map_of_renderer(&s, false), *all = map_of_paths(paths, false),
+                    *indirect = map_of_paths(paths, true);
+    const double direct = mean_of(all) - mean_of(indirect);
+    print_message("%.1f lx, %.1f lx of direct light\n", mean_of(scattered), direct);
+    CHECK_RELATIVE(mean_of(scattered), direct, 0.05);
+    struct ag_lightmap *none = NULL;
+    const struct ag_lightmap_desc desc = { .indirect_only = true };
+    assert_int_equal(ag_lightmap_from_renderer(s.renderer, &desc, &none), AG_ERROR_UNSUPPORTED);
+    CHECK(none == NULL && strstr(ag_context_last_error(s.context), "light map of ort"));
+    ag_image_destroy(s.context, scattered);
+    ag_image_destroy(s.context, all);
+    ag_image_destroy(s.context, indirect);
     ag_bake_destroy(paths);
     ag_renderer_destroy(s.renderer);
     s.renderer = NULL;
