@@ -1,7 +1,8 @@
 // Prefiltered first-order light: an offset stands for its Voronoi region, so the gather reads light
 // that is averaged over about as many texels. Level 0 is the light of single texels. Level l
 // convolves level l − 1 with (1, 4, 6, 4, 1)/16 along both axes, taps 3^(l − 1) texels apart
-// (the à-trous scheme of Holschneider et al. 1989), and stays where texels are linked.
+// (the à-trous scheme of Holschneider et al. 1989), and stays where texels are linked, with its
+// sum.
 #pragma once
 
 #include "techniques/ort/ort_maps.h"

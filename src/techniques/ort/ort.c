@@ -210,8 +210,10 @@ static uint64_t memory_estimate(const void *options)
     const uint64_t texels = (uint64_t)o->texels, places = texels * 3 / 2;
     const uint64_t weight = o->precision == ORT_BYTE ? 3 : 6;
     const uint64_t bins = (places / 3 * (uint64_t)o->offsets) / (ORT_BIN_SIDE * ORT_BIN_SIDE) + 1;
+    // Levels of light; steps, and light along rows.
+    const uint64_t light = o->prefilter ? (16 * ORT_LEVELS + 4 + 8) * places : 16 * places;
     return light_map_table_bytes(TEXEL_PARTS * texels, 16) + light_map_table_bytes(texels, 4) +
-           light_map_bytes(texels) + bins * ORT_BIN_SIDE * ORT_BIN_SIDE * weight + 16 * places +
+           light_map_bytes(texels) + bins * ORT_BIN_SIDE * ORT_BIN_SIDE * weight + light +
            light_map_table_bytes(6 * places / ORT_RUN, 16) + light_map_table_bytes(3 * texels, 8) +
            places * 8;
 }
@@ -224,7 +226,7 @@ const struct technique technique_ort = {
     .role = ROLE_SOURCE,
     .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID,
-    .bake_version = 3,
+    .bake_version = 4,
     .options = OPTION_TABLE(struct ort_options, option_rows, NULL),
     .presets = presets,
     .state_size = sizeof(struct ort),

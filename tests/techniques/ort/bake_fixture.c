@@ -137,18 +137,17 @@ static bool is_reached(const struct ort_map *map, const uint8_t *links, size_t p
 void ort_filter_light(const struct ort_map *map, const uint8_t *links, int axis, int stride,
                       const float *from, float *to)
 {
-    static const float TAP[5] = { 1, 4, 6, 4, 1 };
+    static const float TAP[5] = { 1.0f / 16, 4.0f / 16, 6.0f / 16, 4.0f / 16, 1.0f / 16 };
     const ptrdiff_t step = stride * (axis ? (ptrdiff_t)map->width : 1);
     for (size_t i = 0; i < (size_t)map->width * map->height; i++) {
-        float sum[3] = { 0 }, weight = 0;
+        float sum[3] = { 0 };
         for (int k = -2; k <= 2; k++) {
-            if (!is_reached(map, links, i, axis, k * stride)) continue;
-            const float *at = from + 3 * ((ptrdiff_t)i + k * step);
-            weight += TAP[k + 2];
+            const bool reached = is_reached(map, links, i, axis, k * stride);
+            const float *at = from + 3 * ((ptrdiff_t)i + (reached ? k * step : 0));
             for (int c = 0; c < 3; c++) sum[c] += TAP[k + 2] * at[c];
         }
         for (int c = 0; c < 3; c++)
-            to[3 * i + (size_t)c] = float_from_half(half_from_float(sum[c] / weight));
+            to[3 * i + (size_t)c] = float_from_half(half_from_float(sum[c]));
     }
 }
 
