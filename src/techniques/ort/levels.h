@@ -7,6 +7,9 @@
 
 #include "techniques/ort/ort_maps.h"
 
+// There is no wider one: light would go around curved objects. FLIP of a head of 256² texels is
+// .29 without levels, .27 with these, .33 with the next one.
+
 // The level of each offset: that whose standard deviation is the nearest to half the radius of a
 // disk of the region's area, by their ratio. level: [maps->count].
 bool ort_find_levels(const struct ort_maps *maps, uint8_t *level);

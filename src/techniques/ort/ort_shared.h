@@ -22,7 +22,7 @@
 #define ORT_MARGIN (ORT_RUN - 1)
 
 // Levels of prefiltered light: level 0 is the light of single texels (levels.h).
-#define ORT_LEVELS 5
+#define ORT_LEVELS 4
 
 // Weights are mostly far below 1, where half floats are coarse: maps have them times this.
 #define ORT_MAP_SCALE 4096.0f
