@@ -78,7 +78,8 @@ static struct record choose(float (*function)(struct ort_offset), uint32_t width
 {
     static struct record record;
     record = (struct record){ .function = function };
-    const struct ort_offsets_wish wish = { .width = width,
+    const struct ort_offsets_wish wish = { .refinements = 1000,
+                                           .width = width,
                                            .height = height,
                                            .count = count,
                                            .seed = seed,
@@ -193,9 +194,12 @@ TEST(offsets_of_a_linear_importance_have_its_distribution)
 TEST(offsets_fail_with_the_importance)
 {
     struct record record = { .function = peak };
-    struct ort_offsets_wish wish = {
-        .width = 64, .height = 64, .count = 50, .importance = record_importance, .user = &record
-    };
+    struct ort_offsets_wish wish = { .refinements = 1000,
+                                     .width = 64,
+                                     .height = 64,
+                                     .count = 50,
+                                     .importance = record_importance,
+                                     .user = &record };
     for (uint32_t call = 1; call <= 51; call += 25) {
         record = (struct record){ .function = broad, .fail_at = call };
         CHECK(!ort_choose_offsets(test_host(), &wish, offsets));
@@ -214,9 +218,12 @@ TEST(offsets_fail_cleanly_without_memory)
         struct record record = { .function = peak };
         struct counting_allocator allocator = { .refuse_at = i };
         struct host host = { .reallocate = counting_reallocate, .user = &allocator };
-        const struct ort_offsets_wish wish = {
-            .width = 64, .height = 64, .count = 50, .importance = record_importance, .user = &record
-        };
+        const struct ort_offsets_wish wish = { .refinements = 1000,
+                                               .width = 64,
+                                               .height = 64,
+                                               .count = 50,
+                                               .importance = record_importance,
+                                               .user = &record };
         const bool ok = ort_choose_offsets(&host, &wish, offsets);
         CHECK(ok == (allocator.asked < i));
         CHECK(allocator.blocks == 0);

@@ -12,7 +12,6 @@ enum {
     RINGS = 16,           // around 0, of 8 seeds each
     NEAR_SEEDS = 1 + 8 * RINGS,
     BATCH = 20,
-    REFINEMENTS = 1000,
     DRAWS_PER_REFINEMENT = 16,
     DRAWS_PER_OFFSET = 64,
 };
@@ -139,7 +138,8 @@ static bool find_importance(struct chooser *chooser)
 {
     uint32_t sides[2];
     seed_grid(chooser->wish, sides);
-    const size_t seeds = (size_t)sides[0] * sides[1] + NEAR_SEEDS, points = seeds + REFINEMENTS;
+    const size_t refinements = chooser->wish->refinements;
+    const size_t seeds = (size_t)sides[0] * sides[1] + NEAR_SEEDS, points = seeds + refinements;
     const size_t batch = seeds > BATCH ? seeds : BATCH;
     chooser->points = host_alloc(chooser->host, points, sizeof *chooser->points);
     chooser->batch = host_alloc(chooser->host, batch, sizeof *chooser->batch);
@@ -147,7 +147,7 @@ static bool find_importance(struct chooser *chooser)
     if (!chooser->points || !chooser->batch || !chooser->importance) return false;
     if (!ort_offset_set_init(&chooser->known, chooser->host, points)) return false;
     if (!take_seeds(chooser, sides)) return false;
-    for (int i = 0; i < REFINEMENTS / BATCH; i++)
+    for (size_t i = 0; i < refinements / BATCH; i++)
         if (!refine(chooser)) return false;
     return true;
 }

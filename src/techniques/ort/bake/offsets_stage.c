@@ -10,6 +10,13 @@
 
 enum { SAMPLES = 2048 }; // texels
 
+// A thousand for the whole light map, as in the paper. The offsets of one chart of many need fewer:
+// with 400 the error of rooms is the same within its noise, and the stage takes half the time.
+static uint32_t refinements_of(const struct ort_map *map)
+{
+    return map->group_count > 1 ? 400 : 1000;
+}
+
 struct sample {
     struct ort_receiver receiver;
     struct ort_place place;
@@ -104,6 +111,7 @@ static bool choose(struct importance *im, const struct ort_scene *scene, int32_t
     const struct ort_offsets_wish wish = { .width = scene->map.width,
                                            .height = scene->map.height,
                                            .count = ort_offset_count(&scene->map, &scene->options),
+                                           .refinements = refinements_of(&scene->map),
                                            .seed = im->task->bake_seed + im->group,
                                            .importance = importance_of,
                                            .user = im };
@@ -146,6 +154,7 @@ bool ort_add_offsets(struct bake_plan *plan, const struct ort_scene *scene)
                                     .run = run,
                                     .outputs = out,
                                     .output_count = 1,
-                                    .rays = 0.25 * SAMPLES * 1100 / (double)groups,
+                                    .rays = 0.25 * SAMPLES / (double)groups *
+                                            (refinements_of(&scene->map) + 100),
                                     .scratch_bytes = SAMPLES / groups * floats * sizeof(float) });
 }
