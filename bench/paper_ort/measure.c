@@ -7,8 +7,8 @@
 enum { BIN_TEXELS = 1024 * 1024, COLOURS = 3, COPY_RUNS = 5 };
 
 const char *const ort_stages[ORT_STAGES] = {
-    [STAGE_DIRECT] = "direct", [STAGE_SPREAD] = "spread",       [STAGE_GATHER] = "gather",
-    [STAGE_FINISH] = "finish", [STAGE_LIGHT_MAP] = "light_map",
+    [STAGE_DIRECT] = "direct", [STAGE_SPREAD] = "spread", [STAGE_PREFILTER] = "prefilter",
+    [STAGE_GATHER] = "gather", [STAGE_FINISH] = "finish", [STAGE_LIGHT_MAP] = "light_map",
 };
 const struct ort_variant ort_variants[ORT_VARIANTS] = {
     { "tiles", "half" }, { "tiles", "byte" }, { "slices", "half" }, { "slices", "byte" }

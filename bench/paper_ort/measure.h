@@ -6,8 +6,15 @@
 #include "paper_ort/copy.h"
 #include "paper_ort/map.h"
 
-enum { ORT_VARIANTS = 4, ORT_STAGES = 5, GI_SIZE = 1024 };
-enum ort_stage { STAGE_DIRECT, STAGE_SPREAD, STAGE_GATHER, STAGE_FINISH, STAGE_LIGHT_MAP };
+enum { ORT_VARIANTS = 4, ORT_STAGES = 6, GI_SIZE = 1024 };
+enum ort_stage {
+    STAGE_DIRECT,
+    STAGE_SPREAD,
+    STAGE_PREFILTER,
+    STAGE_GATHER,
+    STAGE_FINISH,
+    STAGE_LIGHT_MAP
+};
 extern const char *const ort_stages[ORT_STAGES];
 // Tiles before slices, halves before bytes: the first is the default.
 extern const struct ort_variant {

@@ -233,13 +233,13 @@ static enum ag_result measure_table(const struct ort_bench *b, const char *scene
     static struct curves curves;
     char path[PATH_SIZE];
     struct ort_view view = { .bench = &b->bench, .options = b->options, .threads = b->threads };
-    FILE *file =
-        open_table(b, "table-1.csv",
-                   "scene,side,texels_option,width,height,texels,offsets,order,precision,bins,"
-                   "map_bytes,bytes,bake_s,processor_s,direct_ms,spread_ms,gather_ms,finish_ms,"
-                   "light_map_ms,gathers_per_s,read_ms,copy_ms,l2,relmse,flip,energy,paper_bins,"
-                   "paper_s,paper_frames_per_s",
-                   path);
+    FILE *file = open_table(
+        b, "table-1.csv",
+        "scene,side,texels_option,width,height,texels,offsets,order,precision,bins,"
+        "map_bytes,bytes,bake_s,processor_s,direct_ms,spread_ms,prefilter_ms,gather_ms,finish_ms,"
+        "light_map_ms,gathers_per_s,read_ms,copy_ms,l2,relmse,flip,energy,paper_bins,"
+        "paper_s,paper_frames_per_s",
+        path);
     if (!file) return AG_ERROR_FILE;
     enum ag_result result = ort_view_open(&view, scene, b->spp);
     if (result == AG_OK) result = measure_beside(b, &view, &curves);
@@ -285,10 +285,11 @@ static enum ag_result measure_lights(const struct ort_bench *b, const char *scen
 {
     char path[PATH_SIZE];
     struct ort_view view = { .bench = &b->bench, .options = b->options };
-    FILE *file = open_table(b, "lights.csv",
-                            "scene,side,offsets,lights,direct_ms,spread_ms,gather_ms,finish_ms,"
-                            "light_map_ms",
-                            path);
+    FILE *file =
+        open_table(b, "lights.csv",
+                   "scene,side,offsets,lights,direct_ms,spread_ms,prefilter_ms,gather_ms,finish_ms,"
+                   "light_map_ms",
+                   path);
     if (!file) return AG_ERROR_FILE;
     enum ag_result result = ort_view_open(&view, scene, 0);
     if (result == AG_OK) result = measure_counts(b, &view, scene, file);

@@ -15,13 +15,13 @@ grep -q '^ambient: l2, ' "$folder/output" || fail "no error of another technique
 [ "$(wc -l < "$folder/out/table-1.csv")" = 9 ] || fail "table-1.csv has not eight rows"
 sed 's/"[^"]*",//g' "$folder/out/table-1.csv" | awk -F, '
     NR == 1 { next }
-    { if (NF != 28) exit 1 }
+    { if (NF != 29) exit 1 }
     { if (!($3 * $4 > 0.9 * 48 * 48 && $3 * $4 < 1.1 * 48 * 48 && $5 > 0 && $5 <= $3 * $4)) exit 2 }
     { if (!($9 > 0 && $10 == $9 * 1024 * 1024 * 3 * ($8 == "half" ? 2 : 1) && $11 > $10)) exit 3 }
-    { for (i = 12; i <= 25; i++) if (i != 20 && i != 21 && !($i > 0)) exit 4 } # those are of software drivers
-    { if (!($25 > 0.8 && $25 < 1.25)) exit 5 }
-    $7 == "tiles" && $8 == "half" { l2[$6] = $22 }
-    $7 == "slices" && $8 == "half" && !($22 > 0.999 * l2[$6] && $22 < 1.001 * l2[$6]) { exit 6 }
+    { for (i = 12; i <= 26; i++) if (i != 21 && i != 22 && !($i > 0)) exit 4 } # those are of software drivers
+    { if (!($26 > 0.8 && $26 < 1.25)) exit 5 }
+    $7 == "tiles" && $8 == "half" { l2[$6] = $23 }
+    $7 == "slices" && $8 == "half" && !($23 > 0.999 * l2[$6] && $23 < 1.001 * l2[$6]) { exit 6 }
     END { if (!(l2[100] < l2[50])) exit 7 }' || fail "the table is wrong ($?): $(cat "$folder/out/table-1.csv")"
 for plot in error gathers; do
     grep -q '</svg>' "$folder/out/$plot.svg" || fail "$plot.svg is incomplete"
@@ -32,7 +32,7 @@ done
 [ "$(wc -l < "$folder/out/lights.csv")" = 4 ] || fail "lights.csv has not three rows"
 # The least of eight frames: the first ones compile.
 sed 's/"[^"]*",//g' "$folder/out/lights.csv" | awk -F, '
-    NR > 1 { direct[$3] = $4; for (i = 4; i <= 8; i++) if (!($i > 0)) exit 1 }
+    NR > 1 { direct[$3] = $4; for (i = 4; i <= 9; i++) if (!($i > 0)) exit 1 }
     END { if (!(direct[64] > direct[1])) exit 2 }' || fail "the times of lights are wrong: $(cat "$folder/out/lights.csv")"
 
 "$1" --help | grep -q -e '--side N  *light map' || fail "--help does not explain the options"
