@@ -10,11 +10,12 @@
 
 enum { SAMPLES = 2048 }; // texels
 
-// A thousand for the whole light map, as in the paper. The offsets of one chart of many need fewer:
-// with 400 the error of rooms is the same within its noise, and the stage takes half the time.
-static uint32_t refinements_of(const struct ort_map *map)
+// A thousand where a group has many charts, as in the paper. The offsets of one chart need fewer:
+// with 400 the error of a box is the same within its noise, and the stage takes half the time.
+static uint32_t refinements_of(const struct ort_map *map, uint32_t group)
 {
-    return map->group_count > 1 ? 400 : 1000;
+    const bool is_rest = group + 1 == map->group_count && map->charts.count > map->group_count;
+    return map->group_count == 1 || is_rest ? 1000 : 400;
 }
 
 struct sample {
@@ -111,7 +112,7 @@ static bool choose(struct importance *im, const struct ort_scene *scene, int32_t
     const struct ort_offsets_wish wish = { .width = scene->map.width,
                                            .height = scene->map.height,
                                            .count = ort_offset_count(&scene->map, &scene->options),
-                                           .refinements = refinements_of(&scene->map),
+                                           .refinements = refinements_of(&scene->map, im->group),
                                            .seed = im->task->bake_seed + im->group,
                                            .importance = importance_of,
                                            .user = im };
@@ -155,6 +156,6 @@ bool ort_add_offsets(struct bake_plan *plan, const struct ort_scene *scene)
                                     .outputs = out,
                                     .output_count = 1,
                                     .rays = 0.25 * SAMPLES / (double)groups *
-                                            (refinements_of(&scene->map) + 100),
+                                            (refinements_of(&scene->map, 0) + 100),
                                     .scratch_bytes = SAMPLES / groups * floats * sizeof(float) });
 }
