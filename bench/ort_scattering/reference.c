@@ -6,6 +6,7 @@
 #include "core/rng.h"
 #include "techniques/gi_spec.h"
 #include "techniques/ort/bake/near.h"
+#include "trace/surface.h"
 #include "trace/trace_scene.h"
 
 #include <math.h>
@@ -18,6 +19,7 @@ struct scattering_reference {
     struct ort_kernel kernel;
     struct chart_texel *points; // their centroid and area
     vec3s *normals;             // at which rays begin: times the reach
+    vec3s *shading;             // normals that receive light
     vec3s *light;               // lux
     struct ort_map map;         // of the points, for `near`
     struct ort_near near;
@@ -38,6 +40,18 @@ static double mesh_area(const struct trace_mesh *mesh)
     return sum;
 }
 
+static vec3s shading_normal(const struct scattering_reference *r, const struct trace_mesh *mesh,
+                            uint32_t t, float u, float v)
+{
+    struct surface surface;
+    const struct ray_hit hit = {
+        .geometry = r->trace->mesh_of[mesh->instance], .triangle = t, .u = u, .v = v
+    };
+    const struct ray ray = { .direction = glms_vec3_negate(mesh->facets[t].normal) };
+    surface_at(r->trace, &ray, &hit, NULL, &surface);
+    return surface.normal;
+}
+
 // The golden ratio's multiples across, equal steps along: even in each triangle.
 static void add_points(struct scattering_reference *r, const struct trace_mesh *mesh, uint32_t t,
                        double per_m2)
@@ -55,6 +69,7 @@ static void add_points(struct scattering_reference *r, const struct trace_mesh *
         r->points[k].centroid = trace_point(mesh, corner, root * (1.0f - along), root * along);
         r->points[k].area_m2 = (float)(1.0 / per_m2);
         r->normals[k] = glms_vec3_scale(mesh->facets[t].normal, mesh->facets[t].reach);
+        r->shading[k] = shading_normal(r, mesh, t, root * (1.0f - along), root * along);
     }
 }
 
@@ -64,8 +79,9 @@ static bool make_points(struct scattering_reference *r, int wanted)
     r->capacity = (uint32_t)wanted + (uint32_t)wanted / 8;
     r->points = host_alloc(&r->host, r->capacity, sizeof *r->points);
     r->normals = host_alloc(&r->host, r->capacity, sizeof *r->normals);
+    r->shading = host_alloc(&r->host, r->capacity, sizeof *r->shading);
     r->light = host_alloc(&r->host, r->capacity, sizeof *r->light);
-    if (!r->points || !r->normals || !r->light) return false;
+    if (!r->points || !r->normals || !r->shading || !r->light) return false;
     for (uint32_t m = 0; m < r->trace->mesh_count; m++) area += mesh_area(&r->trace->meshes[m]);
     for (uint32_t m = 0; m < r->trace->mesh_count; m++)
         for (uint32_t t = 0; t < r->trace->meshes[m].mesh->index_count / 3; t++)
@@ -105,6 +121,7 @@ void scattering_reference_close(struct scattering_reference *r)
     ort_near_finish(&r->near);
     host_free(&host, r->points);
     host_free(&host, r->normals);
+    host_free(&host, r->shading);
     host_free(&host, r->light);
     trace_scene_destroy(r->trace);
     pose_finish(&r->pose);
@@ -133,10 +150,9 @@ static struct world_light world_light_of(const struct ag_light_desc *l)
 static void light_point(void *user, size_t i)
 {
     struct scattering_reference *r = user;
-    const vec3s normal = glms_vec3_normalize(r->normals[i]);
     const vec3s from = glms_vec3_add(r->points[i].centroid, r->normals[i]);
     const struct punctual_light at = light_punctual(&r->lit_by, from);
-    const float cosine = glms_vec3_dot(normal, at.to_light);
+    const float cosine = glms_vec3_dot(r->shading[i], at.to_light);
     const bool lit = cosine > 0.0f && glms_vec3_max(at.illuminance) > 0.0f &&
                      !trace_occluded(r->trace, from, at.to_light, at.distance_m);
     r->light[i] = lit ? glms_vec3_scale(at.illuminance, cosine) : vec3_of(0, 0, 0);

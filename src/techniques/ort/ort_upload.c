@@ -19,6 +19,16 @@ struct content {
     uint8_t *bytes;  // as ort_maps.bytes
 };
 
+// Light that scatters is all diffuse light of a surface: it is received by shading normals, as
+// light that pixels reflect.
+static bool find_normals(struct ort *s, const struct tensors *bake, struct light_map_texels *texels)
+{
+    const float *normals = TENSORS_EXPECT(s->host, bake, ORT_NORMALS, TENSOR_F32,
+                                          light_map_rows(s->map.texel_count), 3);
+    if (s->options.transfer != ORT_RADIOSITY) texels->shading = normals;
+    return normals != NULL;
+}
+
 static bool find_tensors(struct ort *s, const struct tensors *bake, struct content *out)
 {
     *out = (struct content){ 0 };
@@ -26,7 +36,8 @@ static bool find_tensors(struct ort *s, const struct tensors *bake, struct conte
            (out->links = TENSORS_EXPECT(s->host, bake, ORT_LINKS, TENSOR_U8,
                                         light_map_rows(s->map.texel_count))) &&
            ort_maps_find(&out->maps, &s->map, &s->options, bake) &&
-           light_map_find_texels(&out->texels, s->host, &s->map.charts, bake);
+           light_map_find_texels(&out->texels, s->host, &s->map.charts, bake) &&
+           find_normals(s, bake, &out->texels);
 }
 
 // Steps of 8 bits: the largest weight of a map is 255.

@@ -1,5 +1,5 @@
-// Reflectance of texels for light that bounces: brdf_bounce_reflectance (frame/brdf.glsl), and the
-// cosine between the shading normal and that of the triangle: the means of points inside the texel.
+// Reflectance of texels for light that bounces: brdf_bounce_reflectance (frame/brdf.glsl), and
+// their shading normals: the means of points inside the texel.
 #include "trace/texels/texels.h"
 
 #include "trace/reflectance.h"
@@ -27,29 +27,33 @@ void texel_surface(const struct trace_scene *scene, const struct chart_triangle 
     surface_at(scene, &ray, &hit, NULL, out);
 }
 
-static vec4s reflectance_at(const struct trace_scene *scene, const struct chart_triangle *of,
-                            vec3s normal, float u, float v)
+struct look {
+    vec3s reflectance, normal;
+};
+
+static void add_look(struct look *sum, const struct trace_scene *scene,
+                     const struct chart_triangle *of, vec3s normal, float u, float v, float weight)
 {
     struct surface surface;
     texel_surface(scene, of, u, v, normal, &surface);
-    return vec4_of(surface_reflectance(&surface), glms_vec3_dot(surface.normal, normal));
+    sum->reflectance = glms_vec3_muladds(surface_reflectance(&surface), weight, sum->reflectance);
+    sum->normal = glms_vec3_muladds(surface.normal, weight, sum->normal);
 }
 
 // The mean of the middles of its triangles by area.
-static vec4s reflectance_of_spot(const struct trace_scene *scene, const struct charts *charts,
-                                 const struct chart *chart, vec3s normal)
+static struct look look_of_spot(const struct trace_scene *scene, const struct charts *charts,
+                                const struct chart *chart, vec3s normal)
 {
-    vec4s sum = glms_vec4_zero();
+    struct look sum = { 0 };
     for (uint32_t i = 0; i < chart->triangle_count; i++) {
         const struct chart_triangle *t = &charts->triangles[chart->first_triangle + i];
-        sum = glms_vec4_muladds(reflectance_at(scene, t, normal, 1.0f / 3.0f, 1.0f / 3.0f),
-                                t->area_m2, sum);
+        add_look(&sum, scene, t, normal, 1.0f / 3.0f, 1.0f / 3.0f, t->area_m2 / chart->area_m2);
     }
-    return glms_vec4_divs(sum, chart->area_m2);
+    return sum;
 }
 
-vec4s texel_reflectance(const struct trace_scene *scene, const struct charts *charts,
-                        uint32_t texel)
+static struct look look_of(const struct trace_scene *scene, const struct charts *charts,
+                           uint32_t texel)
 {
     const struct chart_texel *t = chart_texel_of(charts, texel);
     const struct chart_triangle *of = &charts->triangles[t->triangle];
@@ -57,8 +61,8 @@ vec4s texel_reflectance(const struct trace_scene *scene, const struct charts *ch
     const vec3s normal = chart_texel_normal(charts, texel);
     const struct trace_mesh *mesh = trace_mesh_of(scene, of->instance);
     const int across = mesh->material->mapped || mesh->mesh->colors ? POINTS_ACROSS : 1;
-    vec4s sum = glms_vec4_zero();
-    if (chart->spot) return reflectance_of_spot(scene, charts, chart, normal);
+    struct look sum = { 0 };
+    if (chart->spot) return look_of_spot(scene, charts, chart, normal);
     for (int i = 0; i < across * across; i++) {
         const float x = ((float)(i % across) + 0.5f) / (float)across;
         const float y = ((float)(i / across) + 0.5f) / (float)across;
@@ -67,7 +71,20 @@ vec4s texel_reflectance(const struct trace_scene *scene, const struct charts *ch
             u = t->u;
             v = t->v;
         }
-        sum = glms_vec4_add(sum, reflectance_at(scene, of, normal, u, v));
+        add_look(&sum, scene, of, normal, u, v, 1.0f / (float)(across * across));
     }
-    return glms_vec4_divs(sum, (float)(across * across));
+    return sum;
+}
+
+vec4s texel_reflectance(const struct trace_scene *scene, const struct charts *charts,
+                        uint32_t texel)
+{
+    const struct look look = look_of(scene, charts, texel);
+    return vec4_of(look.reflectance, glms_vec3_dot(look.normal, chart_texel_normal(charts, texel)));
+}
+
+vec3s texel_shading_normal(const struct trace_scene *scene, const struct charts *charts,
+                           uint32_t texel)
+{
+    return look_of(scene, charts, texel).normal;
 }

@@ -32,3 +32,6 @@ struct texel_point texel_find_point(const struct trace_scene *scene, const struc
 // cosine between its shading normals and the normal of its triangle.
 vec4s texel_reflectance(const struct trace_scene *scene, const struct charts *charts,
                         uint32_t texel);
+// The mean of its shading normals, of length 1 or less.
+vec3s texel_shading_normal(const struct trace_scene *scene, const struct charts *charts,
+                           uint32_t texel);

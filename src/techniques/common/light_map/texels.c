@@ -3,6 +3,7 @@
 #include "bake/tensors.h"
 #include "techniques/common/light_map/tensors.h"
 
+#include <math.h>
 #include <string.h>
 
 bool light_map_find_texels(struct light_map_texels *out, struct host *host,
@@ -34,15 +35,25 @@ uint32_t *light_map_shown(const struct light_map_texels *t, struct host *host)
     return shown;
 }
 
+// Its length is the mean cosine of shading normals.
+static vec3s receiving_normal(const struct light_map_texels *t, uint32_t i)
+{
+    const float *shading = t->shading ? t->shading + 3 * (size_t)i : NULL;
+    if (shading) return vec3_of(shading[0], shading[1], shading[2]);
+    return glms_vec3_scale(chart_texel_normal(t->charts, i), t->reflectance[4 * (size_t)i + 3]);
+}
+
 static void fill_texel(const struct light_map_texels *t, uint32_t i, vec4s *parts)
 {
     const size_t count = t->charts->side_texel_count;
     const float *point = t->point + 4 * (size_t)i, *reflectance = t->reflectance + 4 * (size_t)i;
     parts[TEXEL_POSITION * count + i] =
         vec4_of(vec3_of(point[0], point[1], point[2]), light_map_texel_area(t, i));
-    parts[TEXEL_NORMAL * count + i] = vec4_of(chart_texel_normal(t->charts, i), 0.0f);
+    const vec3s normal = receiving_normal(t, i);
+    const float cosine = glms_vec3_norm(normal);
+    parts[TEXEL_NORMAL * count + i] = vec4_of(glms_vec3_divs(normal, fmaxf(cosine, 1e-6f)), 0.0f);
     parts[TEXEL_REFLECTANCE * count + i] =
-        vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), reflectance[3]);
+        vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), cosine);
     memcpy(&parts[TEXEL_SKY_LIGHT * count + i], t->sky + 4 * (size_t)i, sizeof *parts);
     for (size_t k = 0; k < 3; k++)
         memcpy(&parts[(TEXEL_EMITTED_0 + k) * count + i], t->emitted + 12 * (size_t)i + 4 * k,

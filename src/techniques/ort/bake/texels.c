@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum { TEXELS_PER_TASK = 128 };
-enum { OUT_HITS, OUT_ALBEDO, OUT_SKY, OUT_EMITTED, OUT_POINT, OUT_COUNT };
+enum { OUT_HITS, OUT_ALBEDO, OUT_SKY, OUT_EMITTED, OUT_POINT, OUT_NORMAL, OUT_COUNT };
 
 bool ort_find_texels(struct ort_texels *out, const struct bake_task *task)
 {
@@ -120,6 +120,8 @@ static void make_texel(const struct bake_task *task, uint32_t texel, uint64_t ro
     gather(task, texel, point.position, row);
     const vec4s albedo = texel_reflectance(scene->trace, charts, texel);
     memcpy(bake_row(task, OUT_ALBEDO, row), albedo.raw, sizeof albedo.raw);
+    const vec3s shading = texel_shading_normal(scene->trace, charts, texel);
+    memcpy(bake_row(task, OUT_NORMAL, row), shading.raw, sizeof shading.raw);
 }
 
 static bool run(const struct bake_task *task)
@@ -146,6 +148,7 @@ bool ort_add_texels(struct bake_plan *plan, const struct ort_scene *scene)
         { LIGHT_MAP_SKY, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { LIGHT_MAP_EMITTED, TENSOR_F32, 3, { texels, 3, 4 }, BAKE_ROWS, BAKE_SAVED },
         { LIGHT_MAP_POINT, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { ORT_NORMALS, TENSOR_F32, 2, { texels, 3 }, BAKE_ROWS, BAKE_SAVED },
     };
     return bake_plan_add(plan,
                          &(struct bake_stage){ .name = "texels",
