@@ -154,3 +154,34 @@ void ort_near_visit(const struct ort_near *near, vec3s position,
                 visit(user, near->items[i].texel);
         }
 }
+
+// ---- strips
+
+static struct ort_strip strip_of(const struct charts *charts, uint32_t texel)
+{
+    enum { MOST_PARTS = 31 };
+    const struct chart_triangle *t = chart_triangle_of(charts, texel);
+    const vec2s a = glms_vec2_sub(t->place[1], t->place[0]),
+                b = glms_vec2_sub(t->place[2], t->place[0]);
+    const vec3s along_a = glms_vec3_sub(t->corner[1], t->corner[0]);
+    const vec3s along_b = glms_vec3_sub(t->corner[2], t->corner[0]);
+    const float area = a.x * b.y - a.y * b.x;
+    if (area == 0.0f) return (struct ort_strip){ .parts = 1 };
+    const vec3s x =
+        glms_vec3_sub(glms_vec3_scale(along_a, b.y / area), glms_vec3_scale(along_b, a.y / area));
+    const vec3s y =
+        glms_vec3_sub(glms_vec3_scale(along_b, a.x / area), glms_vec3_scale(along_a, b.x / area));
+    const bool is_wide = glms_vec3_norm2(x) > glms_vec3_norm2(y);
+    const vec3s longer = is_wide ? x : y, shorter = is_wide ? y : x;
+    const float ratio = glms_vec3_norm(longer) / fmaxf(glms_vec3_norm(shorter), 1e-30f);
+    const int parts = 2 * (int)(fminf(ratio + 0.5f, MOST_PARTS) / 2.0f) + 1;
+    return (struct ort_strip){ glms_vec3_divs(longer, (float)parts), parts };
+}
+
+struct ort_strip *ort_make_strips(struct host *host, const struct charts *charts)
+{
+    struct ort_strip *strips = host_alloc(host, charts->side_texel_count, sizeof *strips);
+    for (uint32_t i = 0; strips && i < charts->side_texel_count; i++)
+        strips[i] = strip_of(charts, i);
+    return strips;
+}

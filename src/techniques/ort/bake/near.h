@@ -18,6 +18,14 @@ void ort_kernel_init(struct ort_kernel *out, const struct ort_options *options);
 // 1/m²: the mean over a square of the area, or at 0 over a disk.
 void ort_kernel_at(const struct ort_kernel *kernel, float distance_m, float area_m2, float out[3]);
 
+// A texel of a stretched chart, cut across its longer side into about square parts.
+struct ort_strip {
+    vec3s side; // from one part to the next
+    int parts;  // odd: the middle one is at the centroid
+};
+// [charts->side_texel_count], owned by the caller. NULL: no memory.
+struct ort_strip *ort_make_strips(struct host *host, const struct charts *charts);
+
 struct ort_near_item {
     uint64_t cell;
     uint32_t texel;

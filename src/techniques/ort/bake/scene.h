@@ -19,6 +19,7 @@ struct ort_scene {
     uint32_t *patch_of;        // [texels]
     struct ort_kernel *kernel; // NULL: no light scatters below surfaces
     struct ort_near near;      // with a kernel
+    struct ort_strip *strips;  // [texels] with a kernel
 };
 
 #define ORT_HITS    "texels/hit" // U32 [texels][rays]: texel that a ray meets; CHART_NONE: none

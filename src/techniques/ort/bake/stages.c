@@ -14,7 +14,8 @@ static bool prepare_scattering(struct ort_scene *scene, struct host *host)
     scene->kernel = host_alloc(host, 1, sizeof *scene->kernel);
     if (!scene->kernel) return false;
     ort_kernel_init(scene->kernel, &scene->options);
-    return ort_near_init(&scene->near, &scene->map, scene->kernel->reach_m);
+    scene->strips = ort_make_strips(host, &scene->map.charts);
+    return scene->strips && ort_near_init(&scene->near, &scene->map, scene->kernel->reach_m);
 }
 
 static bool prepare(void *argument, struct host *host)
@@ -36,6 +37,8 @@ static void finish(void *argument)
     host_free(scene->map.host, scene->patch_of);
     if (scene->kernel) host_free(scene->host, scene->kernel);
     ort_near_finish(&scene->near);
+    if (scene->strips) host_free(scene->host, scene->strips);
+    scene->strips = NULL;
     trace_scene_destroy(scene->trace);
     scene_statics_finish(&scene->statics);
     scene->patch_of = NULL;
@@ -53,7 +56,7 @@ static void destroy(void *argument)
 // place and texel, of which some are sorted by cells.
 static size_t prepared_bytes(const struct ort_map *map)
 {
-    enum { OF_TRIANGLE = 240, OF_PLACE = 8, OF_TEXEL = 76 };
+    enum { OF_TRIANGLE = 240, OF_PLACE = 8, OF_TEXEL = 92 };
     return map->charts.triangle_count * (sizeof *map->charts.triangles + OF_TRIANGLE) +
            (size_t)map->width * map->height * OF_PLACE + (size_t)map->texel_count * OF_TEXEL;
 }

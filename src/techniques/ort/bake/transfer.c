@@ -169,9 +169,18 @@ void ort_transfer_scattered(const struct ort_transfer *transfer, const struct or
                             uint32_t from, float out[3])
 {
     const struct ort_scene *scene = transfer->texels.scene;
-    const struct chart_texel *a = chart_texel_of(&scene->map.charts, to->texel);
-    const struct chart_texel *b = chart_texel_of(&scene->map.charts, from);
-    const float distance = from == to->texel ? 0.0f : glms_vec3_distance(a->centroid, b->centroid);
-    ort_kernel_at(scene->kernel, fmaxf(distance, from == to->texel ? 0.0f : 1e-30f),
-                  ort_texel_area(&transfer->texels, from), out);
+    const struct charts *charts = &scene->map.charts;
+    const vec3s between = glms_vec3_sub(chart_texel_of(charts, from)->centroid,
+                                        chart_texel_of(charts, to->texel)->centroid);
+    const struct ort_strip strip = scene->strips[from];
+    const float area = ort_texel_area(&transfer->texels, from) / (float)strip.parts;
+    memset(out, 0, 3 * sizeof *out);
+    for (int i = -strip.parts / 2; i <= strip.parts / 2; i++) {
+        float share[3];
+        const vec3s part = glms_vec3_muladds(strip.side, (float)i, between);
+        const bool is_own = from == to->texel && i == 0;
+        ort_kernel_at(scene->kernel, is_own ? 0.0f : fmaxf(glms_vec3_norm(part), 1e-30f), area,
+                      share);
+        for (int c = 0; c < 3; c++) out[c] += share[c] / (float)strip.parts;
+    }
 }
