@@ -8,7 +8,7 @@ struct scattering_reference;
 struct scattering_desc {
     const char *scene; // file or built-in
     const char *gi;    // "ort:material=…,mm_per_unit=…"
-    int points;        // about so many, on all surfaces
+    int points;        // on all surfaces, about
 };
 // False: the scene or the GI spec is refused, which is logged, or there is no memory.
 bool scattering_reference_open(const struct scattering_desc *desc,

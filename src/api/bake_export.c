@@ -3,21 +3,11 @@
 
 #include "techniques/registry.h"
 
-#include <stdio.h>
-
 enum { LIST_SIZE = 256 };
 
-// "ort, other": techniques that have such data.
-static void list_exporters(char out[LIST_SIZE])
+static bool exports(const struct technique *technique)
 {
-    size_t used = 0;
-    out[0] = 0;
-    for (int i = 0; techniques[i] && used < LIST_SIZE; i++) {
-        if (!techniques[i]->bake_export) continue;
-        const int wrote =
-            snprintf(out + used, LIST_SIZE - used, "%s%s", used ? ", " : "", techniques[i]->name);
-        used += wrote > 0 ? (size_t)wrote : 0;
-    }
+    return technique->bake_export != NULL;
 }
 
 static bool export_to(const struct ag_bake *b, const char *folder)
@@ -25,8 +15,8 @@ static bool export_to(const struct ag_bake *b, const char *folder)
     struct host *host = &b->context->host;
     const struct technique *technique = b->spec.technique[b->term];
     char list[LIST_SIZE];
-    list_exporters(list);
-    if (!technique->bake_export)
+    technique_list(exports, list, sizeof list);
+    if (!exports(technique))
         return host_fail(host, FAIL_ARGUMENT,
                          "cannot export the bake of %s: it has no data for other programs; "
                          "techniques that have: %s",

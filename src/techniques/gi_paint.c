@@ -3,8 +3,6 @@
 
 #include "techniques/registry.h"
 
-#include <stdio.h>
-
 enum { LIST_SIZE = 256 };
 
 static int find_term(const struct gi *gi)
@@ -14,16 +12,15 @@ static int find_term(const struct gi *gi)
     return -1;
 }
 
+static bool takes_paint(const struct technique *technique)
+{
+    return technique->paint != NULL;
+}
+
 static bool fail_paint(const struct gi *gi)
 {
-    char list[LIST_SIZE] = "";
-    size_t used = 0;
-    for (size_t i = 0; techniques[i] && used < sizeof list - 1; i++) {
-        if (!techniques[i]->paint) continue;
-        const int written = snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "",
-                                     techniques[i]->name);
-        if (written > 0) used += (size_t)written;
-    }
+    char list[LIST_SIZE];
+    technique_list(takes_paint, list, sizeof list);
     return host_fail(gi->host, FAIL_ARGUMENT,
                      "painted light: no technique of the GI stack takes it; these do: %s", list);
 }

@@ -91,7 +91,7 @@ TEST_GPU(maps_of_radiosity_and_of_paths_agree)
     fixture_close(&s);
 }
 
-// Of a room, light scatters within texels: the map has the direct light, once.
+// In a room light scatters within texels: the map has the direct light, once.
 TEST_GPU(scattered_light_has_direct_light_once)
 {
     (void)gpu;

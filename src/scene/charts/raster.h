@@ -30,5 +30,5 @@ struct raster_polygon raster_polygon_of(const vec2s corner[3]);
 // Keeps the part of the polygon with low ≤ coordinate ≤ low + 1.
 struct raster_polygon raster_clip(const struct raster_polygon *polygon, int axis, double low);
 double raster_polygon_area(const struct raster_polygon *polygon);
-// Of a polygon that has an area.
+// The centroid of a polygon that has an area.
 void raster_polygon_centroid(const struct raster_polygon *polygon, double out[2]);

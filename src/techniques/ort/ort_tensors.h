@@ -11,7 +11,7 @@
 #define ORT_OFFSETS "offsets"               // I32 [offsets][2]
 #define ORT_ENERGY  "energy"                // F32 [2][3], see ort_energy_ratio
 #define ORT_LINKS   "links"                 // U8 [texels]: ORT_LINK_X | ORT_LINK_Y
-#define ORT_NORMALS "texels/shading_normal" // F32 [texels][3], see texel_shading_normal
+#define ORT_NORMALS "texels/shading_normal" // F32 [texels][3], see texel_reflectance
 #define ORT_MAPS    "maps"                  // F16 [texels][offsets][3], times ORT_MAP_SCALE
 
 // The light of a texel may be averaged with that of the next one, to the right or below.

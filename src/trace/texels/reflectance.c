@@ -77,14 +77,9 @@ static struct look look_of(const struct trace_scene *scene, const struct charts 
 }
 
 vec4s texel_reflectance(const struct trace_scene *scene, const struct charts *charts,
-                        uint32_t texel)
+                        uint32_t texel, vec3s *shading)
 {
     const struct look look = look_of(scene, charts, texel);
+    if (shading) *shading = look.normal;
     return vec4_of(look.reflectance, glms_vec3_dot(look.normal, chart_texel_normal(charts, texel)));
-}
-
-vec3s texel_shading_normal(const struct trace_scene *scene, const struct charts *charts,
-                           uint32_t texel)
-{
-    return look_of(scene, charts, texel).normal;
 }

@@ -29,9 +29,7 @@ struct texel_point texel_find_point(const struct trace_scene *scene, const struc
 // ---- reflectance.c
 
 // Mean reflectance of a texel for light that bounces, 0…1 (brdf_bounce_reflectance); w: the mean
-// cosine between its shading normals and the normal of its triangle.
+// cosine between its shading normals and the normal of its triangle. shading (may be NULL): the
+// mean of the former, of length 1 or less.
 vec4s texel_reflectance(const struct trace_scene *scene, const struct charts *charts,
-                        uint32_t texel);
-// The mean of its shading normals, of length 1 or less.
-vec3s texel_shading_normal(const struct trace_scene *scene, const struct charts *charts,
-                           uint32_t texel);
+                        uint32_t texel, vec3s *shading);

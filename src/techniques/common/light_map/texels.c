@@ -3,7 +3,6 @@
 #include "bake/tensors.h"
 #include "techniques/common/light_map/tensors.h"
 
-#include <math.h>
 #include <string.h>
 
 bool light_map_find_texels(struct light_map_texels *out, struct host *host,
@@ -35,12 +34,14 @@ uint32_t *light_map_shown(const struct light_map_texels *t, struct host *host)
     return shown;
 }
 
-// Its length is the mean cosine of shading normals.
-static vec3s receiving_normal(const struct light_map_texels *t, uint32_t i)
+// The unit normal that receives punctual light, and the mean cosine to it of shading normals.
+static vec3s receiving_normal(const struct light_map_texels *t, uint32_t i, float *cosine)
 {
     const float *shading = t->shading ? t->shading + 3 * (size_t)i : NULL;
-    if (shading) return vec3_of(shading[0], shading[1], shading[2]);
-    return glms_vec3_scale(chart_texel_normal(t->charts, i), t->reflectance[4 * (size_t)i + 3]);
+    const vec3s mean = shading ? vec3_of(shading[0], shading[1], shading[2]) : glms_vec3_zero();
+    const float length = glms_vec3_norm(mean);
+    *cosine = shading ? length : t->reflectance[4 * (size_t)i + 3];
+    return length > 0.0f ? glms_vec3_divs(mean, length) : chart_texel_normal(t->charts, i);
 }
 
 static void fill_texel(const struct light_map_texels *t, uint32_t i, vec4s *parts)
@@ -49,9 +50,8 @@ static void fill_texel(const struct light_map_texels *t, uint32_t i, vec4s *part
     const float *point = t->point + 4 * (size_t)i, *reflectance = t->reflectance + 4 * (size_t)i;
     parts[TEXEL_POSITION * count + i] =
         vec4_of(vec3_of(point[0], point[1], point[2]), light_map_texel_area(t, i));
-    const vec3s normal = receiving_normal(t, i);
-    const float cosine = glms_vec3_norm(normal);
-    parts[TEXEL_NORMAL * count + i] = vec4_of(glms_vec3_divs(normal, fmaxf(cosine, 1e-6f)), 0.0f);
+    float cosine;
+    parts[TEXEL_NORMAL * count + i] = vec4_of(receiving_normal(t, i, &cosine), 0.0f);
     parts[TEXEL_REFLECTANCE * count + i] =
         vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), cosine);
     memcpy(&parts[TEXEL_SKY_LIGHT * count + i], t->sky + 4 * (size_t)i, sizeof *parts);

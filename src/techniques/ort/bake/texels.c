@@ -118,9 +118,9 @@ static void make_texel(const struct bake_task *task, uint32_t texel, uint64_t ro
     memcpy(bake_row(task, OUT_POINT, row), &point, sizeof point);
     if (point.share == 0.0f) return;
     gather(task, texel, point.position, row);
-    const vec4s albedo = texel_reflectance(scene->trace, charts, texel);
+    vec3s shading;
+    const vec4s albedo = texel_reflectance(scene->trace, charts, texel, &shading);
     memcpy(bake_row(task, OUT_ALBEDO, row), albedo.raw, sizeof albedo.raw);
-    const vec3s shading = texel_shading_normal(scene->trace, charts, texel);
     memcpy(bake_row(task, OUT_NORMAL, row), shading.raw, sizeof shading.raw);
 }
 

@@ -118,7 +118,7 @@ static void gather_texel(const struct bake_task *task, struct room *room, uint64
     memcpy(bake_row(task, OUT_SKY, i), &gather->light.sky, sizeof gather->light.sky);
     memcpy(bake_row(task, OUT_EMITTED, i), gather->light.emitted, sizeof gather->light.emitted);
     *(float *)bake_row(task, OUT_DISTANCE, i) = gather->inverse_distance;
-    const vec4s albedo = texel_reflectance(job->scene.trace, charts, texel);
+    const vec4s albedo = texel_reflectance(job->scene.trace, charts, texel, NULL);
     memcpy(bake_row(task, OUT_ALBEDO, i), albedo.raw, sizeof albedo.raw);
 }
 
