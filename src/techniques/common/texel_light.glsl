@@ -6,12 +6,13 @@
 #ifndef AG_TEXEL_LIGHT_GLSL
 #define AG_TEXEL_LIGHT_GLSL
 
-vec3 texel_irradiance(vec3 position, vec3 normal, float area_m2, frame_light light,
+// normal: unit, of the surface, for the shadow; shading: unit, receives the light.
+vec3 texel_irradiance(vec3 position, vec3 normal, vec3 shading, float area_m2, frame_light light,
                       int shadow_radius)
 {
     vec3 to_light;
     float attenuation = light_attenuation(light, position, area_m2 / (2.0 * PI), 0.0, to_light);
-    float cosine = dot(normal, to_light);
+    float cosine = dot(shading, to_light);
     if (cosine <= 0.0 || attenuation <= 0.0) return vec3(0.0);
     if (light.shadow_first >= 0)
         attenuation *= shadow_visibility(light, position, normal, to_light, true, shadow_radius);

@@ -32,5 +32,5 @@ void main()
     vec3 irradiance =
         light_map_first_order(texel, i, push.texels, push.sources, push.shadow_radius);
     imageStore(radiosity_flux, light_map_at(i),
-               vec4(texel.place.w * texel.reflectance.rgb * irradiance, 0.0));
+               vec4(texel.place.w * texel.reflectance * irradiance, 0.0));
 }

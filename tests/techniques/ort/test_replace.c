@@ -209,7 +209,8 @@ TEST_GPU(shadows_have_the_edges_of_the_profile)
 
 // ---- a plane of 240 mm, all of which is lit
 
-static void lit_plane(struct frame_fixture *s, struct gpu *gpu, float metallic)
+// Its vertex normals lean by `lean` towards x.
+static void lit_plane(struct frame_fixture *s, struct gpu *gpu, float metallic, float lean)
 {
     struct material m = material_default();
     m.base_color = vec4_of(vec3_of(0.8f, 0.5f, 0.3f), 1);
@@ -217,17 +218,20 @@ static void lit_plane(struct frame_fixture *s, struct gpu *gpu, float metallic)
     m.roughness = 0.5f;
     fixture_init(s, gpu);
     fixture_floor(s, 1, fixture_material(s, &m));
+    const struct mesh *plane = &s->scene->meshes[s->scene->mesh_count - 1];
+    for (size_t i = 0; i < plane->vertex_count; i++)
+        plane->normals[i] = glms_vec3_normalize(vec3_of(lean, 1, 0));
     fixture_add_sun(s, vec3_of(0.5f, -1, 0.2f), vec3_of(100, 80, 60));
     fixture_look(s, vec3_of(0.1f, 0.6f, 0.1f), vec3_of(0, 0, 0)); // 120 mm of it
 }
 
 // The largest difference of a pixel's colour to that of direct light alone, over the latter.
-static double change_by(struct gpu *gpu, float metallic, const char *gi)
+static double change_by(struct gpu *gpu, float metallic, float lean, const char *gi)
 {
     struct frame_fixture s;
     struct baked_fixture run;
     double worst = 0.0;
-    lit_plane(&s, gpu, metallic);
+    lit_plane(&s, gpu, metallic, lean);
     baked_fixture_open(&run, &s, gi);
     fixture_render(&s);
     float *color = fixture_read(&s, READ_COLOR), *direct = fixture_read(&s, READ_DIRECT);
@@ -241,19 +245,27 @@ static double change_by(struct gpu *gpu, float metallic, const char *gi)
 
 TEST_GPU(even_light_stays_with_its_highlights)
 {
-    const double change = change_by(gpu, 0, SKIN "texels=1024,offsets=100,mm_per_unit=120");
+    const double change = change_by(gpu, 0, 0, SKIN "texels=1024,offsets=100,mm_per_unit=120");
+    print_message("change %.4f\n", change);
+    CHECK(change <= 0.01);
+}
+
+// The plane's own normal would receive 0.78 times as much light.
+TEST_GPU(shading_normals_receive_light_that_scatters)
+{
+    const double change = change_by(gpu, 0, -0.5f, SKIN "texels=1024,offsets=100,mm_per_unit=120");
     print_message("change %.4f\n", change);
     CHECK(change <= 0.01);
 }
 
 TEST_GPU(metals_do_not_scatter)
 {
-    const double change = change_by(gpu, 1, SKIN "texels=1024,offsets=100,mm_per_unit=120");
+    const double change = change_by(gpu, 1, 0, SKIN "texels=1024,offsets=100,mm_per_unit=120");
     print_message("change %.4f\n", change);
     CHECK(change == 0.0);
 }
 
 TEST_GPU(radiosity_leaves_direct_light_alone)
 {
-    CHECK(change_by(gpu, 0, "ort:texels=1024,offsets=100,rays=16") == 0.0);
+    CHECK(change_by(gpu, 0, 0, "ort:texels=1024,offsets=100,rays=16") == 0.0);
 }

@@ -18,33 +18,46 @@ layout(set = 0, binding = LIGHT_MAP_LIGHTS_BINDING, scalar) readonly buffer fram
 struct light_map_texel {
     vec4 place;       // world, m; w: area, m²; 0: the texel is inside geometry
     vec3 normal;      // unit, of its side
-    vec4 reflectance; // by colour; w: mean cosine between shading normals and the normal
+    vec3 shading;     // mean shading normal, of length 1 or less
+    vec3 reflectance; // by colour
 };
 
 light_map_texel light_map_texel_of(uint i, uint texels)
 {
     return light_map_texel(light_map_texel_part(i, texels, TEXEL_POSITION),
                            light_map_texel_part(i, texels, TEXEL_NORMAL).xyz,
-                           light_map_texel_part(i, texels, TEXEL_REFLECTANCE));
+                           light_map_texel_part(i, texels, TEXEL_SHADING).xyz,
+                           light_map_texel_part(i, texels, TEXEL_REFLECTANCE).rgb);
 }
 
-// Irradiance of texel i in the units of the frame; 0 where the texel is inside geometry.
+// Irradiance of light of all directions, as pixels show it: E(n) = (E + n·V)/2 has the mean
+// (E + s·V)/2 over shading normals n of mean s. The vector irradiance V of paint is along the
+// normal.
+vec3 light_map_first_order_of_all(light_map_texel texel, uint i, uint texels,
+                                  light_map_sources sources)
+{
+    vec3 irradiance =
+        light_map_painted_light(i, sources) * (0.5 + 0.5 * dot(texel.shading, texel.normal));
+    for (int c = 0; c < 3; c++) {
+        vec4 light = light_map_unbounced(i, texels, c, sources);
+        irradiance[c] += max(0.5 * (light.x + dot(texel.shading, light.yzw)), 0.0);
+    }
+    return irradiance;
+}
+
+// Irradiance of texel i in the units of the frame; 0 where the texel is inside geometry. Shading
+// normals receive it, as at pixels.
 // shadow_radius: texels of the shadow map.
 vec3 light_map_first_order(light_map_texel texel, uint i, uint texels, light_map_sources sources,
                            int shadow_radius)
 {
-    vec3 irradiance = vec3(0.0);
-    if (texel.place.w > 0.0) {
-        for (int c = 0; c < 3; c++) irradiance[c] = light_map_unbounced(i, texels, c, sources).x;
-        irradiance += light_map_painted_light(i, sources);
-        // Shading normals n of mean cosine c to the surface's receive c of the light of a
-        // direction, and E(n) = (E + n·V)/2 of light of all: (1 + c)/2.
-        irradiance *= 0.5 + 0.5 * texel.reflectance.w;
-        for (uint k = 0; k < frame.light_count; k++)
-            irradiance +=
-                texel.reflectance.w * texel_irradiance(texel.place.xyz, texel.normal, texel.place.w,
-                                                       frame_light_table[k], shadow_radius);
-    }
+    if (texel.place.w <= 0.0) return vec3(0.0);
+    vec3 irradiance = light_map_first_order_of_all(texel, i, texels, sources);
+    float cosine = length(texel.shading); // mean of the shading normals to their mean's direction
+    vec3 shading = cosine > 0.0 ? texel.shading / cosine : texel.normal;
+    for (uint k = 0; k < frame.light_count; k++)
+        irradiance += cosine * texel_irradiance(texel.place.xyz, texel.normal, shading,
+                                                texel.place.w, frame_light_table[k], shadow_radius);
     return irradiance;
 }
 

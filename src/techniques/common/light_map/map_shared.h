@@ -14,10 +14,11 @@
 // Parts of a texel in the table of texels: entry part · texels + texel.
 #define TEXEL_POSITION    0 // world, m; w: area, m²; 0: the texel is inside geometry
 #define TEXEL_NORMAL      1 // unit, of its side
-#define TEXEL_REFLECTANCE 2 // w: mean cosine between shading normals and the normal
-#define TEXEL_SKY_LIGHT   3 // irradiance along the normal, vector irradiance: radiance 1
-#define TEXEL_EMITTED_0   4 // the same by colour, lux
-#define TEXEL_PARTS       7
+#define TEXEL_SHADING     2 // mean shading normal, of length 1 or less
+#define TEXEL_REFLECTANCE 3 // by colour
+#define TEXEL_SKY_LIGHT   4 // irradiance along the normal, vector irradiance: radiance 1
+#define TEXEL_EMITTED_0   5 // the same by colour, lux
+#define TEXEL_PARTS       8
 
 // First-order light besides that of punctual lights and the sky.
 struct light_map_sources {

@@ -34,14 +34,12 @@ uint32_t *light_map_shown(const struct light_map_texels *t, struct host *host)
     return shown;
 }
 
-// The unit normal that receives punctual light, and the mean cosine to it of shading normals.
-static vec3s receiving_normal(const struct light_map_texels *t, uint32_t i, float *cosine)
+// The mean shading normal, of length 1 or less.
+static vec3s mean_shading(const struct light_map_texels *t, uint32_t i)
 {
     const float *shading = t->shading ? t->shading + 3 * (size_t)i : NULL;
-    const vec3s mean = shading ? vec3_of(shading[0], shading[1], shading[2]) : glms_vec3_zero();
-    const float length = glms_vec3_norm(mean);
-    *cosine = shading ? length : t->reflectance[4 * (size_t)i + 3];
-    return length > 0.0f ? glms_vec3_divs(mean, length) : chart_texel_normal(t->charts, i);
+    if (shading) return vec3_of(shading[0], shading[1], shading[2]);
+    return glms_vec3_scale(chart_texel_normal(t->charts, i), t->reflectance[4 * (size_t)i + 3]);
 }
 
 static void fill_texel(const struct light_map_texels *t, uint32_t i, vec4s *parts)
@@ -50,10 +48,10 @@ static void fill_texel(const struct light_map_texels *t, uint32_t i, vec4s *part
     const float *point = t->point + 4 * (size_t)i, *reflectance = t->reflectance + 4 * (size_t)i;
     parts[TEXEL_POSITION * count + i] =
         vec4_of(vec3_of(point[0], point[1], point[2]), light_map_texel_area(t, i));
-    float cosine;
-    parts[TEXEL_NORMAL * count + i] = vec4_of(receiving_normal(t, i, &cosine), 0.0f);
+    parts[TEXEL_NORMAL * count + i] = vec4_of(chart_texel_normal(t->charts, i), 0.0f);
+    parts[TEXEL_SHADING * count + i] = vec4_of(mean_shading(t, i), 0.0f);
     parts[TEXEL_REFLECTANCE * count + i] =
-        vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), cosine);
+        vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), 0.0f);
     memcpy(&parts[TEXEL_SKY_LIGHT * count + i], t->sky + 4 * (size_t)i, sizeof *parts);
     for (size_t k = 0; k < 3; k++)
         memcpy(&parts[(TEXEL_EMITTED_0 + k) * count + i], t->emitted + 12 * (size_t)i + 4 * k,

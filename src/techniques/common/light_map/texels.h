@@ -12,8 +12,8 @@ struct light_map_texels {
     const float *reflectance; // [texels][4], the last the mean cosine of shading normals
     const float *sky;         // [texels][4] irradiance and vector irradiance: radiance 1
     const float *emitted;     // [texels][3][4] the same by colour, lux
-    // [texels][3] mean shading normals, which receive punctual light in place of the surface's
-    // normal. NULL: that one, times the mean cosine.
+    // [texels][3] mean shading normals, which receive first-order light. NULL: the surface's
+    // normal, times the mean cosine.
     const float *shading;
 };
 bool light_map_find_texels(struct light_map_texels *out, struct host *host,

@@ -28,7 +28,7 @@ vec3 unbounced_of(vec3 emitted, vec3 sky)
 void add_lights(mrt_texel texel, inout vec3 irradiance)
 {
     for (uint k = 0; k < frame.light_count; k++)
-        irradiance += texel_irradiance(texel.position, texel.normal, texel.area_m2,
+        irradiance += texel_irradiance(texel.position, texel.normal, texel.normal, texel.area_m2,
                                        frame_light_table[k], level.shadow_radius);
 }
 
