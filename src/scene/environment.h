@@ -1,6 +1,7 @@
 // Light from outside of the scene, which arrives where a ray meets no surface: a uniform sky.
 #pragma once
 
+#include "core/sh.h"
 #include "core/vec.h"
 
 #include <math.h>
@@ -22,9 +23,12 @@ static inline vec3s environment_mean(const struct environment *environment)
     return environment->sky;
 }
 
-// Coefficients of the radiance (core/sh.h).
-static inline void environment_sh9(const struct environment *environment, vec3s coefficients[9])
+// Coefficients of the radiance by colour, cd/m² (core/sh.h). bands: at most SH_MAX_BANDS.
+static inline void environment_sh(const struct environment *environment, int bands,
+                                  float out[3][SH_MAX_COUNT])
 {
-    for (int i = 1; i < 9; i++) coefficients[i] = vec3_of(0, 0, 0);
-    coefficients[0] = glms_vec3_scale(environment->sky, sqrtf(4.0f * GLM_PIf));
+    for (int c = 0; c < 3; c++) {
+        for (int i = 1; i < SH_COUNT(bands); i++) out[c][i] = 0.0f;
+        out[c][0] = environment->sky.raw[c] * sqrtf(4.0f * GLM_PIf);
+    }
 }
