@@ -7,6 +7,7 @@ target_sources(test_image_tonemap PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/image/tone
 ag_test(image/metrics USES image)
 ag_test(image/ssim USES image)
 ag_test(image/flip USES image LIBRARIES OpenMP::OpenMP_C)
+ag_test(image/hdr USES image)
 ag_test(image/damaged USES image)
 ag_test(image/scarce USES image)
 
