@@ -213,8 +213,8 @@ static const char *unpack_new(struct input *input, int width, uint8_t *rgbe)
     return why;
 }
 
-// Pixels, and in the old encoding runs: 1, 1, 1 and a count repeat the pixel before. Of consecutive
-// counts the first has the lowest eight bits. Mantissas of a flat line are never all 1.
+// Pixels, and in the old encoding runs: 1, 1, 1 and a count repeat the pixel before. The first
+// of consecutive counts has the lowest eight bits. Mantissas of a flat line are never all 1.
 static const char *unpack_old(struct input *input, int width, uint8_t *rgbe)
 {
     enum { SHIFT_MAX = 24 };

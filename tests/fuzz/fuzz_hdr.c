@@ -1,4 +1,4 @@
-// A Radiance image in memory. What was accepted is finite, not negative and no larger than allowed.
+// A Radiance image in memory. Accepted images are finite, not negative and within the limits.
 #include "fuzz/fuzz.h"
 
 #include "image/hdr.h"

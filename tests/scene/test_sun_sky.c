@@ -37,7 +37,7 @@ static vec3s sun_lux(float elevation_deg, float turbidity)
     return sun_sky_sun(&model, &to_sun);
 }
 
-// Of sun and sky on the horizontal ground.
+// Illuminance of the horizontal ground by sun and sky.
 static double total_lux(float elevation_deg, float turbidity)
 {
     const struct sun_sky_model model = model_at(elevation_deg, turbidity);
