@@ -136,6 +136,12 @@ static bool set_sky(struct arguments *a, const char *value, const char **why)
     return value_floats(value, 3, a->sky) && a->sky[0] >= 0 && a->sky[1] >= 0 && a->sky[2] >= 0;
 }
 
+static bool set_environment(struct arguments *a, const char *value, const char **why)
+{
+    a->environment = value;
+    return value_environment(value, &a->environment_value, why);
+}
+
 static bool set_exposure(struct arguments *a, const char *value, const char **why)
 {
     double ev = 0.0;

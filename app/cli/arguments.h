@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/terminal/messages.h"
+#include "environment.h"
 #include "values.h"
 
 #include <afterglow/image.h>
@@ -45,6 +46,8 @@ struct arguments {
     const char *light_texts[MAX_LIGHTS]; // as given
     int light_count;
     bool no_scene_lights, has_sky;
+    const char *environment; // as given; NULL: none
+    struct environment_value environment_value;
     float sky[3];
     // reference
     int spp, bounces;

@@ -52,6 +52,7 @@ enum status light_map_check_others(const struct arguments *a)
                          : a->denoise         ? "--denoise"
                          : a->light_count > 0 ? "--light"
                          : a->has_sky         ? "--sky"
+                         : a->environment     ? "--environment"
                          : a->no_scene_lights ? "--no-scene-lights"
                          : a->device          ? "--device"
                                               : NULL;

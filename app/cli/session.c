@@ -216,9 +216,10 @@ static void describe_light(struct session *session)
         used += wrote > 0 ? (size_t)wrote : 0;
     }
     if (used >= LIGHT_SIZE) return;
-    snprintf(session->light + used, LIGHT_SIZE - used, "%s%s%s%s", used ? " " : "",
-             a->no_scene_lights ? "--no-scene-lights " : "", a->has_sky ? "--sky " : "",
-             a->has_sky ? sky : "");
+    snprintf(session->light + used, LIGHT_SIZE - used, "%s%s%s%s%s%s%s", used ? " " : "",
+             a->no_scene_lights ? "--no-scene-lights " : "", a->environment ? "--environment " : "",
+             a->environment ? a->environment : "", a->environment ? " " : "",
+             a->has_sky ? "--sky " : "", a->has_sky ? sky : "");
     for (used = strlen(session->light); used > 0 && session->light[used - 1] == ' '; used--)
         session->light[used - 1] = 0;
 }
@@ -231,6 +232,17 @@ static void warn_of_empty_scene(struct session *session)
         remember(session, "nothing to see in %s: it has no triangles", session->name);
 }
 
+// The environment replaces the scene's own sky.
+static enum status set_environment(struct session *session)
+{
+    static const float NONE[3] = { 0, 0, 0 };
+    const struct arguments *a = session->arguments;
+    enum ag_result result =
+        environment_apply(session->context, session->scene, &a->environment_value);
+    if (result == AG_OK && !a->has_sky) result = ag_scene_set_sky(session->scene, NONE);
+    return result == AG_OK ? DONE : fail_option(session, result, "--environment");
+}
+
 static enum status set_sky(struct session *session)
 {
     const enum ag_result result = ag_scene_set_sky(session->scene, session->arguments->sky);
@@ -241,7 +253,7 @@ enum status session_light(struct session *session)
 {
     const struct arguments *a = session->arguments;
     warn_of_empty_scene(session);
-    if (a->light_count == 0 && !a->no_scene_lights && !a->has_sky)
+    if (a->light_count == 0 && !a->no_scene_lights && !a->has_sky && !a->environment)
         return add_default_light(session);
     enum ag_result result = AG_OK;
     describe_light(session);
@@ -253,7 +265,8 @@ enum status session_light(struct session *session)
         snprintf(option, sizeof option, "--light %s", a->light_texts[i]);
         if (result != AG_OK) return fail_option(session, result, option);
     }
-    return a->has_sky ? set_sky(session) : DONE;
+    const enum status status = a->environment ? set_environment(session) : DONE;
+    return status == DONE && a->has_sky ? set_sky(session) : status;
 }
 
 // ---- camera

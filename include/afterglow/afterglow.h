@@ -7,6 +7,7 @@
 #include <afterglow/catalogue.h>
 #include <afterglow/context.h>
 #include <afterglow/device.h>
+#include <afterglow/environment.h>
 #include <afterglow/image.h>
 #include <afterglow/lightmap.h>
 #include <afterglow/probes.h>

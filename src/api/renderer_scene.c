@@ -21,7 +21,7 @@ uint32_t renderer_scene_changes(struct ag_renderer *r)
 static void warn_of_limit(struct ag_renderer *r)
 {
     const struct scene *scene = r->scene->scene;
-    int on = 0;
+    int on = pose_light_count(&r->pose) - scene->light_count;
     for (int i = 0; i < scene->light_count; i++) on += !scene->lights[i].off;
     if (on <= FRAME_MAX_LIGHTS || r->said_limit) return;
     r->said_limit = true;
@@ -32,11 +32,14 @@ static void warn_of_limit(struct ag_renderer *r)
 int renderer_scene_lights(struct ag_renderer *r)
 {
     const struct scene *scene = r->scene->scene;
+    const int suns = pose_light_count(&r->pose) - scene->light_count;
+    const int most = FRAME_MAX_LIGHTS - suns;
     int count = 0;
     warn_of_limit(r);
-    for (int i = 0; i < scene->light_count && count < FRAME_MAX_LIGHTS; i++) {
-        if (scene->light_count > FRAME_MAX_LIGHTS && scene->lights[i].off) continue;
+    for (int i = 0; i < scene->light_count && count < most; i++) {
+        if (scene->light_count > most && scene->lights[i].off) continue;
         r->lights[count++] = pose_light(&r->pose, i);
     }
+    if (suns > 0) r->lights[count++] = pose_light(&r->pose, scene->light_count);
     return count;
 }

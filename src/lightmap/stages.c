@@ -63,9 +63,10 @@ static bool run(const struct bake_task *task)
 static struct hash128 key_of(const struct scene_pose *pose)
 {
     struct hash128 key = scene_key(pose, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS);
-    key = hash128_add(key, &pose->scene->environment, sizeof pose->scene->environment);
-    for (int i = 0; i < pose->scene->light_count; i++) {
-        if (pose->scene->lights[i].off) continue;
+    const uint64_t environment = environment_key(&pose->scene->environment);
+    key = hash128_add(key, &environment, sizeof environment);
+    for (int i = 0; i < pose_light_count(pose); i++) {
+        if (i < pose->scene->light_count && pose->scene->lights[i].off) continue;
         const struct world_light light = pose_light(pose, i);
         const float values[] = { light.position.x,  light.position.y,  light.position.z,
                                  light.direction.x, light.direction.y, light.direction.z,

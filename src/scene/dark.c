@@ -54,6 +54,9 @@ static bool emission_lights(const struct scene_pose *pose)
 bool pose_is_dark(const struct scene_pose *pose)
 {
     const struct scene *scene = pose->scene;
-    if (has_lights(scene) || luminance(scene->environment.sky) > 0.0f) return false;
+    struct world_light sun;
+    if (has_lights(scene) || !environment_is_black(&scene->environment) ||
+        environment_sun_light(&scene->environment, &sun))
+        return false;
     return !scene_has_emission(scene) || !emission_lights(pose);
 }

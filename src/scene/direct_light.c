@@ -9,9 +9,9 @@ void direct_light_init(struct direct_light *direct, const struct scene_pose *pos
                        const struct raycast *raycast, float offset)
 {
     *direct = (struct direct_light){ .raycast = raycast, .offset = offset };
-    for (int i = 0; i < pose->scene->light_count && direct->count < DIRECT_LIGHTS_MAX; i++) {
+    for (int i = 0; i < pose_light_count(pose) && direct->count < DIRECT_LIGHTS_MAX; i++) {
         struct world_light light = pose_light(pose, i);
-        if (pose->scene->lights[i].off || luminance(light.intensity) <= 0.0f) continue;
+        if (luminance(light.intensity) <= 0.0f) continue;
         direct->lights[direct->count++] = light;
     }
 }

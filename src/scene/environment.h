@@ -1,34 +1,50 @@
-// Light from outside of the scene, which arrives where a ray meets no surface: a uniform sky.
+// Light from outside of the scene, which arrives where a ray meets no surface: a uniform sky and an
+// image of all directions (environment_map.h), which may turn about the vertical.
 #pragma once
 
 #include "core/sh.h"
 #include "core/vec.h"
 
-#include <math.h>
+struct environment_map;
+struct world_light;
 
 struct environment {
-    vec3s sky; // radiance from all directions, cd/m²
+    vec3s sky;                         // uniform radiance, cd/m²
+    const struct environment_map *map; // its light is added to the sky's; NULL: none
+    float strength;                    // factor of the map's radiance
+    float rotation_rad;                // of the map about +y, counterclockwise from above
 };
+
+vec3s environment_map_light(const struct environment *environment, vec3s direction);
 
 // From a direction: a unit vector in world space, away from the scene. cd/m².
 static inline vec3s environment_radiance(const struct environment *environment, vec3s direction)
 {
-    (void)direction;
-    return environment->sky;
+    if (!environment->map) return environment->sky;
+    return glms_vec3_add(environment->sky, environment_map_light(environment, direction));
 }
 
-// Over all directions, cd/m²: for light that was baked for a uniform sky.
-static inline vec3s environment_mean(const struct environment *environment)
-{
-    return environment->sky;
-}
+// Mean over all directions, cd/m².
+vec3s environment_mean(const struct environment *environment);
+bool environment_is_black(const struct environment *environment); // its sun apart
+
+// Hash of the radiance from all directions, the sun apart.
+uint64_t environment_key(const struct environment *environment);
 
 // Coefficients of the radiance by colour, cd/m² (core/sh.h). bands: at most SH_MAX_BANDS.
-static inline void environment_sh(const struct environment *environment, int bands,
-                                  float out[3][SH_MAX_COUNT])
+void environment_sh(const struct environment *environment, int bands, float out[3][SH_MAX_COUNT]);
+
+// The sun that was found in the map. False: there is none.
+bool environment_sun_light(const struct environment *environment, struct world_light *out);
+
+// From world space to the map's.
+static inline vec3s environment_map_direction(const struct environment *environment, vec3s d)
 {
-    for (int c = 0; c < 3; c++) {
-        for (int i = 1; i < SH_COUNT(bands); i++) out[c][i] = 0.0f;
-        out[c][0] = environment->sky.raw[c] * sqrtf(4.0f * GLM_PIf);
-    }
+    const float c = cosf(environment->rotation_rad), s = sinf(environment->rotation_rad);
+    return vec3_of(c * d.x - s * d.z, d.y, s * d.x + c * d.z);
+}
+static inline vec3s environment_world_direction(const struct environment *environment, vec3s d)
+{
+    const float c = cosf(environment->rotation_rad), s = sinf(environment->rotation_rad);
+    return vec3_of(c * d.x + s * d.z, d.y, c * d.z - s * d.x);
 }

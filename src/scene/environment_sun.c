@@ -1,5 +1,7 @@
 #include "scene/environment_sun.h"
 
+#include "scene/equirect.h"
+
 #include <math.h>
 
 #define DEGREES (GLM_PIf / 180.0f)
@@ -30,18 +32,14 @@ struct region {
     bool has_pole[2]; // the first and the last row have been tried
 };
 
-vec3s equirect_direction(const struct image *equirect, int x, int y)
+static vec3s texel_direction(const struct image *image, int x, int y)
 {
-    const float azimuth = (((float)x + 0.5f) / (float)equirect->width - 0.5f) * (2.0f * GLM_PIf);
-    const float zenith = ((float)y + 0.5f) / (float)equirect->height * GLM_PIf;
-    return vec3_of(sinf(zenith) * sinf(azimuth), cosf(zenith), -sinf(zenith) * cosf(azimuth));
+    return equirect_direction(equirect_texel_uv(image->width, image->height, x, y));
 }
 
-double equirect_solid_angle(const struct image *equirect, int y)
+static double texel_sr(const struct image *image, int y)
 {
-    const double step = PI / equirect->height;
-    const double strip = 2.0 * sin((y + 0.5) * step) * sin(0.5 * step); // cos(top) − cos(bottom)
-    return 2.0 * PI / equirect->width * strip;
+    return equirect_solid_angle(image->width, image->height, y);
 }
 
 static vec3s texel_radiance(const struct image *image, int x, int y)
@@ -75,7 +73,7 @@ static uint32_t find_brightest(const struct image *image, double *mean)
             most = value;
             brightest = (uint32_t)y * (uint32_t)image->width + (uint32_t)x;
         }
-        *mean += row * equirect_solid_angle(image, y) / (4.0 * PI);
+        *mean += row * texel_sr(image, y) / (4.0 * PI);
     }
     return brightest;
 }
@@ -108,11 +106,11 @@ static bool find_ring(const struct region *region, vec3s centre, double mean[3])
     double weight = 0.0;
     for (int c = 0; c < 3; c++) mean[c] = 0.0;
     for (int y = 0; y < image->height; y++) {
-        const double solid_angle = equirect_solid_angle(image, y);
+        const double solid_angle = texel_sr(image, y);
         const struct columns columns = columns_near(image, centre, y, RING_OUTER_RAD);
         for (int i = 0; i < columns.count; i++) {
             const int x = (columns.first + i) % image->width;
-            const float cosine = glms_vec3_dot(centre, equirect_direction(image, x, y));
+            const float cosine = glms_vec3_dot(centre, texel_direction(image, x, y));
             if (cosine < outer || cosine > inner) continue;
             if (region->is_in[(size_t)y * (size_t)image->width + (size_t)x]) continue;
             for (int c = 0; c < 3; c++) mean[c] += solid_angle * (double)image_at(image, x, y)[c];
@@ -159,7 +157,7 @@ static bool region_add(struct region *region, uint32_t texel)
     }
     region->is_in[texel] = 1;
     region->texels[region->count++] = texel;
-    region->solid_angle += equirect_solid_angle(region->image, texel_y(region->image, texel));
+    region->solid_angle += texel_sr(region->image, texel_y(region->image, texel));
     return true;
 }
 
@@ -175,7 +173,7 @@ static bool region_try(struct region *region, const struct growth *growth, int x
     const uint32_t texel = (uint32_t)y * (uint32_t)image->width + (uint32_t)x;
     if (region->is_in[texel]) return true;
     if (!(luminance(texel_radiance(image, x, y)) > growth->least)) return true;
-    const vec3s direction = equirect_direction(image, x, y);
+    const vec3s direction = texel_direction(image, x, y);
     if (glms_vec3_dot(direction, growth->centre) < cosf(MAX_REACH_RAD)) region->too_large = true;
     return region_add(region, texel);
 }
@@ -201,7 +199,7 @@ static bool region_grow(struct region *region, uint32_t brightest, float least)
 {
     const double most = 2.0 * PI * (1.0 - cos((double)MAX_RADIUS_RAD));
     const int x = texel_x(region->image, brightest), y = texel_y(region->image, brightest);
-    const struct growth growth = { equirect_direction(region->image, x, y), least };
+    const struct growth growth = { texel_direction(region->image, x, y), least };
     region_clear(region);
     if (!region_try(region, &growth, x, y)) return false;
     for (size_t i = 0; i < region->count && !region->too_large; i++) {
@@ -226,8 +224,8 @@ static void sum_excess(const struct region *region, const double ring[3],
     for (size_t i = 0; i < region->count; i++) {
         const uint32_t texel = region->texels[i];
         const int x = texel_x(image, texel), y = texel_y(image, texel);
-        const double solid_angle = equirect_solid_angle(image, y);
-        const vec3s towards = equirect_direction(image, x, y);
+        const double solid_angle = texel_sr(image, y);
+        const vec3s towards = texel_direction(image, x, y);
         vec3s excess;
         for (int c = 0; c < 3; c++) {
             const double part = excess_of(image_at(image, x, y)[c], ring[c]);
@@ -256,7 +254,7 @@ static bool find_sun(struct region *region, uint32_t brightest, double ring[3],
                      struct environment_sun *out)
 {
     const struct image *image = region->image;
-    vec3s centre = equirect_direction(image, texel_x(image, brightest), texel_y(image, brightest));
+    vec3s centre = texel_direction(image, texel_x(image, brightest), texel_y(image, brightest));
     for (int pass = 0; pass < 2; pass++) {
         if (!find_ring(region, centre, ring)) return true;
         const vec3s mean = vec3_of((float)ring[0], (float)ring[1], (float)ring[2]);

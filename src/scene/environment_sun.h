@@ -18,12 +18,8 @@ struct environment_sun {
     float radius_rad;      // of the uniform disc with the same Σ L·Δω and Σ L²·Δω
 };
 
-// The image has 3 channels in cd/m²: columns grow from −180° towards +x (east), the middle is −z
-// (north), u = ½ + atan2(x, −z)/2π, v = acos(y)/π. The excess of a sun is subtracted: by colour,
+// The image (equirect.h) has 3 channels in cd/m². The excess of a sun is subtracted: by colour,
 // Σ L·Δω before is Σ L·Δω after plus the illuminance. Images without a sun, or with values that
 // are not finite, are not changed. Texels must be smaller than the sun: below about 70 columns none
 // is found. False: other channels, or no memory; the image is not changed.
 bool environment_take_sun(struct host *host, struct image *equirect, struct environment_sun *out);
-// The unit direction of a texel's centre, and its solid angle.
-vec3s equirect_direction(const struct image *equirect, int x, int y);
-double equirect_solid_angle(const struct image *equirect, int y);

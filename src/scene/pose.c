@@ -274,8 +274,17 @@ static vec3s node_direction(const struct scene_pose *pose, int node, vec3s direc
                                              : fallback;
 }
 
+int pose_light_count(const struct scene_pose *pose)
+{
+    struct world_light sun;
+    return pose->scene->light_count + environment_sun_light(&pose->scene->environment, &sun);
+}
+
 struct world_light pose_light(const struct scene_pose *pose, int light)
 {
+    struct world_light sun;
+    if (light == pose->scene->light_count && environment_sun_light(&pose->scene->environment, &sun))
+        return sun;
     const struct light *source = &pose->scene->lights[light];
     vec3s back = vec3_of(0, 0, -1);
     return (struct world_light){

@@ -51,6 +51,8 @@ struct world_light {
     float cos_inner, cos_outer;
     float range_m; // 0: unlimited
 };
+// Punctual lights of the scene, then the sun of its environment.
+int pose_light_count(const struct scene_pose *pose);
 struct world_light pose_light(const struct scene_pose *pose, int light);
 
 // A camera in world space.

@@ -2,6 +2,7 @@
 // Each function checks its argument before it changes the scene: a failure leaves it unchanged.
 #include "scene/scene.h"
 
+#include "scene/environment_map.h"
 #include "scene/limits.h"
 #include "scene/scene_check.h"
 
@@ -29,6 +30,7 @@ void scene_destroy(struct scene *scene)
 {
     if (!scene) return;
     struct host *host = scene->host;
+    environment_map_release(scene->environment.map);
     arena_finish(&scene->arena);
     host_free(host, scene);
 }

@@ -1,5 +1,6 @@
 #include "scene/scene_edit.h"
 
+#include "scene/environment_map.h"
 #include "scene/mesh_geometry.h"
 #include "scene/scene_check.h"
 
@@ -210,5 +211,17 @@ void scene_remove_lights(struct scene *scene)
 void scene_set_sky(struct scene *scene, vec3s radiance)
 {
     scene->environment.sky = radiance;
+    scene_changed(scene, &scene->revisions.lights);
+}
+
+void scene_set_environment_map(struct scene *scene, const struct environment_map *map,
+                               float strength, float rotation_rad)
+{
+    struct environment *environment = &scene->environment;
+    environment_map_retain(map);
+    environment_map_release(environment->map);
+    environment->map = map;
+    environment->strength = strength;
+    environment->rotation_rad = rotation_rad;
     scene_changed(scene, &scene->revisions.lights);
 }

@@ -31,3 +31,6 @@ int scene_add_placed_light(struct scene *scene, const struct placed_light *light
 bool scene_set_light(struct scene *scene, int light, const struct placed_light *values);
 void scene_remove_lights(struct scene *scene); // all punctual lights
 void scene_set_sky(struct scene *scene, vec3s radiance);
+// The scene keeps a reference to the map. NULL: no map.
+void scene_set_environment_map(struct scene *scene, const struct environment_map *map,
+                               float strength, float rotation_rad);

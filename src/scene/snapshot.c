@@ -1,5 +1,7 @@
 #include "scene/snapshot.h"
 
+#include "scene/environment_map.h"
+
 #include <string.h>
 
 // Vertices of a mesh, at a revision.
@@ -30,6 +32,8 @@ static void *copy_of(struct host *host, const void *from, size_t count, size_t s
 static bool take_arrays(struct scene_snapshot *s, const struct scene_pose *pose)
 {
     const struct scene old = s->scene;
+    environment_map_retain(pose->scene->environment.map);
+    environment_map_release(old.environment.map);
     s->scene = *pose->scene;
     s->scene.host = s->host;
     s->scene.images = old.images;
@@ -159,6 +163,7 @@ bool scene_snapshot_take(struct scene_snapshot *s, const struct scene_pose *pose
 void scene_snapshot_finish(struct scene_snapshot *s)
 {
     if (!s->host) return;
+    environment_map_release(s->scene.environment.map);
     free_deformed(s, s->scene.instance_count);
     for (int m = 0; m < s->vertices_count; m++) free_mesh(s, &s->vertices[m]);
     void *const arrays[] = { s->scene.images,  s->scene.materials, s->scene.meshes,

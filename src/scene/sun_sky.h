@@ -14,9 +14,12 @@
 struct sun_sky {
     float elevation_rad; // of the sun's centre above the horizon, −π/2…π/2
     float azimuth_rad;   // from −z (north) towards +x (east)
-    float turbidity; // 2 (very clear) … 10 (hazy); the caller clamps: beyond, the fit is invalid
+    float turbidity; // 2 (very clear) … 10 (hazy); the caller checks: beyond, the fit is invalid
     vec3s ground_albedo; // 0…1
 };
+
+#define SUN_SKY_MIN_TURBIDITY 2.0f
+#define SUN_SKY_MAX_TURBIDITY 10.0f
 
 enum { SUN_SKY_PEREZ_COUNT = 5 };
 

@@ -1,12 +1,12 @@
 // Light sampling: punctual lights as in light.glsl, emissive triangles by power with an alias
-// table.
-//
-// The sky is uniform: BSDF sampling alone finds it well, so that it has no sampler.
+// table. The map of the environment: environment_sample.c. A uniform sky has no sampler: BSDF
+// sampling alone finds it well.
 #include "trace/light_sample.h"
 
 #include "trace/surface.h"
 
 #include "core/sampling.h"
+#include "scene/environment_map.h"
 #include "scene/unlit.h"
 
 #include <math.h>
@@ -140,9 +140,11 @@ bool light_table_init(struct trace_scene *scene, const struct scene_pose *pose)
 {
     struct light_table *t = &scene->lights;
     t->environment = scene->scene->environment;
+    environment_map_retain(t->environment.map);
+    if (!environment_table_init(&t->environment_table, scene->host, &t->environment)) return false;
     const vec3s sky = environment_mean(&t->environment);
-    t->has_sky = sky.x > 0.0f || sky.y > 0.0f || sky.z > 0.0f;
-    int count = scene->scene->light_count;
+    t->has_sky = !environment_is_black(&t->environment);
+    int count = pose_light_count(pose);
     t->punctual = host_alloc(scene->host, (size_t)count, sizeof *t->punctual);
     if (!t->punctual) return false;
     for (int i = 0; i < count; i++) t->punctual[t->punctual_count++] = pose_light(pose, i);
@@ -153,6 +155,8 @@ bool light_table_init(struct trace_scene *scene, const struct scene_pose *pose)
 
 void light_table_finish(struct trace_scene *scene)
 {
+    environment_map_release(scene->lights.environment.map);
+    environment_table_finish(&scene->lights.environment_table, scene->host);
     host_free(scene->host, scene->lights.punctual);
     host_free(scene->host, scene->lights.emitters);
     scene->lights = (struct light_table){ 0 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/pose.h"
+#include "trace/environment_sample.h"
 
 struct trace_scene;
 
@@ -26,7 +27,8 @@ struct light_table {
     int punctual_count;
     struct emitter *emitters; // all triangles of emissive instances, mesh after mesh
     uint32_t emitter_count;
-    struct environment environment;
+    struct environment environment; // with a reference to its map
+    struct environment_table environment_table;
     bool has_sky, has_emitters; // has_emitters: of power above 0
     float flux;                 // of all emitters, lumen
     float unlit_white;          // scene/unlit.h, cd/m²

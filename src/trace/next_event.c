@@ -1,4 +1,4 @@
-// Next-event estimation of punctual lights and emitters.
+// Next-event estimation of punctual lights, emitters and the environment.
 #include "trace/next_event.h"
 
 #include "trace/light_sample.h"
@@ -82,4 +82,25 @@ struct arriving_light next_event_one_emitter(const struct trace_scene *scene,
     struct reflection r = bsdf_reflect(&b->bsdf, e.to_light);
     float other = guided_pdf(b, e.to_light, r.pdf);
     return light_arriving(r.f, e.radiance, cosine / e.pdf * power_heuristic(e.pdf, other));
+}
+
+struct arriving_light next_event_environment(const struct trace_scene *scene,
+                                             const struct surface *s, const struct guided_bsdf *b,
+                                             vec2s u, uint64_t *rays)
+{
+    const struct light_table *lights = &scene->lights;
+    struct arriving_light none = { 0 };
+    float pdf;
+    const vec3s to_light =
+        environment_sample(&lights->environment_table, &lights->environment, u, &pdf);
+    const float cosine = glms_vec3_dot(b->bsdf.normal, to_light);
+    if (!(pdf > 0.0f) || !(cosine > 0.0f) || !(glms_vec3_dot(s->geometric, to_light) > 0.0f))
+        return none;
+    struct ray ray = { surface_leave(s, to_light), to_light, 0.0f, INFINITY };
+    ++*rays;
+    if (embree_occluded(scene->embree, &ray)) return none;
+    struct reflection r = bsdf_reflect(&b->bsdf, to_light);
+    const float other = guided_pdf(b, to_light, r.pdf);
+    return light_arriving(r.f, environment_map_light(&lights->environment, to_light),
+                          cosine / pdf * power_heuristic(pdf, other));
 }

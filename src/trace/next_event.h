@@ -20,6 +20,11 @@ struct arriving_light next_event_one_emitter(const struct trace_scene *scene,
                                              const struct surface *surface,
                                              const struct guided_bsdf *bsdf, float choice, vec2s u,
                                              uint64_t *rays);
+// Estimate from a direction to the map of the environment, likewise.
+struct arriving_light next_event_environment(const struct trace_scene *scene,
+                                             const struct surface *surface,
+                                             const struct guided_bsdf *bsdf, vec2s u,
+                                             uint64_t *rays);
 // Radiance arriving from a direction with BSDF value f. scale: cosine over pdf, times the weight.
 static inline struct arriving_light light_arriving(vec3s f, vec3s radiance, float scale)
 {

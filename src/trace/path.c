@@ -1,6 +1,7 @@
 // A path tracer (Kajiya 1986, "The Rendering Equation") with next-event estimation of punctual
-// lights and emitters (next_event.c) and BSDF sampling, combined by the power heuristic (Veach
-// 1997, sec. 9.2.4). Russian roulette ends paths by their throughput (Arvo & Kirk 1990).
+// lights, emitters and the environment (next_event.c) and BSDF sampling, combined by the power
+// heuristic (Veach 1997, sec. 9.2.4). Russian roulette ends paths by their throughput (Arvo & Kirk
+// 1990).
 #include "trace/path.h"
 
 #include "trace/next_event.h"
@@ -45,10 +46,11 @@ struct path_start path_begin(const struct path_settings *settings, const struct 
                              const struct pixel_footprint *footprint, uint64_t *rays)
 {
     const struct environment *environment = &settings->scene->lights.environment;
-    struct path_start start = { .radiance = environment_radiance(environment, ray->direction) };
+    const vec3s to_viewer = glms_vec3_normalize(glms_vec3_negate(ray->direction));
+    struct path_start start = { .radiance = environment_radiance(environment,
+                                                                 glms_vec3_negate(to_viewer)) };
     start.hit = first_surface(settings, *ray, footprint, &start.surface, rays);
     if (start.hit) {
-        vec3s to_viewer = glms_vec3_normalize(glms_vec3_negate(ray->direction));
         start.bsdf = surface_bsdf(&start.surface, to_viewer, settings->diffuse_only);
         bsdf_reserve_diffuse_samples(&start.bsdf, DIFFUSE_SHARE);
         if (settings->direct && start.surface.unlit)
@@ -152,6 +154,13 @@ static vec2s random_pair(const struct path *p, enum dimension dimension)
     return rng_pair(rng_mix(p->key + number * SPLITMIX_INCREMENT));
 }
 
+// A dimension beside the others, whose numbers do not depend on whether there is a map.
+static vec2s random_direction_pair(const struct path *p)
+{
+    const uint64_t number = (UINT64_C(1) << 32) + (uint64_t)p->depth;
+    return rng_pair(rng_mix(p->key + number * SPLITMIX_INCREMENT));
+}
+
 // Light found at the end of the recorded step.
 static void record_light(struct path *p, vec3s light)
 {
@@ -173,6 +182,12 @@ static void sample_lights(struct path *p, float choice)
                                               random_pair(p, DIM_LATER).x, p->rays);
         record_next_event(p, light);
         add_reflected(p, light);
+    }
+    if (environment_table_has_light(&scene->lights.environment_table)) {
+        struct arriving_light g =
+            next_event_environment(scene, &p->surface, &p->bsdf, random_direction_pair(p), p->rays);
+        record_next_event(p, g.radiance);
+        add_arriving(p, &g);
     }
     if (!scene->lights.has_emitters) return;
     struct arriving_light g = next_event_one_emitter(scene, &p->surface, &p->bsdf, choice,
@@ -249,12 +264,25 @@ static void trace_step(struct path *p)
     if (p->has_hit) surface_prefetch(p->settings->scene, &p->hit);
 }
 
-// Radiance of the sky or emitter at the end of the step, weighted against next-event estimation.
+// Radiance of the environment at the end of the step; that of its map is weighted against
+// next-event estimation.
+static vec3s environment_at_end(const struct path *p)
+{
+    const struct light_table *lights = &p->settings->scene->lights;
+    const struct environment *environment = &lights->environment;
+    const vec3s direction = p->step.ray.direction;
+    if (!environment->map) return environment->sky;
+    const float other = environment_pdf(&lights->environment_table, environment, direction);
+    return glms_vec3_muladds(environment_map_light(environment, direction),
+                             power_heuristic(p->step.pdf, other), environment->sky);
+}
+
+// Radiance of the environment or emitter at the end of the step, weighted against next-event
+// estimation.
 static vec3s hit_radiance(const struct path *p)
 {
     const struct surface *end = &p->surface;
-    if (!p->has_hit)
-        return environment_radiance(&p->settings->scene->lights.environment, p->step.ray.direction);
+    if (!p->has_hit) return environment_at_end(p);
     if (is_black(end->emission)) return end->emission;
     float cosine = -glms_vec3_dot(end->geometric, p->step.ray.direction);
     float other =

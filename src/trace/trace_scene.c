@@ -241,7 +241,7 @@ static uint64_t add_light(uint64_t key, const struct world_light *l)
 
 static uint64_t key_of(const struct trace_scene *s)
 {
-    uint64_t key = add_floats(0, s->lights.environment.sky.raw, 3);
+    uint64_t key = environment_key(&s->lights.environment);
     for (uint32_t i = 0; i < s->mesh_count; i++) key = add_mesh(key, &s->meshes[i]);
     for (int i = 0; i < s->lights.punctual_count; i++) key = add_light(key, &s->lights.punctual[i]);
     return key;

@@ -60,7 +60,7 @@ static bool is_inside(const struct lpv_grid *grid, vec3s position)
 static void diagnose_lights(struct host *host, const char *technique, const struct lpv_grid *grid,
                             const struct scene_pose *pose)
 {
-    for (int i = 0; i < pose->scene->light_count; i++) {
+    for (int i = 0; i < pose_light_count(pose); i++) {
         const struct world_light light = pose_light(pose, i);
         if (light.type == LIGHT_SUN || is_inside(grid, light.position)) continue;
         host_log(host, LOG_INFO,
