@@ -43,6 +43,12 @@ static struct gpu_binding ggx_albedo_binding(const struct frame *f)
     return (struct gpu_binding){ "ggx_albedo", .image = f->common->ggx_albedo };
 }
 
+static struct gpu_binding environment_binding(const struct frame *f)
+{
+    const struct frame_environment *e = &f->common->environment;
+    return (struct gpu_binding){ "environment_map", .image = e->cube, .sampler = e->sampler };
+}
+
 static bool init_common(struct frame *f, const struct frame_options *options)
 {
     struct frame_common *c = f->common;
@@ -52,12 +58,14 @@ static bool init_common(struct frame *f, const struct frame_options *options)
                        (uint32_t)options->cascades) &&
            rsm_init(&c->rsm, f->host, f->gpu, (uint32_t)options->rsm_size) &&
            direct_init(&c->direct, f->gpu, (uint32_t)options->cascades) &&
-           composite_init(&c->composite, f->gpu) && create_ggx_albedo(f);
+           composite_init(&c->composite, f->gpu) && create_ggx_albedo(f) &&
+           frame_environment_init(&c->environment, f->host, f->gpu);
 }
 
 static void finish_common(struct frame *f)
 {
     struct frame_common *c = f->common;
+    frame_environment_finish(&c->environment);
     gpu_image_destroy(f->gpu, &c->ggx_albedo);
     display_finish(&c->display);
     composite_finish(&c->composite);
@@ -326,7 +334,9 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
     if (input->pose->scene != f->common->scene.scene)
         return host_fail(f->host, FAIL_ARGUMENT, "frame: the pose belongs to another scene");
     const bool is_first = f->view_number == 0;
-    if (is_first && !(scene_gpu_follow(&f->common->scene) && emitters_follow(&f->common->emitters)))
+    if (is_first &&
+        !(scene_gpu_follow(&f->common->scene) && emitters_follow(&f->common->emitters) &&
+          frame_environment_prepare(&f->common->environment, &input->environment)))
         return false;
     if (input->pick) f->pinned |= 1u << FRAME_ID; // only the first pick creates the image
     const uint32_t kept = kept_layers(f, input);
@@ -413,6 +423,7 @@ static void record_direct(struct frame *f, struct gpu_cmd *cmd)
         .lights = f->lights_binding,
         .shadow_faces = f->view.shadow_faces_binding,
         .ggx_albedo = ggx_albedo_binding(f),
+        .environment_map = environment_binding(f),
         .variant = f->has_blocks ? blocks : f->direct_variant,
         .width = f->width,
         .height = f->height,
@@ -479,6 +490,7 @@ static void record_light(struct frame *f, struct gpu_cmd *cmd, const struct fram
     view->keep = f->common->options.keep_maps;
     view->lights_binding = f->lights_binding;
     view->ggx_albedo_binding = ggx_albedo_binding(f);
+    view->environment_binding = environment_binding(f);
     view->lights = f->lights;
     view->light_count = f->light_count;
     view->pose = input->pose;
@@ -487,6 +499,7 @@ static void record_light(struct frame *f, struct gpu_cmd *cmd, const struct fram
     view->geometry_moved = f->common->scene.moved;
     view->lights_changed = f->lights_changed;
     view->light_hash = f->light_hash;
+    view->environment_key = f->common->views[0]->environment_key;
     if (indirect && indirect->update) indirect->update(indirect->user, cmd, view);
 }
 

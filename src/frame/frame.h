@@ -74,6 +74,7 @@ struct frame_view {
     struct gpu_binding constants_binding;    // named "frame_constants"
     struct gpu_binding lights_binding;       // named "frame_lights"
     struct gpu_binding ggx_albedo_binding;   // named "ggx_albedo": core/ggx_albedo.glsl
+    struct gpu_binding environment_binding;  // named "environment_map": environment_map.glsl
     const struct frame_light *lights;
     int light_count;
     // Virtual point lights on emissive surfaces (frame/emitters.h), with FRAME_NEEDS_EMITTERS only.
@@ -87,8 +88,9 @@ struct frame_view {
     struct world_camera camera;
     struct box3 bounds; // of the scene, world space; empty for an empty scene
     bool camera_cut, geometry_moved, lights_changed; // since the previous frame
-    // Of the lights, the sky and the filter of shadows, in the units of the frame: equal in frames
-    // whose direct light on still geometry is equal.
+    uint64_t environment_key; // of the environment in this moment (scene/environment.h)
+    // Of the lights, the environment and the filter of shadows, in the units of the frame: equal in
+    // frames whose direct light on still geometry is equal.
     uint64_t light_hash;
     gpu_image layers[FRAME_LAYER_COUNT];
     // Reflective shadow maps: arrays of rsm_size² with rsm_face_count layers in use.

@@ -7,6 +7,8 @@
 #include "core/hash.h"
 #include "scene/unlit.h"
 
+#include <string.h>
+
 static struct frame_light scaled_light(const struct world_light *light, float scale)
 {
     static const uint32_t types[] = {
@@ -59,7 +61,7 @@ static uint64_t light_hash(const struct frame *f)
 {
     const struct frame_constants *c = &f->constants;
     uint64_t hash = hash_bytes(&c->radiance_scale, sizeof c->radiance_scale, f->lights_hash);
-    hash = hash_bytes(&c->sky, sizeof c->sky, hash);
+    hash = hash_bytes(&f->environment_key, sizeof f->environment_key, hash);
     return hash_bytes(&f->common->options.shadow_filter, sizeof(int32_t), hash);
 }
 
@@ -93,6 +95,7 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
     c->emissive_scale = emissive_scale(c, input);
     c->previous_scale_ratio = f->index == 0 ? 1.0f : c->radiance_scale / previous_scale;
     c->sky = glms_vec3_scale(light.sky, c->radiance_scale);
+    frame_environment_constants(&f->common->environment, &input->environment, c);
     f->emitted_irradiance = glms_vec3_scale(
         emitters_irradiance(&f->common->emitters, input->pose->bounds), c->radiance_scale);
     c->width = f->width;
@@ -100,6 +103,7 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
     c->frame_index = (uint32_t)f->index;
     begin_lights(f, input, c->radiance_scale);
     c->light_count = (uint32_t)f->light_count;
+    f->environment_key = environment_key(&input->environment);
     f->light_hash = light_hash(f);
     shadow_place(&f->common->shadow, f->lights, f->light_count,
                  &(struct shadow_view){
@@ -126,6 +130,12 @@ void frame_begin_view(struct frame *f, struct gpu_cmd *cmd, const struct frame_i
     begin_camera(f, &own);
     const struct frame_constants *shared = &first->constants;
     c->sky = shared->sky;
+    c->uniform_sky = shared->uniform_sky;
+    c->environment_scale = shared->environment_scale;
+    c->environment_cos = shared->environment_cos;
+    c->environment_sin = shared->environment_sin;
+    c->environment_side = shared->environment_side;
+    memcpy(c->environment_sh, shared->environment_sh, sizeof c->environment_sh);
     c->radiance_scale = shared->radiance_scale;
     c->unlit_white = shared->unlit_white;
     c->light_count = shared->light_count;

@@ -24,15 +24,20 @@ struct frame_constants {
     mat4s view_from_world;
     vec3s camera_position; // world, m
     float near_m;
-    vec3s sky;                  // scaled radiance of the sky: environment.glsl
+    vec3s sky;                  // scaled radiance, mean of the environment: environment.glsl
     float radiance_scale;       // scaled = physical × radiance_scale
     float previous_scale_ratio; // radiance_scale / previous radiance_scale: a factor for history
     uint32_t width, height;
     uint32_t light_count;
     uint32_t frame_index;
-    float unlit_white;    // scaled radiance of a white unlit material (scene/unlit.h)
-    float emissive_scale; // of the emissive layer to scaled radiance; 1 unless it is a caller's
-    uint32_t padding[1];  // mat4s is aligned to 16 bytes in C
+    float unlit_white;       // scaled radiance of a white unlit material (scene/unlit.h)
+    float emissive_scale;    // of the emissive layer to scaled radiance; 1 unless it is a caller's
+    vec3s uniform_sky;       // scaled radiance that the environment has besides its map
+    float environment_scale; // of texels of the map to scaled radiance; 0: there is no map
+    float environment_cos, environment_sin; // of the map's rotation about +y
+    float environment_side;                 // texels of the map's finest level
+    vec3s environment_sh[9]; // coefficients of the environment's scaled radiance (core/sh.h)
+    uint32_t padding[3];     // mat4s is aligned to 16 bytes in C
 };
 
 // Storage block "frame_lights".
@@ -81,7 +86,7 @@ struct frame_probes {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct frame_constants) == 4 * 64 + 16 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct frame_constants) == 4 * 64 + 52 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_light) == 64, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_emitter) == 9 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_probes) == 8 * 4, "layout is shared with GLSL");

@@ -8,6 +8,7 @@
 #include "frame/composite/exposure.h"
 #include "frame/direct/direct.h"
 #include "frame/emitters.h"
+#include "frame/environment_map.h"
 #include "frame/gbuffer/gbuffer.h"
 #include "frame/rsm/rsm.h"
 #include "frame/scene_gpu.h"
@@ -36,7 +37,8 @@ struct frame_common {
     struct direct direct;
     struct composite composite;
     struct display display;
-    gpu_image ggx_albedo;                 // core/ggx_albedo.h
+    gpu_image ggx_albedo; // core/ggx_albedo.h
+    struct frame_environment environment;
     struct frame *views[FRAME_MAX_VIEWS]; // [0]: the first; NULL: there is none
 };
 
@@ -69,6 +71,7 @@ struct frame {
     struct frame_light lights[FRAME_MAX_LIGHTS];
     int light_count;
     uint64_t lights_hash, light_hash; // of the physical lights; of struct frame_view
+    uint64_t environment_key;
     struct world_camera camera;
     vec3s emitted_irradiance; // scaled lux
     float fallback_luminance; // scaled, see frame_fallback_luminance

@@ -127,7 +127,7 @@ void direct_record(const struct direct *d, struct gpu_cmd *cmd, const struct dir
                  { "dielectric_layer", .image = has_dielectric ? in->dielectric : in->material,
                    .sampler = d->nearest },
                  { "emissive_layer", .image = emissive_or_other(in), .sampler = d->nearest },
-                 in->ggx_albedo,
+                 in->ggx_albedo, in->environment_map,
                  { "shadow_blocks", .image = in->shadow_blocks, .sampler = d->nearest },
                  { "direct_list", .buffer = d->list }, { "direct_layer", .image = out },
                  { "direct_irradiance_layer", .image = irradiance }),

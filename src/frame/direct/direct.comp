@@ -11,7 +11,8 @@
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/direct/direct_shared.h"
-#include "frame/environment.glsl"
+#define ENVIRONMENT_MAP_BINDING 19
+#include "frame/environment_map.glsl"
 #include "frame/light.glsl"
 #include "frame/octahedral.glsl"
 #include "frame/shadow/shadow.glsl"
@@ -206,9 +207,11 @@ void main()
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
     float depth = texelFetch(depth_layer, pixel, 0).r;
-    vec3 radiance = environment_radiance(frame_view_ray(frame_uv(uvec2(pixel))));
+    vec3 radiance;
     float diffuse = 0.0;
-    if (depth > 0.0) {
+    if (depth <= 0.0) {
+        radiance = environment_radiance(frame_view_ray(frame_uv(uvec2(pixel))));
+    } else {
         radiance = HAS_EMISSION ? texelFetch(emissive_layer, pixel, 0).rgb * frame.emissive_scale
                                 : vec3(0.0);
         vec4 albedo = texelFetch(albedo_layer, pixel, 0);

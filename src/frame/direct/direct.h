@@ -29,7 +29,7 @@ struct direct_input {
     gpu_sampler shadow_sampler;
     int shadow_radius; // filter radius, texels
     // lights: FRAME_MAX_LIGHTS. shadow_sun: shadow_sun_view of the only sun.
-    struct gpu_binding constants, lights, shadow_faces, shadow_sun, ggx_albedo;
+    struct gpu_binding constants, lights, shadow_faces, shadow_sun, ggx_albedo, environment_map;
     uint32_t variant; // of direct_variant
     uint32_t width, height;
 };

@@ -38,6 +38,7 @@ static struct vct_cone_params params_of(const struct vct *vct, const struct fram
         .columns = columns_of((uint32_t)vct_cone_count(choice)),
         .texel_m = 2.0f * vct->clips[vct->clip_count - 1].grid.cell_m,
         .last_mip = vct_volume_mips(options) - 1,
+        .environment_sigma = 0.5f * atanf(0.5f * vct_cone_width(choice)),
         .pixel = 2.0f * tanf(0.5f * view->camera.vertical_fov_rad) / (float)view->height,
     };
 }
@@ -87,7 +88,7 @@ static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame
     gpu_dispatch(
         cmd, vct->cones[vct->small_emitters.count > 0],
         GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), p->clipmap, view->constants_binding,
-                 p->cones, p->depth, p->normal, p->cone_normal,
+                 view->environment_binding, p->cones, p->depth, p->normal, p->cone_normal,
                  { .name = "light", .image = vct->light, .sampler = vct->linear },
                  { .name = "red", .image = vct->pixels->traced[0] },
                  { .name = "green", .image = vct->pixels->traced[1] },

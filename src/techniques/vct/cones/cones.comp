@@ -15,7 +15,8 @@
 
 #define FRAME_CONSTANTS_BINDING 1
 #include "frame/frame.glsl"
-#include "frame/environment.glsl"
+#define ENVIRONMENT_MAP_BINDING 19
+#include "frame/environment_map.glsl"
 #include "frame/octahedral.glsl"
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
@@ -101,7 +102,8 @@ void main()
 #endif
                 traced = vct_cone(light, at, up, direction, set.offset, set.width_per_m,
                                   set.last_mip, start);
-            vec3 radiance = traced.rgb + (1.0 - traced.a) * environment_radiance(direction);
+            vec3 radiance =
+                traced.rgb + (1.0 - traced.a) * environment_lobe(direction, set.environment_sigma);
             if (VCT_OCCLUSION) radiance = 1.0 - traced.rgb;
             vct_add_cone(sum, radiance, set.cones[i].w * direction);
         }

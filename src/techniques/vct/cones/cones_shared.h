@@ -22,12 +22,14 @@ struct vct_cone_params {
     float gain;
     float texel_m; // of the finest level
     uint32_t last_mip;
-    float pixel;       // width of a pixel at distance 1
-    uint32_t columns;  // of the grid of strata, for rays
-    uint32_t new_sets; // whose records are not of this frame's voxels: 1 static, 2 dynamic
-    uint32_t in_turns; // bool, bounces: only parts whose turn it is gather
-    uint32_t frame;    // number of the frame
-    vec3s set_axes[3]; // axes of the strata of pixels, world space
+    float pixel;             // width of a pixel at distance 1
+    float environment_sigma; // of the lobes of the environment, rad (frame/environment_map.glsl)
+    uint32_t columns;        // of the grid of strata, for rays
+    uint32_t new_sets;       // whose records are not of this frame's voxels: 1 static, 2 dynamic
+    uint32_t in_turns;       // bool, bounces: only parts whose turn it is gather
+    uint32_t frame;          // number of the frame
+    vec3s set_axes[3];       // axes of the strata of pixels, world space
+    uint32_t padding[3];     // vec4s is aligned to 16 bytes in C
 };
 
 // Storage block "vct_small_emitters".
@@ -71,7 +73,7 @@ struct vct_history_params {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 24 * 4,
+_Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 28 * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_small_emitter) == (2 + 9 * VCT_EMITTER_POINTS) * 4,
                "layout is shared with GLSL");

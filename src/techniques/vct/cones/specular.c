@@ -22,7 +22,7 @@ void vct_record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct fram
         cmd, vct->specular,
         GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), vct_clipmap_binding(vct, cmd),
                  gpu_transient(cmd, "vct_specular", &params, sizeof params),
-                 FRAME_SURFACE_BINDINGS(view),
+                 FRAME_SURFACE_BINDINGS(view), view->environment_binding,
                  { .name = "irradiance", .image = vct_result(vct, view) },
                  { .name = "light", .image = vct->light, .sampler = vct->linear },
                  { .name = "specular", .image = view->layers[FRAME_SPECULAR] },

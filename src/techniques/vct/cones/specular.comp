@@ -19,7 +19,8 @@
 #define GGX_ALBEDO_BINDING      9
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
-#include "frame/environment.glsl"
+#define ENVIRONMENT_MAP_BINDING 19
+#include "frame/environment_map.glsl"
 #include "frame/octahedral.glsl"
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
@@ -66,7 +67,8 @@ vec3 reflected_radiance(ivec2 pixel, float z)
          to_viewer = normalize(frame.camera_position - position);
     vec2 roughness_metallic = texelFetch(material, pixel, 0).rg;
     vec3 at = (position - clips.origin_m) / set.texel_m;
-    float width = 2.0 * set.step_size * tan_half_angle(brdf_alpha(roughness_metallic.x));
+    float tan_half = tan_half_angle(brdf_alpha(roughness_metallic.x));
+    float width = 2.0 * set.step_size * tan_half;
     float rough = smoothstep(ROUGH_FROM, ROUGH, roughness_metallic.x);
     if (set.tan_half > 0.0) rough = 0.0;
     vec3 radiance = texelFetch(irradiance, pixel, 0).rgb / PI;
@@ -74,7 +76,7 @@ vec3 reflected_radiance(ivec2 pixel, float z)
         vec3 direction = mirror_direction(to_viewer, n);
         vec4 traced =
             vct_cone(light, at, n, direction, set.offset, width, set.last_mip, vct_start_at(at));
-        vec3 seen = traced.rgb + (1.0 - traced.a) * environment_radiance(direction);
+        vec3 seen = traced.rgb + (1.0 - traced.a) * environment_cone(direction, atan(tan_half));
         radiance = mix(set.gain * seen, radiance, rough);
     }
     vec4 lobe = BRDF_DEFAULT_DIELECTRIC;

@@ -9,7 +9,8 @@
 #define FRAME_CONSTANTS_BINDING 1
 #include "core/basis.glsl"
 #include "frame/frame.glsl"
-#include "frame/environment.glsl"
+#define ENVIRONMENT_MAP_BINDING 19
+#include "frame/environment_map.glsl"
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_constants.h"
 #include "techniques/vct/vct_grid.glsl"
@@ -56,7 +57,8 @@ vec3 small_emitters_at(vec3 at, vec3 normal)
 
 vec3 arriving(vec4 met, vec3 direction)
 {
-    return met.rgb * vct.light_scale + (1.0 - met.a) * environment_radiance(direction);
+    return met.rgb * vct.light_scale +
+           (1.0 - met.a) * environment_lobe(direction, set.environment_sigma);
 }
 
 #if !VCT_SVO

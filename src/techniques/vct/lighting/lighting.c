@@ -92,7 +92,7 @@ static void bounce(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd 
     gpu_dispatch_indirect(
         cmd, vct->bounce[vct->small_emitters.count > 0],
         GPU_BIND(vct_grid_binding(vct, clip, cmd), vct_lit_clipmap_binding(vct, cmd),
-                 view->constants_binding, cones,
+                 view->constants_binding, view->environment_binding, cones,
                  { .name = "light", .image = vct->light, .sampler = vct->linear },
                  { .name = "vct_parts", .image = set->parts },
                  { .name = "vct_part_counts", .buffer = set->part_counts },
@@ -209,8 +209,8 @@ static uint32_t new_sets(const struct vct *vct)
 bool vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const bool many = vct->options.bounces > 1;
-    const struct vct_bounce_inputs inputs = { view->constants->sky,
-                                              view->constants->radiance_scale };
+    const struct vct_bounce_inputs inputs = { view->environment_key,
+                                              (double)view->constants->radiance_scale };
     // The light volume of the previous frame cannot be used. Bricks change with their tree.
     const bool restart = !many || !vct->light_valid ||
                          (vct->revoxelized && vct_has_svo(&vct->options)) ||

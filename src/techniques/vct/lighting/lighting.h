@@ -6,8 +6,8 @@
 
 // What else the light that emitters and the sky cast on voxels depends on.
 struct vct_bounce_inputs {
-    vec3s sky; // scaled
-    float radiance_scale;
+    uint64_t environment; // frame_view.environment_key
+    double radiance_scale;
 };
 
 struct vct;
