@@ -1,5 +1,6 @@
-// Ambient term derived from the scene's flux: the same irradiance at every surface,
-//     E = (π·sky + Σ Φ ℓ̄ / (4V)) · strength.
+// Ambient term: irradiance of the environment at the normal n, without occlusion, and a term
+// derived from the scene's flux that is the same at every surface,
+//     E = (E_environment(n) + Σ Φ ℓ̄ / (4V)) · strength.
 // The sum is over virtual lights of flux Φ (lumen): texels of reflective shadow maps and points on
 // emissive surfaces. V is the volume of the scene's bounding box, ℓ̄ = ⅔ d the mean path length, d
 // the distance along the light's normal to the box (Cauchy's mean chord of a cube). README.md says
@@ -63,8 +64,7 @@ static struct ambient_push push_of(const struct ambient *ambient, const struct f
 {
     const uint32_t across = gpu_groups(view->rsm_size, AMBIENT_TEXELS);
     return (struct ambient_push){
-        .uniform_irradiance =
-            glms_vec3_add(glms_vec3_scale(view->constants->sky, GLM_PIf), view->emitted_irradiance),
+        .uniform_irradiance = view->emitted_irradiance,
         .per_path = per_path(view->bounds),
         .box_min = view->bounds.min,
         .box_max = view->bounds.max,
@@ -103,7 +103,9 @@ static void ambient_record(void *state, struct gpu_cmd *cmd, const struct frame_
     const struct gpu_binding result = { .name = "ambient_result", .buffer = ambient->result };
     gpu_scope_begin(cmd, "fill");
     gpu_dispatch(cmd, ambient->fill,
-                 GPU_BIND(result, { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                 GPU_BIND(result, view->constants_binding,
+                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                          { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                           { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
                  &push, sizeof push, gpu_groups(view->width, LOCAL),
                  gpu_groups(view->height, LOCAL), 1);

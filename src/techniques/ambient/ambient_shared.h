@@ -10,7 +10,7 @@
 
 // Push constants of all passes.
 struct ambient_push {
-    vec3s uniform_irradiance; // scaled: sky and emissive surfaces
+    vec3s uniform_irradiance; // scaled: of emissive surfaces
     float per_path; // 1/m³: irradiance per flux and path length; 0 if the bounds have no volume
     vec3s box_min, box_max; // bounds of the scene
     float strength;

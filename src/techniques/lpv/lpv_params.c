@@ -3,7 +3,6 @@
 
 #include <math.h>
 
-static const float Y0 = 0.282094792f; // √(1/4π)
 // Band 1 of a clamped cosine: without geometry no wall occludes the light behind its surface.
 static const float LAMBERT_1 = 2.0f / 3.0f;
 
@@ -35,6 +34,19 @@ static vec3s sky_flux(const struct lpv *lpv, const struct frame_view *view)
     const float cell_m = lpv->grid.cell_m;
     if (!lpv->options.sky) return vec3_of(0, 0, 0);
     return glms_vec3_scale(view->constants->sky, 4.0f * GLM_PIf * cell_m * cell_m / mean_path);
+}
+
+// Coefficients of the intensity of such a cell. Light travels away from where it comes from:
+// coefficients of odd bands change their sign.
+static void set_sky(const struct lpv *lpv, const struct frame_view *view, float grid_from_flux,
+                    struct lpv_params *params)
+{
+    const int count = lpv->options.bands == 3 ? 9 : 4;
+    const float intensity =
+        grid_from_flux * lpv->grid.cell_m * lpv->grid.cell_m / mean_path_of(&lpv->options);
+    for (int i = 0; lpv->options.sky && i < count; i++)
+        params->sky[i] = glms_vec3_scale(view->constants->environment_sh[i],
+                                         i >= 1 && i <= 3 ? -intensity : intensity);
 }
 
 static struct lpv_lights lights_of(const struct lpv *lpv, const struct frame_view *view)
@@ -85,7 +97,6 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
         .lobe_along = (float)lobe.along,
         .lobe_square = (float)lobe.square,
         .lobe_product = (float)lobe.product,
-        .sky = glms_vec3_scale(sky_flux(lpv, view), Y0 * scale->grid_from_flux),
         .fixed_from_flux = scale->fixed_from_flux,
         .grid_from_fixed = scale->grid_from_flux / scale->fixed_from_flux,
         .irradiance_scale =
@@ -123,7 +134,9 @@ bool lpv_prepare(struct lpv *finest, const struct frame_view *view)
     lights.sky_flux = sky_flux(coarsest, view);
     finest->lit = lpv_scale_of(&lights, &scale);
     if (!finest->lit) return false;
-    for (struct lpv *level = finest; level; level = level->coarser)
+    for (struct lpv *level = finest; level; level = level->coarser) {
         level->params = params_of(level, view, &scale);
+        set_sky(level, view, scale.grid_from_flux, &level->params);
+    }
     return true;
 }

@@ -191,12 +191,20 @@ void store(ivec3 cell, sums sum)
     lpv_store_slabs(after, cell, slabs);
 }
 
-// Outside of the grid: the sky, isotropic.
+// Outside of the grid: the environment.
+lpv_light environment_light()
+{
+    lpv_light light;
+    light.mean = lpv.sky[0];
+    light.along = vec3[3](lpv.sky[3], lpv.sky[1], lpv.sky[2]);
+    light.product = vec3[3](lpv.sky[5], lpv.sky[7], lpv.sky[4]);
+    lpv_set_squares(light, lpv.sky[6], lpv.sky[8]);
+    return light;
+}
+
 lpv_light light_of(ivec3 cell)
 {
-    if (lpv_inside(cell)) return lpv_fetch(before, cell);
-    vec3 none[3] = vec3[3](vec3(0.0), vec3(0.0), vec3(0.0));
-    return lpv_light(lpv.sky, none, none, none);
+    return lpv_inside(cell) ? lpv_fetch(before, cell) : environment_light();
 }
 
 void from_face(inout sums to, ivec3 cell, int axis, int side)

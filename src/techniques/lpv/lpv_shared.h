@@ -63,7 +63,8 @@ struct lpv_params {
     int32_t dim;                                                  // side of the images
     AG_STRUCT(lpv_reprojection) far_face, side_face, corner_face; // struct lpv_step
     float lobe_along, lobe_square, lobe_product;                  // struct lpv_lobe_weights
-    vec3s sky; // band 0 of a cell that only the sky lights, in the grid's unit; 0: no sky
+    // Intensity of a cell that only the environment lights, in the grid's unit; 0: none.
+    vec3s sky[9];
     float fixed_from_flux;    // integer per scaled lumen
     float grid_from_fixed;    // the grid's unit per integer
     float irradiance_scale;   // scaled lux per ∫ intensity · (cosine)₊ dω in the grid's unit
@@ -111,7 +112,7 @@ struct lpv_view_push {
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct lpv_reprojection) == 9 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct lpv_params) == 58 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_params) == 82 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_refine_push) == 7 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_apply_push) == 10 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_view_push) == 8, "layout is shared with GLSL");
