@@ -55,18 +55,19 @@ static const void *data_of(const struct baked *b, const char *name)
 static float *light_of(const struct baked *b, const struct chart_seams *seams,
                        const struct chart_seams *closed)
 {
-    enum { ENTRIES = CHART_SEAM_ENTRIES };
+    enum { ENTRIES = CHART_SEAM_ENTRIES, VALUES = LIGHT_MAP_SKY_VALUES };
     const float *sky = data_of(b, LIGHT_MAP_SKY), *weight = data_of(b, LIGHT_MAP_SEAM_WEIGHT);
     const uint32_t *texel = data_of(b, LIGHT_MAP_SEAM_TEXEL);
     const size_t all = 2 * (size_t)b->map.charts.width * b->map.charts.height;
     float *map = host_alloc(test_host(), all, sizeof *map);
     float *light = host_alloc(test_host(), seams->count, sizeof *light);
     for (uint32_t i = 0; i < seams->count; i++)
-        map[seams->places[i]] = sky[4 * chart_texel_of_place(&b->map.charts, seams->places[i])];
+        map[seams->places[i]] =
+            sky[VALUES * chart_texel_of_place(&b->map.charts, seams->places[i])];
     for (uint32_t i = 0; closed && i < closed->count; i++) {
         float sum = 0.0f;
         for (size_t k = 0; k < ENTRIES; k++)
-            sum += weight[i * ENTRIES + k] * sky[4 * (size_t)texel[i * ENTRIES + k]];
+            sum += weight[i * ENTRIES + k] * sky[VALUES * (size_t)texel[i * ENTRIES + k]];
         map[closed->places[i]] = sum;
     }
     for (uint32_t i = 0; i < seams->count; i++) light[i] = map[seams->places[i]];
@@ -84,7 +85,7 @@ static double mean_irradiance(const struct baked *b)
     double sum = 0.0, area = 0.0;
     for (uint32_t i = 0; i < b->map.texel_count; i++) {
         const double a = (double)chart_texel_of(&b->map.charts, i)->area_m2;
-        sum += a * (double)sky[4 * (size_t)i];
+        sum += a * (double)sky[LIGHT_MAP_SKY_VALUES * (size_t)i];
         area += a;
     }
     return sum / area;

@@ -2,6 +2,7 @@
 
 #include "core/rng.h"
 #include "core/sampling.h"
+#include "core/sh.h"
 #include "trace/surface.h"
 #include "trace/texels/inside.h"
 
@@ -54,9 +55,11 @@ static void add_emission(struct texel_lights *out, const struct texel_receiver *
 static void add_sky(struct texel_lights *out, const struct texel_receiver *r, vec3s direction,
                     float cosine)
 {
-    const float rays = (float)r->rays;
-    out->sky.irradiance += GLM_PIf / rays;
-    for (int k = 0; k < 3; k++) out->sky.vector[k] += GLM_PIf / rays * direction.raw[k] / cosine;
+    const float weight = GLM_PIf / (float)r->rays; // of a cosine-distributed ray, sr
+    float basis[TEXEL_SKY_SH];
+    sh_eval(3, direction, basis);
+    for (int i = 0; i < TEXEL_SKY_SH; i++) out->sky.irradiance[i] += weight * basis[i];
+    for (int k = 0; k < 3; k++) out->sky.vector[k] += weight * direction.raw[k] / cosine;
 }
 
 // Directions along the surface have no finite weight in the vector irradiance.

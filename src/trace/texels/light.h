@@ -43,8 +43,20 @@ struct texel_light {
     float irradiance, vector[3];
 };
 
+// Transfer of light from where no ray meets a surface: irradiance for each coefficient of the
+// environment's radiance (core/sh.h), and the vector irradiance of radiance 1.
+enum { TEXEL_SKY_SH = 9 };
+struct texel_sky {
+    float irradiance[TEXEL_SKY_SH], vector[3];
+};
+// Irradiance of a uniform radiance of 1: its coefficient is √(4π).
+static inline float texel_sky_irradiance(const struct texel_sky *sky)
+{
+    return sky->irradiance[0] * 3.5449077018110318f;
+}
+
 struct texel_lights {
-    struct texel_light sky;        // of radiance 1
+    struct texel_sky sky;
     struct texel_light emitted[3]; // by colour, lux
 };
 

@@ -16,9 +16,12 @@
 #define TEXEL_NORMAL      1 // unit, of its side
 #define TEXEL_SHADING     2 // mean shading normal, of length 1 or less
 #define TEXEL_REFLECTANCE 3 // by colour
-#define TEXEL_SKY_LIGHT   4 // irradiance along the normal, vector irradiance: radiance 1
-#define TEXEL_EMITTED_0   5 // the same by colour, lux
-#define TEXEL_PARTS       8
+// Irradiance along the normal for each of 9 coefficients of the environment's radiance, then the
+// vector irradiance of radiance 1.
+#define TEXEL_SKY_0     4
+#define TEXEL_SKY_PARTS 3
+#define TEXEL_EMITTED_0 7 // by colour: irradiance along the normal, vector irradiance, lux
+#define TEXEL_PARTS     10
 
 // First-order light besides that of punctual lights and the sky.
 struct light_map_sources {

@@ -12,7 +12,7 @@ bool light_map_find_texels(struct light_map_texels *out, struct host *host,
     *out = (struct light_map_texels){ .charts = charts };
 #define EXPECT(...) TENSORS_EXPECT(host, bake, __VA_ARGS__)
     return (out->reflectance = EXPECT(LIGHT_MAP_ALBEDO, TENSOR_F32, n, 4)) &&
-           (out->sky = EXPECT(LIGHT_MAP_SKY, TENSOR_F32, n, 4)) &&
+           (out->sky = EXPECT(LIGHT_MAP_SKY, TENSOR_F32, n, LIGHT_MAP_SKY_VALUES)) &&
            (out->emitted = EXPECT(LIGHT_MAP_EMITTED, TENSOR_F32, n, 3, 4)) &&
            (out->point = EXPECT(LIGHT_MAP_POINT, TENSOR_F32, n, 4));
 #undef EXPECT
@@ -52,7 +52,9 @@ static void fill_texel(const struct light_map_texels *t, uint32_t i, vec4s *part
     parts[TEXEL_SHADING * count + i] = vec4_of(mean_shading(t, i), 0.0f);
     parts[TEXEL_REFLECTANCE * count + i] =
         vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), 0.0f);
-    memcpy(&parts[TEXEL_SKY_LIGHT * count + i], t->sky + 4 * (size_t)i, sizeof *parts);
+    for (size_t k = 0; k < TEXEL_SKY_PARTS; k++)
+        memcpy(&parts[(TEXEL_SKY_0 + k) * count + i],
+               t->sky + LIGHT_MAP_SKY_VALUES * (size_t)i + 4 * k, sizeof *parts);
     for (size_t k = 0; k < 3; k++)
         memcpy(&parts[(TEXEL_EMITTED_0 + k) * count + i], t->emitted + 12 * (size_t)i + 4 * k,
                sizeof *parts);

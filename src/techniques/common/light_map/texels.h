@@ -10,8 +10,10 @@ struct light_map_texels {
     const struct charts *charts;
     const float *point;       // [texels][4] position (m), share that is not inside geometry
     const float *reflectance; // [texels][4], the last the mean cosine of shading normals
-    const float *sky;         // [texels][4] irradiance and vector irradiance: radiance 1
-    const float *emitted;     // [texels][3][4] the same by colour, lux
+    // [texels][LIGHT_MAP_SKY_VALUES] irradiance for each coefficient of the environment's
+    // radiance, and vector irradiance of radiance 1.
+    const float *sky;
+    const float *emitted; // [texels][3][4] the same by colour, lux
     // [texels][3] mean shading normals, which receive first-order light. NULL: the surface's
     // normal, times the mean cosine.
     const float *shading;

@@ -48,11 +48,14 @@ void main()
     uint texels = edge * edge * edge;
     if (i >= texels) return;
     uint probe = source_table[block * texels + i], source = probe / (p * p * p);
-    vec3 coefficients[9];
+    vec3 coefficients[9], environment[9];
+    float sky[9]; // of radiance 1
+    for (int k = 0; k < 9; k++) sky[k] = PI * unbounced_table[probe].sky[k];
+    environment_through(sky, environment);
     for (int k = 0; k < 9; k++) {
         vec3 unbounced =
             unbounced_table[probe].emitted[k] * (frame.radiance_scale * level.emitters) +
-            PI * unbounced_table[probe].sky[k] * environment_mean();
+            environment[k];
         coefficients[k] = clamp(turned(probe, source, k) + unbounced, -HALF_MAX, HALF_MAX);
     }
     ivec3 at = ivec3(block % level.brick_columns, block / level.brick_columns, 0) * int(edge) +

@@ -21,7 +21,9 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i >= level.texels) return;
     mrt_texel texel = texel_table[i];
-    vec3 unbounced = unbounced_of(texel.emitted, vec3(texel.sky)), irradiance = unbounced;
+    vec3 unbounced =
+             unbounced_of(texel.emitted, vec3(texel.sky), environment_irradiance_at(texel.normal)),
+         irradiance = unbounced;
     add_lights(texel, irradiance);
     unbounced_table[i] = unbounced;
     direct_table[i] = texel.albedo * irradiance;

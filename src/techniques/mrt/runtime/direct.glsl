@@ -19,10 +19,10 @@ layout(set = 0, binding = 5, scalar) readonly buffer frame_lights
     frame_light frame_light_table[];
 };
 
-// Light of emissive surfaces and the sky.
-vec3 unbounced_of(vec3 emitted, vec3 sky)
+// Light of emissive surfaces, and a share of that of the environment.
+vec3 unbounced_of(vec3 emitted, vec3 share, vec3 environment)
 {
-    return emitted * (frame.radiance_scale * level.emitters) + PI * sky * environment_mean();
+    return emitted * (frame.radiance_scale * level.emitters) + share * environment;
 }
 
 void add_lights(mrt_texel texel, inout vec3 irradiance)

@@ -24,10 +24,13 @@ void main()
     int i = int(gl_GlobalInvocationID.x);
     ivec3 at = probes_cell(level.outdoors, i);
     if (at.z >= level.outdoors.count_z) return;
-    vec3 coefficients[9];
+    vec3 coefficients[9], environment[9];
+    float sky[9]; // of radiance 1
+    for (int k = 0; k < 9; k++) sky[k] = PI * probe_table[i].light.sky[k];
+    environment_through(sky, environment);
     for (int k = 0; k < 9; k++) {
         vec3 light = probe_table[i].light.emitted[k] * (frame.radiance_scale * level.emitters) +
-                     PI * probe_table[i].light.sky[k] * environment_mean();
+                     environment[k];
         coefficients[k] = clamp(light, -HALF_MAX, HALF_MAX);
     }
     for (int s = 0; s < FRAME_PROBE_SLABS; s++) {

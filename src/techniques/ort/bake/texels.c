@@ -145,7 +145,7 @@ bool ort_add_texels(struct bake_plan *plan, const struct ort_scene *scene)
     const struct bake_output out[OUT_COUNT] = {
         { ORT_HITS, TENSOR_U32, 2, { texels, rays }, BAKE_ROWS, LAST_WAVE },
         { LIGHT_MAP_ALBEDO, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
-        { LIGHT_MAP_SKY, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_SKY, TENSOR_F32, 2, { texels, LIGHT_MAP_SKY_VALUES }, BAKE_ROWS, BAKE_SAVED },
         { LIGHT_MAP_EMITTED, TENSOR_F32, 3, { texels, 3, 4 }, BAKE_ROWS, BAKE_SAVED },
         { LIGHT_MAP_POINT, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { ORT_NORMALS, TENSOR_F32, 2, { texels, 3 }, BAKE_ROWS, BAKE_SAVED },

@@ -66,10 +66,12 @@ void main()
         add_entry(word);
     }
     for (int c = 0; c < 9; c++) coefficients[c] *= sh9_cosine_weight(c);
+    vec3 environment[9];
+    environment_through(probes[i].sky, environment);
     for (int c = 0; c < 9; c++) {
         vec3 emitted = vec3(probes[i].emitted[3 * c], probes[i].emitted[3 * c + 1],
                             probes[i].emitted[3 * c + 2]);
-        coefficients[c] += probes[i].sky[c] * environment_mean() + emitters * emitted;
+        coefficients[c] += environment[c] + emitters * emitted;
         coefficients[c] = clamp(coefficients[c], -HALF_MAX, HALF_MAX);
     }
     ivec3 at = probes_cell(push.grid, int(i));

@@ -44,7 +44,7 @@ void main()
     for (uint i = lane; i < 3u * group.faces; i += MRT_LOCAL) {
         mrt_gpu_clutter_face face = face_table[group.first_face + i / 3u];
         uint c = i % 3u, first = face.first_sample;
-        float sum = unbounced_of(face.emitted, face.sky)[c];
+        float sum = unbounced_of(face.emitted, face.sky, PI * environment_mean())[c];
         for (uint k = first; k < first + face.samples; k++) sum += radiosity[3u * k + c];
         c_direct[(face.clutter * 3u + c) * 4u * QUADS_R + face.slot] = sum;
     }
