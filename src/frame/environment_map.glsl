@@ -1,9 +1,14 @@
 // Radiance from outside of the scene, by direction, in the units of the frame. C twin:
-// scene/environment.h. Binding number: ENVIRONMENT_MAP_BINDING.
+// scene/environment.h. Binding number: ENVIRONMENT_MAP_BINDING. ENVIRONMENT_HAS_MAP, true unless
+// defined before: a specialization constant, since software drivers run both sides of a branch.
 #ifndef AG_FRAME_ENVIRONMENT_MAP_GLSL
 #define AG_FRAME_ENVIRONMENT_MAP_GLSL
 
 #include "frame/frame.glsl"
+
+#ifndef ENVIRONMENT_HAS_MAP
+#define ENVIRONMENT_HAS_MAP true
+#endif
 
 layout(set = 0, binding = ENVIRONMENT_MAP_BINDING) uniform samplerCube environment_map;
 
@@ -11,7 +16,7 @@ layout(set = 0, binding = ENVIRONMENT_MAP_BINDING) uniform samplerCube environme
 // axes, rad; 0: the radiance from the direction.
 vec3 environment_lobe(vec3 direction, float sigma)
 {
-    if (frame.environment_scale == 0.0) return frame.uniform_sky;
+    if (!ENVIRONMENT_HAS_MAP || frame.environment_scale == 0.0) return frame.uniform_sky;
     vec3 at =
         vec3(frame.environment_cos * direction.x - frame.environment_sin * direction.z, direction.y,
              frame.environment_sin * direction.x + frame.environment_cos * direction.z);

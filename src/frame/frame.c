@@ -264,6 +264,7 @@ static uint32_t direct_features(const struct frame *f)
     return (f->layers[FRAME_DIELECTRIC].id ? DIRECT_DIELECTRIC : 0) |
            (f->common->options.shadow_filter > 0 ? DIRECT_FILTERED : 0) |
            (emission ? DIRECT_EMISSION : 0) |
+           (f->common->environment.map ? DIRECT_MAP : 0) |
            (f->needs & FRAME_NEEDS_DIRECT_IRRADIANCE ? DIRECT_IRRADIANCE : 0);
 }
 

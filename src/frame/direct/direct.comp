@@ -11,7 +11,9 @@
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/direct/direct_shared.h"
+layout(constant_id = DIRECT_CONSTANT_MAP) const bool HAS_MAP = false;
 #define ENVIRONMENT_MAP_BINDING 19
+#define ENVIRONMENT_HAS_MAP     HAS_MAP
 #include "frame/environment_map.glsl"
 #include "frame/light.glsl"
 #include "frame/octahedral.glsl"

@@ -12,8 +12,9 @@
 #define DIRECT_CONSTANT_FILTERED   4 // shadow_radius > 0
 #define DIRECT_CONSTANT_BLOCKS     5 // one sun whose maps have blocks
 #define DIRECT_CONSTANT_EMISSION   6 // there are emissive or unlit surfaces
-#define DIRECT_CONSTANT_BITS       7
-#define DIRECT_CONSTANT_CASCADES   7 // per sun
+#define DIRECT_CONSTANT_MAP        7 // the environment has a map
+#define DIRECT_CONSTANT_BITS       8
+#define DIRECT_CONSTANT_CASCADES   8 // per sun
 
 struct direct_push {
     int32_t shadow_radius; // filter radius, texels

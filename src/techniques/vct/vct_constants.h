@@ -13,5 +13,6 @@
 #define VCT_CONSTANT_BLOCK          15 // lighting/bounce.comp: texels along a block's side
 #define VCT_CONSTANT_HAS_LIGHTS     16 // lighting/inject.comp
 #define VCT_CONSTANT_RAYS           17 // rays/ray.glsl: rays instead of cones
+#define VCT_CONSTANT_MAP            18 // frame/environment_map.glsl: the environment has a map
 
 #endif

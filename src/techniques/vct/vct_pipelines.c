@@ -25,7 +25,10 @@ enum {
     LARGE_BLOCKS = 1 << 10,
     HALF_RESOLUTION = 1 << 11,
     RAYS = 1 << 12,
+    MAP = 1 << 13,
 };
+// Of the variants of passes for light that most scenes lack.
+enum { MORE_LIGHT = SMALL_EMITTERS | MAP };
 enum { SCENE_BASE_COLOR_MAP = 0, SCENE_MASKED = 4 }; // constant_id's of frame/scene.glsl
 
 static void fill_constants(const struct vct_options *options, struct gpu_constant *out)
@@ -44,6 +47,7 @@ static void fill_constants(const struct vct_options *options, struct gpu_constan
         { VCT_CONSTANT_BLOCK, 4 },
         { VCT_CONSTANT_EACH_PIXEL, false },
         { VCT_CONSTANT_RAYS, true },
+        { VCT_CONSTANT_MAP, true },
     };
     memcpy(out, of_bit, sizeof of_bit);
 }
@@ -102,14 +106,15 @@ static void add_light(const struct vct_options *o, struct gpu_objects *out)
                    rays = vct_has_rays(o) ? (uint32_t)RAYS : 0,
                    pixel_rays = vct_pixels_have_rays(o) ? (uint32_t)RAYS : 0;
 #define STORED(name) (svo ? &shader_vct_##name##_svo_comp : &shader_vct_##name##_mips_comp)
-    const struct gpu_shader *bounce = lit ? STORED(lighting_bounce) : NULL, *cones = STORED(cones);
+    const struct gpu_shader *bounce = lit ? STORED(lighting_bounce) : NULL, *cones = STORED(cones),
+                            *specular = lit ? STORED(cones_specular) : NULL;
     GPU_ADD(out, 0, PIPELINE(bounce[0], "bounce", bounce, directions | CLIPS | rays),
-            PIPELINE(bounce[1], "bounce_small_emitters", bounce,
-                     directions | CLIPS | rays | SMALL_EMITTERS),
+            PIPELINE(bounce[1], "bounce_more", bounce, directions | CLIPS | rays | MORE_LIGHT),
             PIPELINE(cones[0], "cones", cones, kind | CLIPS | pixel_rays),
-            PIPELINE(cones[1], "cones_small_emitters", lit ? cones : NULL,
-                     directions | CLIPS | pixel_rays | SMALL_EMITTERS),
-            PIPELINE(specular, "specular", lit ? STORED(cones_specular) : NULL, directions | CLIPS),
+            PIPELINE(cones[1], "cones_more", lit ? cones : NULL,
+                     directions | CLIPS | pixel_rays | MORE_LIGHT),
+            PIPELINE(specular[0], "specular", specular, directions | CLIPS),
+            PIPELINE(specular[1], "specular_more", specular, directions | CLIPS | MAP),
             PIPELINE(debug, "debug", STORED(debug), CLIPS));
     if (svo)
         add_octree(directions, out);

@@ -58,10 +58,10 @@ struct vct {
     struct vct_voxelize_pipelines add[VCT_DRAW_KINDS];
     gpu_pipeline count, scan, list, zero, surfaces;
     gpu_pipeline texel_lists, planes, blocks, parts, mip;
-    gpu_pipeline fill[2];             // without and with moving voxels
-    gpu_pipeline inject[2];           // without and with lights
-    gpu_pipeline cones[2], bounce[2]; // without and with small emitters
-    gpu_pipeline edges, gather_rows, gather_columns, blur, upsample, accumulate, specular, debug;
+    gpu_pipeline fill[2];                          // without and with moving voxels
+    gpu_pipeline inject[2];                        // without and with lights
+    gpu_pipeline cones[2], bounce[2], specular[2]; // by vct_has_more_light
+    gpu_pipeline edges, gather_rows, gather_columns, blur, upsample, accumulate, debug;
 
     // Voxels and the light volume.
     struct vct_small_emitters small_emitters;
@@ -100,3 +100,10 @@ struct vct {
     int moving_draws;          // in the previous frame
     struct vct_overflow overflow;
 };
+
+// Whether the frame has small emitters or a map of the environment: variants of passes handle both.
+static inline bool vct_has_more_light(const struct vct *vct, const struct frame_view *view)
+{
+    return !vct->options.occlusion &&
+           (vct->small_emitters.count > 0 || view->constants->environment_scale > 0.0f);
+}

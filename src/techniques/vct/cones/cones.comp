@@ -15,7 +15,10 @@
 
 #define FRAME_CONSTANTS_BINDING 1
 #include "frame/frame.glsl"
+#include "techniques/vct/vct_constants.h"
+layout(constant_id = VCT_CONSTANT_MAP) const bool VCT_HAS_MAP = false;
 #define ENVIRONMENT_MAP_BINDING 19
+#define ENVIRONMENT_HAS_MAP     VCT_HAS_MAP
 #include "frame/environment_map.glsl"
 #include "frame/octahedral.glsl"
 #define VCT_GRID_BINDING 0

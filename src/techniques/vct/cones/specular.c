@@ -19,7 +19,7 @@ void vct_record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct fram
     };
     gpu_scope_begin(cmd, "specular");
     gpu_dispatch(
-        cmd, vct->specular,
+        cmd, vct->specular[vct_has_more_light(vct, view)],
         GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), vct_clipmap_binding(vct, cmd),
                  gpu_transient(cmd, "vct_specular", &params, sizeof params),
                  FRAME_SURFACE_BINDINGS(view), view->environment_binding,

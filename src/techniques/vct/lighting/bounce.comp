@@ -9,10 +9,12 @@
 #define FRAME_CONSTANTS_BINDING 1
 #include "core/basis.glsl"
 #include "frame/frame.glsl"
+#include "techniques/vct/vct_constants.h"
+layout(constant_id = VCT_CONSTANT_MAP) const bool VCT_HAS_MAP = false;
 #define ENVIRONMENT_MAP_BINDING 19
+#define ENVIRONMENT_HAS_MAP     VCT_HAS_MAP
 #include "frame/environment_map.glsl"
 #define VCT_GRID_BINDING 0
-#include "techniques/vct/vct_constants.h"
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/cones/cones_shared.h"
 #include "techniques/vct/lighting/part.glsl"
