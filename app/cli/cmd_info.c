@@ -19,6 +19,8 @@ struct facts {
     struct ag_scene_info info;
     struct defaults defaults;
     struct ag_bake_estimate light_map; // of radiosity at its defaults; 0 texels: none
+    bool has_environment;
+    struct ag_environment_info environment;
 };
 
 // Charts are made of the geometry alone: nothing is baked.
@@ -112,6 +114,18 @@ static json_t *defaults_json(const struct defaults *d)
     return json_pack("{s:o, s:o}", "light", light, "camera", camera);
 }
 
+static json_t *environment_json(const struct facts *facts)
+{
+    const struct ag_environment_info *e = &facts->environment;
+    if (!facts->has_environment) return json_null();
+    json_t *sun = e->has_sun
+                      ? json_pack("{s:o, s:o, s:f}", "to_sun", json_floats(e->to_sun, 3), "lux",
+                                  json_floats(e->sun_lux, 3), "radius_deg", degrees(e->sun_radius))
+                      : json_null();
+    return json_pack("{s:i, s:i, s:o, s:o, s:o}", "width", e->width, "height", e->height, "mean",
+                     json_floats(e->mean, 3), "sun", sun, "sh_error", json_floats(e->sh_error, 4));
+}
+
 // An empty scene has no bounds.
 static json_t *bounds_json(const struct ag_scene_info *info)
 {
@@ -133,7 +147,7 @@ static enum status info_json(struct session *session, const struct facts *facts)
     const struct ag_scene_info *i = &facts->info;
     return json_print(json_pack(
         "{s:o, s:I, s:I, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:b, s:I, s:o, s:o, s:o, s:o, s:o, "
-        "s:o}",
+        "s:o, s:o}",
         "scene", json_text(facts->scene), "triangles", (json_int_t)i->triangles, "vertices",
         (json_int_t)i->vertices, "meshes", i->meshes, "instances", i->instances, "images",
         i->images, "skins", i->skins, "nodes", i->nodes, "bounds", bounds_json(i), "sky",
@@ -142,7 +156,8 @@ static enum status info_json(struct session *session, const struct facts *facts)
         list_of(session, i->cameras, camera_json), "materials",
         list_of(session, i->materials, material_json), "animations",
         list_of(session, i->animations, animation_json), "defaults",
-        defaults_json(&facts->defaults), "light_map", light_map_json(&facts->light_map)));
+        defaults_json(&facts->defaults), "light_map", light_map_json(&facts->light_map),
+        "environment", environment_json(facts)));
 }
 
 // ---- text
@@ -176,6 +191,26 @@ static void print_light_map(const struct ag_bake_estimate *map)
     if (map->charts == 0) return;
     printf("light map    %.0f texels in %u charts, %.3g per metre (%s)\n", map->texels,
            (unsigned)map->charts, (double)map->texels_per_m, LIGHT_MAP_GI);
+}
+
+// Strength 1 and rotation 0.
+static void print_environment(const struct facts *facts)
+{
+    const struct ag_environment_info *e = &facts->environment;
+    if (!facts->has_environment) return;
+    printf("environment  %d x %d", e->width, e->height);
+    print_vector(", mean radiance ", e->mean, " cd/m2\n");
+    if (e->has_sun) {
+        print_vector("  sun        ", e->sun_lux, " lx");
+        print_vector(" from ", e->to_sun, "");
+        printf(", radius %.3g degrees\n", degrees(e->sun_radius));
+    } else {
+        printf("  sun        none\n");
+    }
+    printf("  spherical harmonics of order 2 to 5 lack %.3g, %.3g, %.3g, %.3g of the radiance "
+           "(RMS)\n",
+           (double)e->sh_error[0], (double)e->sh_error[1], (double)e->sh_error[2],
+           (double)e->sh_error[3]);
 }
 
 static void print_lights(struct session *session, int count)
@@ -256,11 +291,24 @@ static void info_text(struct session *session, const struct facts *facts)
     printf("%s\n", printable(facts->scene).s);
     print_counts(&facts->info);
     print_light_map(&facts->light_map);
+    print_environment(facts);
     print_lights(session, facts->info.lights);
     print_cameras(session, facts->info.cameras);
     print_animations(session, facts->info.animations);
     print_materials(session, facts->info.materials);
     print_defaults(&facts->defaults);
+}
+
+static enum status find_environment(struct session *session, struct facts *facts)
+{
+    struct ag_environment *environment = NULL;
+    if (!session->arguments->environment) return DONE;
+    enum ag_result result =
+        environment_make(session->context, &session->arguments->environment_value, &environment);
+    if (result == AG_OK) result = ag_environment_get_info(environment, &facts->environment);
+    ag_environment_destroy(environment);
+    facts->has_environment = result == AG_OK;
+    return result == AG_OK ? DONE : fail_library(session->context, result);
 }
 
 static enum status info(const struct arguments *arguments)
@@ -276,6 +324,7 @@ static enum status info(const struct arguments *arguments)
             ag_scene_get_info(session.scene, session.animation, arguments->time_s, &facts.info);
         if (result != AG_OK) status = fail_library(session.context, result);
     }
+    if (status == DONE) status = find_environment(&session, &facts);
     if (status == DONE) find_light_map(&session, arguments->time_s, &facts.light_map);
     if (status == DONE && arguments->json)
         status = info_json(&session, &facts);

@@ -88,13 +88,18 @@ bool value_environment(const char *text, struct environment_value *out, const ch
     return !colon || set_members(out, colon + 1, why);
 }
 
+enum ag_result environment_make(struct ag_context *context, const struct environment_value *value,
+                                struct ag_environment **out)
+{
+    return value->path[0] ? ag_environment_load(context, value->path, out)
+                          : ag_environment_from_sun_sky(context, &value->sky, out);
+}
+
 enum ag_result environment_apply(struct ag_context *context, struct ag_scene *scene,
                                  const struct environment_value *value)
 {
     struct ag_environment *environment = NULL;
-    enum ag_result result = value->path[0]
-                                ? ag_environment_load(context, value->path, &environment)
-                                : ag_environment_from_sun_sky(context, &value->sky, &environment);
+    enum ag_result result = environment_make(context, value, &environment);
     if (result == AG_OK) result = ag_scene_set_environment(scene, environment, &value->use);
     ag_environment_destroy(environment);
     return result;

@@ -13,6 +13,9 @@ struct environment_value {
 };
 // False for wrong values, with *why.
 bool value_environment(const char *text, struct environment_value *out, const char **why);
+// Reads the image or makes the sky.
+enum ag_result environment_make(struct ag_context *context, const struct environment_value *value,
+                                struct ag_environment **out);
 // Makes the environment the scene's.
 enum ag_result environment_apply(struct ag_context *context, struct ag_scene *scene,
                                  const struct environment_value *value);
