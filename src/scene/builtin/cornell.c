@@ -156,8 +156,10 @@ static bool build_shell(struct scene *scene, const struct cornell_options *optio
     shape_begin(&builder, scene);
     shell_face(&builder, corner, FLOOR);
     if (shape_emit(&builder, "floor", white) < 0) return false;
-    ceiling(&builder, corner, options->light == CORNELL_QUAD);
-    if (shape_emit(&builder, "ceiling", white) < 0) return false;
+    if (options->ceiling) {
+        ceiling(&builder, corner, options->light == CORNELL_QUAD);
+        if (shape_emit(&builder, "ceiling", white) < 0) return false;
+    }
     shell_face(&builder, corner, BACK);
     if (shape_emit(&builder, "back wall", white) < 0) return false;
     shell_face(&builder, corner, GREEN_WALL);
@@ -207,7 +209,11 @@ static bool build_cornell(struct scene *scene, const void *options)
     // Published: position (278, 273, -800), focal length 35 mm, sensor height 25 mm.
     float vertical_fov_rad = 2.0f * atanf(0.5f * 0.025f / 0.035f);
     const struct cornell_options *o = options;
-    return build_shell(scene, o) && build_light(scene, o) &&
+    if (!o->ceiling && o->walls > 0.0f)
+        return host_fail(scene->host, FAIL_ARGUMENT,
+                         "scene %s: without a ceiling walls have no thickness; use walls=0",
+                         scene->name);
+    return build_shell(scene, o) && (!o->ceiling || build_light(scene, o)) &&
            cornell_add_objects(scene, o->objects) && (!o->bowl || cornell_add_bowl(scene)) &&
            builtin_camera(scene, "main", from_data(278, 273, -800), from_data(278, 273, 0),
                           vertical_fov_rad);
