@@ -495,6 +495,7 @@ static void record_light(struct frame *f, struct gpu_cmd *cmd, const struct fram
     view->lights = f->lights;
     view->light_count = f->light_count;
     view->pose = input->pose;
+    view->environment = &input->environment;
     view->scene = &f->common->scene;
     view->bounds = input->pose->bounds;
     view->geometry_moved = f->common->scene.moved;

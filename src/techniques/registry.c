@@ -8,6 +8,7 @@
 #include "techniques/mrt/mrt.h"
 #include "techniques/none/none.h"
 #include "techniques/ort/ort.h"
+#include "techniques/prt/prt.h"
 #include "techniques/radiosity/radiosity.h"
 #include "techniques/ssao/ssao.h"
 #include "techniques/vct/vct.h"
@@ -16,9 +17,10 @@
 #include <string.h>
 
 const struct technique *const techniques[] = {
-    &technique_none, &technique_ambient, &technique_lpv,       &technique_holpv, &technique_vct,
-    &technique_mrt,  &technique_drt,     &technique_radiosity, &technique_ort,   &technique_dnrt,
-    &technique_vo,   &technique_ssao,    &technique_hbao,      &technique_vctao, NULL
+    &technique_none, &technique_ambient, &technique_lpv,   &technique_holpv,
+    &technique_vct,  &technique_mrt,     &technique_drt,   &technique_radiosity,
+    &technique_ort,  &technique_prt,     &technique_dnrt,  &technique_vo,
+    &technique_ssao, &technique_hbao,    &technique_vctao, NULL
 };
 
 const struct technique_debug_view *technique_find_view(const struct technique *technique,

@@ -138,7 +138,8 @@ TEST(technique_of_a_light_map_is_the_one_of_the_stack_that_has_it)
     const char *name = NULL;
     for (int i = 0; ag_technique_get(i, &info); i++)
         CHECK(info.has_lightmap ==
-              (strcmp(info.name, "radiosity") == 0 || strcmp(info.name, "ort") == 0));
+              (strcmp(info.name, "radiosity") == 0 || strcmp(info.name, "ort") == 0 ||
+               strcmp(info.name, "prt") == 0));
     assert_int_equal(ag_lightmap_technique(context, "radiosity:texels=4096+vo", &name), AG_OK);
     CHECK_STRING(name, "radiosity");
     assert_int_equal(ag_lightmap_technique(context, "vct", &name), AG_OK);

@@ -31,6 +31,7 @@ static const struct {
     { "radiosity", "", 0 },
     { "ort", "", 0 },
     { "ort", ",order=slices,parts=3,precision=byte", 0 },
+    { "prt", "", 0 },
     { "dnrt", "", 0 },
 };
 

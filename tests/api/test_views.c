@@ -23,6 +23,7 @@ static const struct {
     { "drt", "", 0 },
     { "radiosity", "", 0 },
     { "ort", "", 0 },
+    { "prt", "", 0 },
     { "dnrt", "", 0.005 }, // on lpv
     { "vct", ":resolution=32", 0 },
     { "vct", ":resolution=32,specular=true,temporal=true", 0 },
@@ -149,11 +150,11 @@ TEST(each_view_equals_that_of_a_renderer_alone_to_the_bit)
 static bool is_of_view(const char *pass)
 {
     static const char *const of_views[] = {
-        "gbuffer",         "direct",     "exposure",    "composite",   "none.clear",
-        "ambient.fill",    "lpv.apply",  "holpv.apply", "mrt.apply",   "drt.apply",
-        "radiosity.apply", "ort.apply",  "ort.replace", "dnrt.apply",  "vct.edges",
-        "vct.cones",       "vct.gather", "vct.blur",    "vctao.edges", "vctao.cones",
-        "vctao.gather",    "vctao.blur"
+        "gbuffer",         "direct",       "exposure",    "composite", "none.clear",
+        "ambient.fill",    "lpv.apply",    "holpv.apply", "mrt.apply", "drt.apply",
+        "radiosity.apply", "ort.apply",    "ort.replace", "prt.apply", "dnrt.apply",
+        "vct.edges",       "vct.cones",    "vct.gather",  "vct.blur",  "vctao.edges",
+        "vctao.cones",     "vctao.gather", "vctao.blur"
     };
     for (size_t i = 0; i < sizeof of_views / sizeof *of_views; i++)
         if (strcmp(pass, of_views[i]) == 0) return true;

@@ -133,10 +133,11 @@ TEST_GPU(emission_and_punctual_light_are_the_sum_of_each_alone)
         float *emitter = irradiance(gpu, additive(t), 1, 0),
               *point = irradiance(gpu, additive(t), 0, 1);
         const double most = (double)largest(both);
+        const bool distant = t == technique_find("prt"); // it has no light of points
         int compared = 0;
         for (int i = 0; i < FLOATS; i++) {
             // Linearity does not hold where one of them is clamped at zero.
-            if (emitter[i] == 0.0f || point[i] == 0.0f || both[i] == 0.0f) continue;
+            if (emitter[i] == 0.0f || (point[i] == 0.0f && !distant) || both[i] == 0.0f) continue;
             compared++;
             CHECK_NEAR((double)both[i], (double)emitter[i] + (double)point[i], 2e-3 * most);
         }

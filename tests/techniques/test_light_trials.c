@@ -8,6 +8,7 @@
 // Small bakes; the default has four times the texels.
 #define RADIOSITY "radiosity:texels=16384"
 #define ORT       "ort:texels=4096,offsets=400,coordinates=charts"
+#define PRT       "prt:texels=16384,rays=256"
 #define ORT_FINE  "ort:texels=16384,offsets=400,coordinates=charts"
 // Both have one dictionary. FINE, also of ort: a patch of 0.5 m is seen by texels of less than
 // that.
@@ -47,6 +48,7 @@ TEST_GPU(a_closed_room_beside_a_sunlit_one_stays_dark)
                   { "vct:trace=rays,resolution=128", 0.005 },
                   { RADIOSITY, 0.005 },
                   { ORT, 0.005 },
+                  { PRT, 0.005 },
                   { MRT, 1e-4 },
                   { DRT, 1e-4 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
@@ -82,7 +84,8 @@ TEST_GPU(an_open_plane_in_the_sun_gets_nothing_of_its_own_light)
     } cases[] = { { "lpv", 0.01 },  { "holpv", 0.015 },
                   { "vct", 0.01 },  { "vct:resolution=128", 0.01 },
                   { RADIOSITY, 0 }, { ORT, 0 },
-                  { MRT, 0.15 },    { DRT, 0 } };
+                  { PRT, 0 },       { MRT, 0.15 },
+                  { DRT, 0 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         CHECK(fmax(own_light(gpu, cases[i].gi, false), own_light(gpu, cases[i].gi, true)) <=
               cases[i].most);
@@ -119,8 +122,8 @@ TEST_GPU(an_open_plane_gets_the_whole_sky)
         struct sky_range bound;
     } cases[] = { { "lpv", { 0.77, 1.02, 0.1 } },   { "holpv", { 0.83, 1.13, 0.035 } },
                   { "vct", { 0.98, 1.01, 0.02 } },  { RADIOSITY, { 0.999, 1.001, 0.001 } },
-                  { ORT, { 0.999, 1.001, 0.001 } }, { MRT, { 0.44, 1.57, 0.34 } },
-                  { DRT, { 0.999, 1.001, 0.001 } } };
+                  { ORT, { 0.999, 1.001, 0.001 } }, { PRT, { 0.999, 1.001, 0.001 } },
+                  { MRT, { 0.44, 1.57, 0.34 } },    { DRT, { 0.999, 1.001, 0.001 } } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const struct sky_range got = sky_share(gpu, cases[i].gi), bound = cases[i].bound;
         CHECK(got.least >= bound.least && got.most <= bound.most);
@@ -181,8 +184,8 @@ TEST_GPU(many_small_emitters_give_their_light)
 {
     static const struct share_case cases[] = { { "lpv", 0.8 },  { "holpv", 0.9 },
                                                { "vct", 0.85 }, { RADIOSITY, 0.95 },
-                                               { ORT, 0.95 },   { MRT, 0.97 },
-                                               { DRT, 0.97 } };
+                                               { ORT, 0.95 },   { PRT, 0.95 },
+                                               { MRT, 0.97 },   { DRT, 0.97 } };
     check_shares(gpu, trial_strips, "strips", -1, cases, sizeof cases / sizeof cases[0], 1.6);
 }
 
@@ -198,6 +201,7 @@ TEST_GPU(nothing_is_black_beside_a_panel)
                   { "vct", 0.1 },
                   { RADIOSITY, 0.1 },
                   { ORT, 0.1 },
+                  { PRT, 0.1 },
                   { MRT, 0.6 },
                   { DRT, 0.6 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

@@ -24,7 +24,7 @@ ag_test(techniques/probe_trials USES techniques LIBRARIES ag_test_light_trial ag
 ag_shaders_for(test_techniques_probe_trials techniques_test_shaders.h ${CMAKE_CURRENT_LIST_DIR}/shaders)
 ag_test(techniques/radiosity_probes USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
 
-foreach(technique lpv vct mrt dnrt ort)
+foreach(technique lpv vct mrt dnrt ort prt)
   include(${CMAKE_CURRENT_LIST_DIR}/${technique}/tests.cmake)
 endforeach()
 

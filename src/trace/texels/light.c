@@ -65,8 +65,8 @@ static void add_sky(struct texel_lights *out, const struct texel_receiver *r, ve
 // Directions along the surface have no finite weight in the vector irradiance.
 static const float LEAST_COSINE = 1e-3f;
 
-void texel_gather_light(const struct trace_scene *scene, const struct texel_receiver *r,
-                        texel_visit visit, void *user, struct texel_lights *out)
+void texel_gather(const struct trace_scene *scene, const struct texel_receiver *r,
+                  const struct texel_visitor *visitor, struct texel_lights *out)
 {
     vec3s tangent, bitangent;
     *out = (struct texel_lights){ 0 };
@@ -80,12 +80,13 @@ void texel_gather_light(const struct trace_scene *scene, const struct texel_rece
         struct ray_hit hit;
         if (!embree_closest(scene->embree, &ray, NULL, false, &hit)) {
             add_sky(out, r, ray.direction, local.z);
+            if (visitor->miss) visitor->miss(visitor->user, ray.direction);
             continue;
         }
         const struct texel_seen seen = texel_seen_at(scene, &ray, &hit);
         if (glms_vec3_max(seen.emission) > 0.0f)
             add_emission(out, r, ray.direction, seen.emission, seen.pdf);
-        if (visit) visit(user, &ray, &hit, local, &seen);
+        if (visitor->hit) visitor->hit(visitor->user, &ray, &hit, local, &seen);
     }
     for (uint32_t k = 0; k < (uint32_t)r->light_samples; k++) {
         struct emitter_sample s;
@@ -93,4 +94,10 @@ void texel_gather_light(const struct trace_scene *scene, const struct texel_rece
                                  r->seed, &s))
             add_emission(out, r, s.to_light, s.radiance, s.pdf);
     }
+}
+
+void texel_gather_light(const struct trace_scene *scene, const struct texel_receiver *receiver,
+                        texel_visit visit, void *user, struct texel_lights *out)
+{
+    texel_gather(scene, receiver, &(struct texel_visitor){ .hit = visit, .user = user }, out);
 }

@@ -66,3 +66,11 @@ typedef void (*texel_visit)(void *user, const struct ray *ray, const struct ray_
                             vec3s local, const struct texel_seen *seen);
 void texel_gather_light(const struct trace_scene *scene, const struct texel_receiver *receiver,
                         texel_visit visit, void *user, struct texel_lights *out);
+// The same, and `miss` for each ray that reaches the sky. Either may be NULL.
+struct texel_visitor {
+    texel_visit hit;
+    void (*miss)(void *user, vec3s direction);
+    void *user;
+};
+void texel_gather(const struct trace_scene *scene, const struct texel_receiver *receiver,
+                  const struct texel_visitor *visitor, struct texel_lights *out);

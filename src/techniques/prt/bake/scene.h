@@ -1,0 +1,36 @@
+// Data that all tasks of a bake share.
+#pragma once
+
+#include "scene/statics.h"
+#include "techniques/prt/prt_tensors.h"
+#include "trace/texels/close.h"
+#include "trace/texels/texels.h"
+
+struct prt_scene {
+    struct host *host;
+    const struct scene_pose *pose;
+    struct prt_options options;
+    struct charts charts; // made while planning
+    // Between prepare and finish:
+    struct scene_statics statics;
+    struct trace_scene *trace;
+    struct seam_closing closing;
+};
+
+// Tensors that live during the bake alone.
+#define PRT_HITS "texels/hit"    // U32 [texels][rays]: texel that a ray meets; CHART_NONE: none
+#define PRT_ROWS "texels/direct" // F32 [texels][coefficients]: transfer without bounces
+
+// Irradiance of unit coefficients by a whole sky: the clamped cosine around the normal.
+static inline void prt_unshadowed(int bands, vec3s normal, float *out)
+{
+    float zonal[SH_MAX_BANDS];
+    zh_clamped_cosine(bands, zonal);
+    zh_rotate(bands, zonal, normal, out);
+}
+
+// ---- texels.c: rays of all texels
+bool prt_add_texels(struct bake_plan *plan, const struct prt_scene *scene);
+
+// ---- transfer.c: transfer vectors with bounces, by coefficient
+bool prt_add_transfer(struct bake_plan *plan, const struct prt_scene *scene);

@@ -1,0 +1,31 @@
+// Bounces as a Neumann series (Sloan, Kautz & Snyder 2002, section 5.3). Of irradiance T_0
+// surfaces of reflectance ρ send the radiance ρ T_0 / π, and
+//
+//     T_{b+1}(x) = ∫ (1 − V(ω)) ρ(y)/π T_b(y) (n·ω)₊ dω,
+//
+// where y is the texel that the ray of x along ω meets. Rays of density (n·ω)/π make it the mean of
+// ρ T_b over them, 0 where they meet the sky.
+#pragma once
+
+#include "techniques/prt/bake/scene.h"
+
+struct prt_series {
+    const struct prt_scene *scene;
+    struct host *host;
+    uint32_t texels;
+    const float *albedo, *point; // of the first stage
+    const uint32_t *hits;
+    uint32_t *shown; // [texels] in whose place hidden ones send
+    vec4s *term;     // [texels] by colour: at first T_0, then of the newest bounce
+    vec4s *sent;     // [texels] reflected of it
+    vec4s *sum;      // [texels] of all bounces
+};
+
+// False: a tensor is missing, or no memory. prt_series_finish accepts zero.
+bool prt_series_init(struct prt_series *out, const struct bake_task *task);
+void prt_series_finish(struct prt_series *series);
+// From `term` to `sum`, until the largest value of a bounce is below `least`. False: cancelled.
+bool prt_series_sum(struct prt_series *series, const struct bake_task *task, float least);
+// Additions for each ray and bounce, in rays that take as long, measured.
+#define PRT_SERIES_COST (1.0 / 250)
+enum { PRT_SERIES_BYTES = 64 }; // of memory for each texel

@@ -1,0 +1,76 @@
+// The stages of a bake, in the order of their waves: texels · transfer, seams.
+#include "techniques/prt/bake/scene.h"
+
+#include "bake/plan.h"
+#include "bake/scene_key.h"
+
+static bool prepare(void *argument, struct host *host)
+{
+    struct prt_scene *scene = argument;
+    if (!scene_statics_init(&scene->statics, host, scene->pose)) return false;
+    scene->host = host;
+    scene->trace = trace_scene_create(host, &scene->statics.pose);
+    return scene->trace && seam_closing_init(&scene->closing, host, &scene->charts, scene->trace);
+}
+
+static void finish(void *argument)
+{
+    struct prt_scene *scene = argument;
+    seam_closing_finish(&scene->closing);
+    trace_scene_destroy(scene->trace);
+    scene_statics_finish(&scene->statics);
+    scene->trace = NULL;
+}
+
+static void destroy(void *argument)
+{
+    struct prt_scene *scene = argument;
+    charts_finish(&scene->charts);
+}
+
+// The trace scene has Embree's hierarchy, corners and facets of each triangle.
+static size_t prepared_bytes(const struct charts *charts)
+{
+    enum { OF_TRIANGLE = 240, OF_TEXEL = 60 };
+    return charts->triangle_count * (sizeof *charts->triangles + OF_TRIANGLE) +
+           (size_t)charts->width * charts->height * sizeof *charts->owner +
+           (size_t)charts->side_texel_count * OF_TEXEL;
+}
+
+static bool plan_at(struct bake_plan *plan, const void *job, float texels_per_m)
+{
+    const struct prt_scene *scene = job;
+    struct prt_options options = scene->options;
+    options.density = texels_per_m;
+    return prt_bake(plan, &(struct technique_bake){ .pose = scene->pose, .options = &options });
+}
+
+static bool add_stages(struct bake_plan *plan, struct prt_scene *scene,
+                       const struct scene_pose *statics)
+{
+    struct charts *charts = &scene->charts;
+    bake_plan_depends(plan, scene_key(statics, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS));
+    if (!prt_charts(statics, &scene->options, bake_plan_host(plan), charts)) return false;
+    bake_plan_set_job(plan, &(struct bake_job){ .job = scene,
+                                                .prepare = prepare,
+                                                .finish = finish,
+                                                .destroy = destroy,
+                                                .bytes = prepared_bytes(charts) });
+    bake_plan_set_light_map(
+        plan, (struct bake_light_map){ charts->count, charts->texels_per_m, plan_at });
+    return prt_add_texels(plan, scene) && prt_add_transfer(plan, scene) &&
+           light_map_add_seams(plan, &scene->closing, charts);
+}
+
+bool prt_bake(struct bake_plan *plan, const struct technique_bake *how)
+{
+    struct prt_scene *scene = bake_plan_alloc(plan, 1, sizeof *scene);
+    struct scene_statics statics;
+    if (!scene) return false;
+    scene->pose = how->pose;
+    scene->options = *(const struct prt_options *)how->options;
+    if (!scene_statics_init(&statics, bake_plan_host(plan), how->pose)) return false;
+    const bool ok = add_stages(plan, scene, &statics.pose);
+    scene_statics_finish(&statics);
+    return ok;
+}

@@ -1,0 +1,177 @@
+// Precomputed radiance transfer (Sloan, Kautz & Snyder 2002): diffuse transfer at the texels of a
+// light map. The bake has for each texel the vector T by which its irradiance follows from the
+// coefficients L of distant light, E = Σ T_i L_i, with shadows and all bounces in it; a frame in
+// which the light has changed computes that sum at all texels.
+#include "techniques/prt/prt.h"
+
+#include "techniques/prt/prt_state.h"
+#include "scene/scene.h"
+#include "scene/statics.h"
+
+#include "technique_shaders.h"
+
+#include <stddef.h>
+
+#define OPTION(...) OPTION_ROW(struct prt_options, __VA_ARGS__)
+static const struct option_row option_rows[] = {
+#include "techniques/prt/prt_options.def"
+};
+#undef OPTION
+
+static const struct technique_preset presets[] = {
+    { "low", "texels=16384,coefficients=4,rays=256" },
+    { "medium", "" },
+    { "high", "texels=131072,coefficients=16,rays=1024" },
+    { NULL, NULL },
+};
+
+static bool create(void *state, const struct technique_create *how)
+{
+    struct prt *s = state;
+    s->host = how->host;
+    s->gpu = how->gpu;
+    light_map_init(&s->light_map, s->host, s->gpu, &s->charts);
+    if (!how->pose) return true;
+    struct scene_statics statics;
+    const bool ok = scene_statics_init(&statics, s->host, how->pose) &&
+                    light_map_followed_init(&s->followed, s->host, "prt", how->pose, &statics) &&
+                    prt_charts(&statics.pose, &s->options, s->host, &s->charts);
+    scene_statics_finish(&statics);
+    return ok;
+}
+
+#define TABLE(thing)    offsetof(struct prt, tables.thing)
+#define PIPELINE(thing) #thing, offsetof(struct prt, pipelines.thing)
+
+static void list(const struct prt *s, struct gpu_objects *out)
+{
+    const size_t texels = s->charts.side_texel_count;
+    const uint32_t first = LIGHT_MAP_CONSTANTS;
+    gpu_objects_clear(out);
+    light_map_list(&s->light_map, offsetof(struct prt, light_map), s->options.specular, out);
+    if (texels == 0) return;
+    out->constants[first] =
+        (struct gpu_constant){ PRT_COEFFICIENTS, prt_coefficients(&s->options) };
+    out->constants[first + 1] =
+        (struct gpu_constant){ PRT_BOUNCES, s->options.transfer == PRT_INTERREFLECTED };
+    GPU_ADD(
+        out, 0,
+        { GPU_IMAGE, "texel_light", TABLE(texel_light),
+          .image = light_map_table(GPU_RG32U, 3 * texels) },
+        { GPU_PIPELINE, PIPELINE(light), .shader = &shader_prt_light_comp, .consts = 3u << first });
+    // Created by prt_upload.
+    GPU_ADD(out, 0, { GPU_IMAGE, .member = TABLE(texels) },
+            { GPU_IMAGE, .member = TABLE(transfer) });
+}
+
+static bool load(void *state, const struct tensors *bake)
+{
+    struct prt *s = state;
+    struct gpu_objects objects;
+    if (!prt_upload(s, bake)) return false;
+    list(s, &objects);
+    return gpu_objects_create(s->gpu, &objects, 0, s);
+}
+
+static void invalidate(void *state, uint32_t changes)
+{
+    struct prt *s = state;
+    if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL | CHANGED_OPTIONS)) s->kept.known = false;
+}
+
+// Light of points and spots is not distant.
+static void warn_of_lights(struct prt *s, const struct scene *scene)
+{
+    int near = 0;
+    for (int i = 0; i < scene->light_count; i++) near += scene->lights[i].type != LIGHT_SUN;
+    if (near == 0 || s->said_lights) return;
+    s->said_lights = true;
+    host_log(s->host, LOG_WARNING,
+             "prt: %d point and spot lights give direct light alone: only distant light is "
+             "transferred; radiosity and ort bounce theirs",
+             near);
+}
+
+static void follow(void *state, const struct scene_pose *pose, bool wait)
+{
+    struct prt *s = state;
+    (void)wait;
+    warn_of_lights(s, pose->scene);
+    light_map_followed_update(&s->followed, pose);
+    s->light_map.surfaces.moves = s->followed.any_moved ? s->followed.places.moves : NULL;
+}
+
+static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct prt *s = state;
+    struct prt_light light;
+    kept_update(&s->kept, view, view->light_hash);
+    if (s->charts.side_texel_count == 0 || (view->keep && s->kept.same)) return;
+    prt_project(&s->options, view, &light);
+    prt_record_update(s, cmd, view, &light);
+}
+
+static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct prt *s = state;
+    if (view->layers[FRAME_ID].id && s->charts.side_texel_count > 0)
+        light_map_record_apply(&s->light_map, cmd, view);
+}
+
+static gpu_image light_map(void *state)
+{
+    const struct prt *s = state;
+    return s->light_map.images[s->light_map.shown];
+}
+
+static void destroy(void *state)
+{
+    struct prt *s = state;
+    if (!s->host) return;
+    struct gpu_objects objects;
+    list(s, &objects);
+    gpu_objects_destroy(s->gpu, &objects, s);
+    light_map_followed_finish(&s->followed);
+    charts_finish(&s->charts);
+}
+
+static uint32_t more_needs(const void *options)
+{
+    const struct prt_options *o = options;
+    return o->specular ? FRAME_WRITES_SPECULAR : 0;
+}
+
+static uint64_t memory_estimate(const void *options)
+{
+    const struct prt_options *o = options;
+    const uint64_t texels = (uint64_t)o->texels;
+    return light_map_table_bytes(TEXEL_PARTS * texels, 16) +
+           light_map_table_bytes(prt_row_entries(o) * texels, 8) +
+           light_map_table_bytes(3 * texels, 8) + light_map_bytes(texels);
+}
+
+const struct technique technique_prt = {
+    .name = "prt",
+    .title = "precomputed radiance transfer of static geometry under distant light",
+    .paper = "Sloan, Kautz & Snyder 2002, Precomputed Radiance Transfer for Real-Time Rendering "
+             "in Dynamic, Low-Frequency Lighting Environments",
+    .role = ROLE_SOURCE,
+    .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION,
+    .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID,
+    .bake_version = 1,
+    .options = OPTION_TABLE(struct prt_options, option_rows, NULL),
+    .presets = presets,
+    .state_size = sizeof(struct prt),
+    .more_needs = more_needs,
+    .bake = prt_bake,
+    .create = create,
+    .load = load,
+    .invalidate = invalidate,
+    .follow = follow,
+    .update = update,
+    .record = record,
+    .charts = prt_charts,
+    .light_map = light_map,
+    .destroy = destroy,
+    .memory_estimate = memory_estimate,
+};

@@ -1,0 +1,36 @@
+// The passes of a frame whose light has changed.
+#include "techniques/prt/prt_state.h"
+
+static void record_light(struct prt *s, struct gpu_cmd *cmd, const struct frame_view *view,
+                         const struct prt_light *light)
+{
+    const struct prt_light_push push = { s->charts.side_texel_count,
+                                         s->options.emitters ? view->constants->radiance_scale
+                                                             : 0.0f };
+    gpu_scope_begin(cmd, "light");
+    gpu_dispatch(cmd, s->pipelines.light,
+                 GPU_BIND(gpu_transient(cmd, "prt_light_block", light, sizeof *light),
+                          { .name = "prt_texels", .image = s->tables.texels },
+                          { .name = "prt_transfer", .image = s->tables.transfer },
+                          { .name = "texel_light", .image = s->tables.texel_light }),
+                 &push, sizeof push, gpu_groups(push.texels, PRT_LOCAL), 1, 1);
+    gpu_scope_end(cmd);
+}
+
+static void record_map(struct prt *s, struct gpu_cmd *cmd)
+{
+    struct light_map *map = &s->light_map;
+    gpu_scope_begin(cmd, "light_map");
+    light_map_record_show(map, cmd, s->tables.texel_light, 0, map->owner_count);
+    if (s->options.seams && map->seam_count > 0)
+        light_map_record_seams(map, cmd, s->tables.texel_light, 0, map->seam_count);
+    map->shown = 1 - map->shown;
+    gpu_scope_end(cmd);
+}
+
+void prt_record_update(struct prt *s, struct gpu_cmd *cmd, const struct frame_view *view,
+                       const struct prt_light *light)
+{
+    record_light(s, cmd, view, light);
+    record_map(s, cmd);
+}

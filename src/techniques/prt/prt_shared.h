@@ -1,0 +1,37 @@
+// Data of the passes. Scalar layout.
+#ifndef AG_PRT_SHARED_H
+#define AG_PRT_SHARED_H
+
+#include "core/shared.h"
+
+#define PRT_MAX_COEFFICIENTS 25
+
+#define PRT_LOCAL 64 // workgroup size over texels
+
+// Transfer vectors in a table of four halves: entry k · rows + row. With bounces it has
+// coefficient k: the direct one and by colour the bounced ones; without, the direct coefficients
+// 4k … 4k + 3.
+#define PRT_ROW_HALVES 4
+
+// Specialization constants: coefficients of a vector; whether it has bounces.
+#define PRT_COEFFICIENTS 0
+#define PRT_BOUNCES      1
+
+// Uniform block "prt_light": coefficients of distant light, scaled radiance by colour.
+struct prt_light {
+    vec4s direct[PRT_MAX_COEFFICIENTS];  // of the environment
+    vec4s bounced[PRT_MAX_COEFFICIENTS]; // and of suns, whose direct light the frame draws
+};
+
+struct prt_light_push {
+    uint32_t texels;
+    float emitters; // factor of the light of emissive surfaces
+};
+
+#ifndef AG_GLSL
+_Static_assert(sizeof(struct prt_light) == 2 * PRT_MAX_COEFFICIENTS * 16, "layout is shared with "
+                                                                          "GLSL");
+_Static_assert(sizeof(struct prt_light_push) == 8, "layout is shared with GLSL");
+#endif
+
+#endif

@@ -1,0 +1,195 @@
+#include "techniques/prt/prt_fixture.h"
+
+#include "core/half.h"
+#include "core/rng.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+// ---- scenes
+
+void prt_fixture_init(struct prt_fixture *f)
+{
+    *f = (struct prt_fixture){ 0 };
+    fixture_init(&f->s, NULL);
+}
+
+int prt_fixture_diffuse(struct prt_fixture *f, float albedo)
+{
+    struct material m = material_default();
+    m.base_color = vec4_of(vec3_of(albedo, albedo, albedo), 1);
+    m.metallic = 0;
+    m.specular = 0;
+    return fixture_material(&f->s, &m);
+}
+
+static vec3s on_sphere(int ring, int step, int rings)
+{
+    const float theta = GLM_PIf * (float)ring / (float)rings;
+    const float phi = GLM_PIf * (float)step / (float)rings;
+    return vec3_of(sinf(theta) * cosf(phi), cosf(theta), sinf(theta) * sinf(phi));
+}
+
+void prt_fixture_sphere(struct prt_fixture *f, vec3s center, float radius, int rings, int open,
+                        bool inwards, int material)
+{
+    const int steps = 2 * rings;
+    const size_t vertices = (size_t)(rings + 1) * (size_t)(steps + 1);
+    struct mesh mesh = { .name = "sphere",
+                         .vertex_count = (uint32_t)vertices,
+                         .material = material };
+    mesh.positions = calloc(vertices, sizeof *mesh.positions);
+    mesh.normals = calloc(vertices, sizeof *mesh.normals);
+    mesh.indices = calloc((size_t)(rings * steps) * 6, sizeof *mesh.indices);
+    assert_true(mesh.positions && mesh.normals && mesh.indices);
+    for (int r = 0; r <= rings; r++)
+        for (int p = 0; p <= steps; p++) {
+            const int v = r * (steps + 1) + p;
+            const vec3s n = on_sphere(r, p, rings);
+            mesh.positions[v] = glms_vec3_muladds(n, radius, center);
+            mesh.normals[v] = inwards ? glms_vec3_negate(n) : n;
+        }
+    for (int r = open; r < rings; r++)
+        for (int p = 0; p < steps; p++) {
+            const uint32_t a = (uint32_t)(r * (steps + 1) + p), b = a + 1,
+                           c = a + (uint32_t)steps + 1, d = c + 1;
+            const uint32_t out[6] = { a, b, d, a, d, c };
+            for (int k = 0; k < 6; k++) mesh.indices[mesh.index_count++] = out[inwards ? 5 - k : k];
+        }
+    const int index = scene_add_mesh(f->s.scene, &mesh);
+    assert_true(index >= 0);
+    fixture_instance(&f->s, index, NULL);
+    free(mesh.positions);
+    free(mesh.normals);
+    free(mesh.indices);
+}
+
+void prt_fixture_disk(struct prt_fixture *f, vec3s center, float radius, int material)
+{
+    enum { CORNERS = 64 };
+    vec3s positions[CORNERS], normals[CORNERS];
+    uint32_t indices[3 * (CORNERS - 2)];
+    // The area of the polygon is n/2 · r² sin(2π/n).
+    const float angle = 2 * GLM_PIf / CORNERS;
+    const float reach = radius * sqrtf(GLM_PIf / (CORNERS / 2 * sinf(angle)));
+    for (int i = 0; i < CORNERS; i++) {
+        const vec3s at = vec3_of(cosf((float)i * angle), 0, sinf((float)i * angle));
+        positions[i] = glms_vec3_muladds(at, reach, center);
+        normals[i] = vec3_of(0, -1, 0);
+    }
+    for (uint32_t i = 0; i < CORNERS - 2; i++) {
+        indices[3 * i] = 0;
+        indices[3 * i + 1] = i + 1;
+        indices[3 * i + 2] = i + 2;
+    }
+    const int mesh = scene_add_mesh(f->s.scene, &(struct mesh){ .name = "disk",
+                                                                .vertex_count = CORNERS,
+                                                                .index_count = 3 * (CORNERS - 2),
+                                                                .positions = positions,
+                                                                .normals = normals,
+                                                                .indices = indices,
+                                                                .material = material });
+    assert_true(mesh >= 0);
+    fixture_instance(&f->s, mesh, NULL);
+}
+
+static void parse(const struct prt_fixture *f, const char *more, struct gi_spec *out)
+{
+    char text[256];
+    snprintf(text, sizeof text, "prt:%s%s%s", f->options, more[0] ? "," : "", more);
+    CHECK(gi_spec_parse(out, test_host(), text));
+}
+
+void prt_fixture_open(struct prt_fixture *f, const char *options)
+{
+    struct gi_spec spec;
+    f->options = options;
+    parse(f, "", &spec);
+    CHECK(pose_init(&f->s.pose, f->s.scene, -1, 0.0f));
+    CHECK(scene_statics_init(&f->statics, test_host(), &f->s.pose));
+    CHECK(prt_charts(&f->statics.pose, spec.options[0], test_host(), &f->charts));
+    gi_spec_finish(&spec);
+}
+
+void prt_fixture_close(struct prt_fixture *f)
+{
+    charts_finish(&f->charts);
+    scene_statics_finish(&f->statics);
+    fixture_finish(&f->s);
+}
+
+// ---- bakes
+
+struct bake *prt_fixture_plan(const struct prt_fixture *f, const char *more, uint64_t seed)
+{
+    struct gi_spec spec;
+    parse(f, more, &spec);
+    const struct technique_bake how = { .pose = &f->s.pose, .options = spec.options[0] };
+    struct bake *bake = gi_bake_create(test_host(), spec.technique[0], &how,
+                                       (struct bake_identity){ .program = "test", .seed = seed });
+    gi_spec_finish(&spec);
+    assert_non_null(bake);
+    return bake;
+}
+
+struct prt_baked prt_fixture_bake(const struct prt_fixture *f, const char *more, uint64_t seed)
+{
+    struct prt_baked baked = { .bake = prt_fixture_plan(f, more, seed) };
+    CHECK(bake_run(baked.bake, &(struct bake_run_options){ 0 }));
+    baked.tensors = bake_tensors(baked.bake);
+    return baked;
+}
+
+void prt_baked_finish(struct prt_baked *baked)
+{
+    bake_destroy(baked->bake);
+}
+
+// ---- light
+
+bool prt_is_open(const struct prt_baked *baked, uint32_t texel)
+{
+    const float *point = tensors_find(baked->tensors, LIGHT_MAP_POINT)->data;
+    return point[4 * (size_t)texel + 3] > 0;
+}
+
+vec4s prt_coefficient(const struct prt_baked *baked, uint32_t texel, size_t k)
+{
+    const struct tensor *direct = tensors_find(baked->tensors, PRT_DIRECT);
+    const struct tensor *bounce = tensors_find(baked->tensors, PRT_BOUNCE);
+    const size_t at = k * direct->shape[1] + texel;
+    vec4s out = { { float_from_half(((const uint16_t *)direct->data)[at]), 0, 0, 0 } };
+    for (size_t c = 0; bounce && c < 3; c++)
+        out.raw[1 + c] = float_from_half(((const uint16_t *)bounce->data)[3 * at + c]);
+    return out;
+}
+
+void prt_irradiance(const struct prt_baked *baked, uint32_t texel, const struct prt_light *light,
+                    float out[3])
+{
+    double sum[3] = { 0 };
+    const size_t count = tensors_find(baked->tensors, PRT_DIRECT)->shape[0];
+    for (size_t k = 0; k < count; k++) {
+        const vec4s t = prt_coefficient(baked, texel, k);
+        for (int c = 0; c < 3; c++)
+            sum[c] += (double)t.x * (double)light->direct[k].raw[c] +
+                      (double)t.raw[1 + c] * (double)light->bounced[k].raw[c];
+    }
+    for (int c = 0; c < 3; c++) out[c] = (float)sum[c];
+}
+
+void prt_uniform_light(struct prt_light *out)
+{
+    *out = (struct prt_light){ 0 };
+    for (int c = 0; c < 3; c++) out->direct[0].raw[c] = out->bounced[0].raw[c] = sqrtf(4 * GLM_PIf);
+}
+
+void prt_random_light(uint32_t seed, struct prt_light *out)
+{
+    struct rng rng = rng_for(seed, 0, 0);
+    *out = (struct prt_light){ 0 };
+    for (int k = 0; k < PRT_MAX_COEFFICIENTS; k++)
+        for (int c = 0; c < 3; c++)
+            out->direct[k].raw[c] = out->bounced[k].raw[c] = 2 * rng_float(&rng) - 1;
+}

@@ -1,0 +1,268 @@
+// The light map of the GPU against sums on the CPU: random distant light, suns, emissive surfaces.
+#include "techniques/prt/prt_fixture.h"
+
+#include "core/half.h"
+#include "techniques/gi.h"
+#include "techniques/prt/prt_state.h"
+#include "techniques/technique_rules.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The technique with the light of a test in place of the scene's.
+static struct {
+    const struct prt_light *light;
+    struct prt *state; // of the newest update
+} test;
+
+static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    test.state = state;
+    prt_record_update(state, cmd, view, test.light);
+}
+
+struct gpu_side {
+    struct gi_spec spec;
+    struct technique technique;
+    struct gi *gi;
+};
+
+// light: NULL: that of the scene.
+static void open_stack(struct gpu_side *g, struct prt_fixture *f, const struct prt_baked *baked,
+                       struct gpu *gpu, const char *more, const struct prt_light *light)
+{
+    struct frame_fixture *s = &f->s;
+    char text[256];
+    const struct gi_bakes bakes = { .of_term = { baked->tensors } };
+    *g = (struct gpu_side){ 0 };
+    s->gpu = gpu;
+    s->frame = frame_create(test_host(), gpu, &s->options);
+    s->input.pose = &s->pose;
+    CHECK(s->frame && frame_set_scene(s->frame, s->scene));
+    fixture_resize(s, s->width, s->height);
+    snprintf(text, sizeof text, "prt:%s%s%s", f->options, more[0] ? "," : "", more);
+    CHECK(gi_spec_parse(&g->spec, test_host(), text));
+    g->technique = *g->spec.technique[0];
+    test.light = light;
+    if (light) g->technique.update = update;
+    g->spec.technique[0] = &g->technique;
+    g->gi = gi_create_baked(test_host(), gpu, &g->spec, &bakes, &s->pose, s->width, s->height);
+    assert_non_null(g->gi);
+    s->indirect = gi_hook(g->gi);
+}
+
+static void close_stack(struct gpu_side *g)
+{
+    gi_destroy(g->gi);
+    gi_spec_finish(&g->spec);
+}
+
+// Floor, box and slab: shadows and bounces of two colours.
+static void make_scene(struct prt_fixture *f)
+{
+    prt_fixture_init(f);
+    fixture_floor(&f->s, 2, fixture_matte(&f->s, vec3_of(0.8f, 0.5f, 0.2f)));
+    fixture_box(&f->s, vec3_of(-1, 0, -1), vec3_of(0, 1, 0), false,
+                fixture_matte(&f->s, vec3_of(0.2f, 0.5f, 0.9f)));
+    fixture_box(&f->s, vec3_of(-1, 1.3f, -1), vec3_of(1, 1.4f, 1), false,
+                fixture_matte(&f->s, vec3_of(0.7f, 0.7f, 0.7f)));
+    fixture_look(&f->s, vec3_of(2, 2.5f, 3), vec3_of(0, 0.5f, 0));
+}
+
+// Irradiance x and vector irradiance yzw of a texel, by colour; in the units of the frame.
+static vec4s texel_light(const uint32_t *words, uint32_t texels, uint32_t texel, uint32_t colour)
+{
+    const uint32_t *at = words + 2 * ((size_t)colour * texels + texel);
+    vec4s out;
+    for (int k = 0; k < 4; k++) out.raw[k] = float_from_half((uint16_t)(at[k / 2] >> 16 * (k % 2)));
+    return out;
+}
+
+// Largest difference of the irradiance of a texel over the largest irradiance.
+static double compare_texels(struct prt_fixture *f, const struct prt_baked *baked,
+                             const struct prt_light *light, float factor)
+{
+    const uint32_t texels = f->charts.side_texel_count;
+    const size_t room = light_map_table_room(3 * (size_t)texels);
+    double worst = 0, most = 0;
+    uint32_t *words = calloc(2 * room, sizeof *words);
+    assert_non_null(words);
+    CHECK(gpu_image_download(f->s.gpu, test.state->tables.texel_light, 0, 0, words,
+                             2 * room * sizeof *words));
+    for (uint32_t i = 0; i < texels; i++) {
+        const vec3s normal = chart_texel_normal(&f->charts, i);
+        float expected[3];
+        prt_irradiance(baked, i, light, expected);
+        for (uint32_t c = 0; c < 3; c++) {
+            const vec4s got = texel_light(words, texels, i, c);
+            const float e = fmaxf(expected[c], 0.0f) * factor;
+            most = fmax(most, (double)e);
+            worst = fmax(worst, (double)fabsf(got.x - e));
+            for (int a = 0; a < 3; a++)
+                worst = fmax(worst, (double)fabsf(got.raw[1 + a] - e * normal.raw[a]));
+        }
+    }
+    free(words);
+    CHECK(most > 0.1);
+    return worst / most;
+}
+
+// Half floats of a texel.
+TEST_GPU(light_of_texels_is_the_sum_of_their_transfer_vectors)
+{
+    static const char *const MORE[] = { "coefficients=4",
+                                        "",
+                                        "coefficients=16",
+                                        "coefficients=25",
+                                        "transfer=shadowed",
+                                        "transfer=shadowed,coefficients=25",
+                                        "transfer=unshadowed,coefficients=16" };
+    for (size_t i = 0; i < sizeof MORE / sizeof *MORE; i++) {
+        struct prt_fixture f;
+        struct prt_light light;
+        struct gpu_side g;
+        make_scene(&f);
+        prt_fixture_open(&f, "texels=1024,rays=64");
+        struct prt_baked baked = prt_fixture_bake(&f, MORE[i], 0);
+        prt_random_light((uint32_t)i, &light);
+        open_stack(&g, &f, &baked, gpu, MORE[i], &light);
+        fixture_render(&f.s);
+        const double worst = compare_texels(&f, &baked, &light, 1);
+        print_message("%s: %.2g off\n", MORE[i], worst);
+        CHECK(worst <= 0x1p-11 + 1e-6);
+        close_stack(&g);
+        prt_baked_finish(&baked);
+        prt_fixture_close(&f);
+    }
+}
+
+// A floor without anything else: all texels have one irradiance, which pixels show.
+TEST_GPU(pixels_of_an_open_floor_have_its_irradiance)
+{
+    struct prt_fixture f;
+    struct prt_light light;
+    struct gpu_side g;
+    float e[3];
+    prt_fixture_init(&f);
+    fixture_floor(&f.s, 2, prt_fixture_diffuse(&f, 0.5f));
+    fixture_look(&f.s, vec3_of(0, 1, 0.5f), vec3_of(0, 0, 0));
+    prt_fixture_open(&f, "texels=256");
+    struct prt_baked baked = prt_fixture_bake(&f, "", 0);
+    prt_random_light(1, &light);
+    light.direct[0] = (vec4s){ { 5, 6, 7, 0 } };
+    prt_irradiance(&baked, 0, &light, e);
+    open_stack(&g, &f, &baked, gpu, "", &light);
+    fixture_render(&f.s);
+    const vec3s got = fixture_pixel(&f.s, READ_IRRADIANCE, f.s.width / 2, f.s.height / 2);
+    const float scale = frame_radiance_scale(f.s.frame);
+    print_message("%.4f %.4f %.4f of %.4f %.4f %.4f\n", (double)(got.x * scale),
+                  (double)(got.y * scale), (double)(got.z * scale), (double)e[0], (double)e[1],
+                  (double)e[2]);
+    for (int c = 0; c < 3; c++) CHECK_RELATIVE(got.raw[c] * scale, e[c], 0.01f);
+    close_stack(&g);
+    prt_baked_finish(&baked);
+    prt_fixture_close(&f);
+}
+
+// ---- light of the scene
+
+static double mean_irradiance(struct prt_fixture *f)
+{
+    double sum = 0;
+    const size_t count = (size_t)3 * f->s.width * f->s.height;
+    float *e = fixture_read(&f->s, READ_IRRADIANCE);
+    for (size_t i = 0; i < count; i++) sum += (double)e[i];
+    free(e);
+    return sum / (double)count;
+}
+
+// The sun of 1000 lux from above, without and with a sky.
+static double mean_of(struct gpu *gpu, const char *more, bool sun, float sky)
+{
+    struct prt_fixture f;
+    struct gpu_side g;
+    make_scene(&f);
+    if (sun) fixture_add_sun(&f.s, vec3_of(0.3f, -1, 0.2f), vec3_of(1000, 1000, 1000));
+    f.s.input.environment.sky = vec3_of(sky, sky, sky);
+    prt_fixture_open(&f, "texels=1024,rays=64");
+    struct prt_baked baked = prt_fixture_bake(&f, more, 0);
+    open_stack(&g, &f, &baked, gpu, more, NULL);
+    fixture_render(&f.s);
+    const double mean = mean_irradiance(&f);
+    close_stack(&g);
+    prt_baked_finish(&baked);
+    prt_fixture_close(&f);
+    return mean;
+}
+
+TEST_GPU(suns_give_bounced_light_alone)
+{
+    const double sky = mean_of(gpu, "", false, 100), sun = mean_of(gpu, "", true, 0),
+                 both = mean_of(gpu, "", true, 100);
+    print_message("sky %.2f lx, sun %.2f lx, both %.2f lx\n", sky, sun, both);
+    CHECK(sun > 1 && sky > 1);
+    CHECK_RELATIVE(sky + sun, both, 0.05); // negative sums are 0
+    CHECK(mean_of(gpu, "suns=false", true, 0) == 0);
+    CHECK(mean_of(gpu, "transfer=shadowed", true, 0) == 0);
+    CHECK_RELATIVE(mean_of(gpu, "suns=false", true, 100), sky, 2e-3);
+}
+
+TEST_GPU(twice_the_sky_is_twice_the_light)
+{
+    CHECK_RELATIVE(2 * mean_of(gpu, "", false, 100), mean_of(gpu, "", false, 200), 1e-3);
+}
+
+// ---- emissive surfaces
+
+TEST_GPU(an_emissive_disk_lights_the_floor_below)
+{
+    static const char *const MORE[] = { "transfer=unshadowed", "transfer=shadowed", "",
+                                        "emitters=false" };
+    for (int i = 0; i < 4; i++) {
+        struct prt_fixture f;
+        struct gpu_side g;
+        struct material m = material_default();
+        prt_fixture_init(&f);
+        fixture_floor(&f.s, 2, prt_fixture_diffuse(&f, 0.5f));
+        m.base_color = vec4_of(vec3_of(0, 0, 0), 1);
+        m.metallic = m.specular = 0;
+        m.emissive = vec3_of(100, 100, 100);
+        prt_fixture_disk(&f, vec3_of(0, 1, 0), 0.5f, fixture_material(&f.s, &m));
+        fixture_look(&f.s, vec3_of(0, 0.8f, 0.5f), vec3_of(0, 0, 0));
+        prt_fixture_open(&f, "texels=2048,rays=1024");
+        struct prt_baked baked = prt_fixture_bake(&f, MORE[i], 0);
+        open_stack(&g, &f, &baked, gpu, MORE[i], NULL);
+        fixture_render(&f.s);
+        const float e = fixture_pixel(&f.s, READ_IRRADIANCE, f.s.width / 2, f.s.height / 2).x;
+        // On the axis of a disk: πL r² / (r² + h²).
+        const float expected = i == 3 ? 0 : GLM_PIf * 100 * 0.25f / 1.25f;
+        print_message("%s: %.2f of %.2f lx\n", MORE[i], (double)e, (double)expected);
+        CHECK_NEAR(e, expected, 0.02f * expected);
+        close_stack(&g);
+        prt_baked_finish(&baked);
+        prt_fixture_close(&f);
+    }
+}
+
+TEST_GPU(a_point_light_is_warned_of_once)
+{
+    struct prt_fixture f;
+    struct gpu_side g;
+    make_scene(&f);
+    const int node =
+        scene_add_node_looking(f.s.scene, "light", vec3_of(0, 3, 0), vec3_of(0, -1, 0));
+    CHECK(scene_add_light(f.s.scene, &(struct light){ .name = "light",
+                                                      .type = LIGHT_POINT,
+                                                      .node = node,
+                                                      .intensity = vec3_of(1, 1, 1) }) >= 0);
+    prt_fixture_open(&f, "texels=512,rays=16");
+    struct prt_baked baked = prt_fixture_bake(&f, "", 0);
+    open_stack(&g, &f, &baked, gpu, "", NULL);
+    gi_follow(g.gi, &f.s.pose, true);
+    CHECK(strstr(test_last_message(), "prt: 1 point and spot lights"));
+    close_stack(&g);
+    prt_baked_finish(&baked);
+    prt_fixture_close(&f);
+}

@@ -1,0 +1,6 @@
+add_library(ag_test_prt_bake STATIC techniques/prt/prt_fixture.c)
+target_link_libraries(ag_test_prt_bake PUBLIC ag_test_frame_fixture ag_techniques ag_trace PRIVATE afterglow_flags m)
+ag_test(techniques/prt/bake USES techniques LIBRARIES ag_test_prt_bake)
+ag_test(techniques/prt/transfer USES techniques LIBRARIES ag_test_prt_bake ag_test_techniques)
+ag_test(techniques/prt/damage USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)
+ag_test(techniques/prt/frame USES techniques LIBRARIES ag_test_prt_bake ag_test_techniques)
