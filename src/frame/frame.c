@@ -263,8 +263,7 @@ static uint32_t direct_features(const struct frame *f)
                               : f->common->scene.max_emissive > 0 || f->common->scene.has_unlit;
     return (f->layers[FRAME_DIELECTRIC].id ? DIRECT_DIELECTRIC : 0) |
            (f->common->options.shadow_filter > 0 ? DIRECT_FILTERED : 0) |
-           (emission ? DIRECT_EMISSION : 0) |
-           (f->common->environment.map ? DIRECT_MAP : 0) |
+           (emission ? DIRECT_EMISSION : 0) | (f->common->environment.map ? DIRECT_MAP : 0) |
            (f->needs & FRAME_NEEDS_DIRECT_IRRADIANCE ? DIRECT_IRRADIANCE : 0);
 }
 
@@ -496,6 +495,7 @@ static void record_light(struct frame *f, struct gpu_cmd *cmd, const struct fram
     view->light_count = f->light_count;
     view->pose = input->pose;
     view->environment = &input->environment;
+    view->environment_patches_binding = f->patches_binding;
     view->scene = &f->common->scene;
     view->bounds = input->pose->bounds;
     view->geometry_moved = f->common->scene.moved;

@@ -75,6 +75,8 @@ struct frame_view {
     struct gpu_binding lights_binding;       // named "frame_lights"
     struct gpu_binding ggx_albedo_binding;   // named "ggx_albedo": core/ggx_albedo.glsl
     struct gpu_binding environment_binding;  // named "environment_map": environment_map.glsl
+    // Named "frame_environment_patches": vec4 of scaled radiance by patch (scene/environment.h).
+    struct gpu_binding environment_patches_binding;
     const struct frame_light *lights;
     int light_count;
     // Virtual point lights on emissive surfaces (frame/emitters.h), with FRAME_NEEDS_EMITTERS only.

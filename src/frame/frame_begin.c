@@ -71,6 +71,18 @@ static float emissive_scale(const struct frame_constants *c, const struct frame_
     return own ? 1.0f : c->radiance_scale / input->gbuffer->emissive_scale;
 }
 
+static struct gpu_binding patches_of(struct gpu_cmd *cmd, const struct environment *environment,
+                                     float scale)
+{
+    _Static_assert(FRAME_ENVIRONMENT_PATCHES == ENVIRONMENT_PATCHES, "one layout");
+    vec3s radiance[ENVIRONMENT_PATCHES];
+    vec4s scaled[ENVIRONMENT_PATCHES];
+    environment_patches(environment, radiance);
+    for (int i = 0; i < ENVIRONMENT_PATCHES; i++)
+        scaled[i] = vec4_of(glms_vec3_scale(radiance[i], scale), 0.0f);
+    return gpu_transient(cmd, "frame_environment_patches", scaled, sizeof scaled);
+}
+
 void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input)
 {
     struct frame_constants *c = &f->constants;
@@ -115,6 +127,7 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
                  });
     rsm_place(&f->common->rsm, f->lights, f->light_count, input->pose->bounds);
     f->constants_binding = gpu_transient(cmd, "frame_constants", c, sizeof *c);
+    f->patches_binding = patches_of(cmd, &input->environment, c->radiance_scale);
     // Whole: direct.comp has a uniform block of this size.
     f->lights_binding = gpu_transient(cmd, "frame_lights", f->lights, sizeof f->lights);
 }

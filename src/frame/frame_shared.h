@@ -12,9 +12,10 @@
 #define FRAME_LIGHT_POINT 1
 #define FRAME_LIGHT_SPOT  2
 
-#define FRAME_MAX_LIGHTS   64
-#define FRAME_MAX_CASCADES 4
-#define FRAME_MAX_VIEWS    8
+#define FRAME_MAX_LIGHTS          64
+#define FRAME_MAX_CASCADES        4
+#define FRAME_MAX_VIEWS           8
+#define FRAME_ENVIRONMENT_PATCHES 64 // ENVIRONMENT_PATCHES of scene/environment.h
 
 // Uniform block "frame_constants".
 struct frame_constants {

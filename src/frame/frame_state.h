@@ -78,7 +78,7 @@ struct frame {
     bool camera_cut, lights_changed;
     struct shadow_sun_view sun; // of the only light
     bool has_blocks;            // its maps have blocks
-    struct gpu_binding constants_binding, lights_binding;
+    struct gpu_binding constants_binding, lights_binding, patches_binding;
     struct frame_view view;
     uint64_t number; // see struct frame_report; of a further view: that of the first
     struct frame_reports reports;

@@ -56,6 +56,59 @@ void environment_sh(const struct environment *environment, int bands, float out[
     }
 }
 
+// ---- patches
+
+int environment_patch_of(vec3s d)
+{
+    const float sum = fabsf(d.x) + fabsf(d.y) + fabsf(d.z);
+    float u = d.x / sum, v = d.z / sum;
+    if (d.y < 0.0f) {
+        const float folded = (1.0f - fabsf(v)) * (u >= 0.0f ? 1.0f : -1.0f);
+        v = (1.0f - fabsf(u)) * (v >= 0.0f ? 1.0f : -1.0f);
+        u = folded;
+    }
+    const int last = ENVIRONMENT_PATCH_SIDE - 1;
+    const int x = (int)((0.5f * u + 0.5f) * ENVIRONMENT_PATCH_SIDE);
+    const int y = (int)((0.5f * v + 0.5f) * ENVIRONMENT_PATCH_SIDE);
+    return (y < last ? y : last) * ENVIRONMENT_PATCH_SIDE + (x < last ? x : last);
+}
+
+// A point of the octahedron; solid angles of squares are as its inverse cubed length.
+static vec3s octahedron_at(float u, float v)
+{
+    const float height = 1.0f - fabsf(u) - fabsf(v);
+    if (height >= 0.0f) return vec3_of(u, height, v);
+    return vec3_of((1.0f - fabsf(v)) * (u >= 0.0f ? 1.0f : -1.0f), height,
+                   (1.0f - fabsf(u)) * (v >= 0.0f ? 1.0f : -1.0f));
+}
+
+static vec3s patch_mean(const struct environment *environment, int patch)
+{
+    enum { POINTS = 4, ALL = ENVIRONMENT_PATCH_SIDE * POINTS };
+    vec3s sum = vec3_of(0, 0, 0);
+    float weights = 0.0f;
+    for (int i = 0; i < POINTS * POINTS; i++) {
+        const int x = patch % ENVIRONMENT_PATCH_SIDE * POINTS + i % POINTS;
+        const int y = patch / ENVIRONMENT_PATCH_SIDE * POINTS + i / POINTS;
+        const vec3s at = octahedron_at((2.0f * (float)x + 1.0f) / ALL - 1.0f,
+                                       (2.0f * (float)y + 1.0f) / ALL - 1.0f);
+        const float length = glms_vec3_norm(at), weight = 1.0f / (length * length * length);
+        const vec3s d = environment_map_direction(environment, glms_vec3_divs(at, length));
+        sum = glms_vec3_muladds(environment_map_coarse(environment->map, d), weight, sum);
+        weights += weight;
+    }
+    return glms_vec3_divs(sum, weights);
+}
+
+void environment_patches(const struct environment *environment, vec3s out[ENVIRONMENT_PATCHES])
+{
+    for (int i = 0; i < ENVIRONMENT_PATCHES; i++) {
+        out[i] = environment->sky;
+        if (environment->map)
+            out[i] = glms_vec3_muladds(patch_mean(environment, i), environment->strength, out[i]);
+    }
+}
+
 bool environment_sun_light(const struct environment *environment, struct world_light *out)
 {
     if (!environment->map || !environment->map->sun.found) return false;

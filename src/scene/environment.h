@@ -34,6 +34,13 @@ uint64_t environment_key(const struct environment *environment);
 // Coefficients of the radiance by colour, cd/m² (core/sh.h). bands: at most SH_MAX_BANDS.
 void environment_sh(const struct environment *environment, int bands, float out[3][SH_MAX_COUNT]);
 
+// Patches of the sphere: squares of an octahedral map about +y, in world space. Light that was
+// baked by patch keeps its visibility under any environment.
+enum { ENVIRONMENT_PATCH_SIDE = 8, ENVIRONMENT_PATCHES = 64 };
+int environment_patch_of(vec3s direction); // of any length but 0
+// Mean radiance of each patch, cd/m².
+void environment_patches(const struct environment *environment, vec3s out[ENVIRONMENT_PATCHES]);
+
 // The sun that was found in the map. False: there is none.
 bool environment_sun_light(const struct environment *environment, struct world_light *out);
 

@@ -20,21 +20,31 @@ static const float *texel_at(const struct image *image, int x, int y)
     return image_at(image, x, y);
 }
 
-vec3s environment_map_radiance(const struct environment_map *map, vec3s direction)
+static vec3s lookup(const struct image *image, vec3s direction)
 {
     const vec2s uv = equirect_uv(direction);
-    const float x = uv.x * (float)map->radiance.width - 0.5f;
-    const float y = uv.y * (float)map->radiance.height - 0.5f;
+    const float x = uv.x * (float)image->width - 0.5f;
+    const float y = uv.y * (float)image->height - 0.5f;
     const float left = floorf(x), top = floorf(y), u = x - left, v = y - top;
     const int column = (int)left, row = (int)top;
-    const float *a = texel_at(&map->radiance, column, row);
-    const float *b = texel_at(&map->radiance, column + 1, row);
-    const float *c = texel_at(&map->radiance, column, row + 1);
-    const float *d = texel_at(&map->radiance, column + 1, row + 1);
+    const float *a = texel_at(image, column, row);
+    const float *b = texel_at(image, column + 1, row);
+    const float *c = texel_at(image, column, row + 1);
+    const float *d = texel_at(image, column + 1, row + 1);
     vec3s out;
     for (int i = 0; i < 3; i++)
         out.raw[i] = (1 - v) * ((1 - u) * a[i] + u * b[i]) + v * ((1 - u) * c[i] + u * d[i]);
     return out;
+}
+
+vec3s environment_map_radiance(const struct environment_map *map, vec3s direction)
+{
+    return lookup(&map->radiance, direction);
+}
+
+vec3s environment_map_coarse(const struct environment_map *map, vec3s direction)
+{
+    return lookup(&map->coarse, direction);
 }
 
 // ---- content
@@ -184,7 +194,8 @@ static bool find_light(struct environment_map *map, const struct image *from)
 // What follows from the image and its sun.
 static bool complete(struct environment_map *map)
 {
-    if (!project(map)) return false;
+    enum { COARSE_WIDTH = 64 };
+    if (!shrink_to(map, &map->radiance, COARSE_WIDTH, &map->coarse) || !project(map)) return false;
     map->peak = peak_of(&map->radiance);
     map->key = key_of(map);
     if (!(map->peak > 0.0f) && !map->sun.found)
@@ -198,6 +209,7 @@ static void destroy(struct environment_map *map)
 {
     struct host *host = map->host;
     image_finish(&map->radiance, host);
+    image_finish(&map->coarse, host);
     host_free(host, (char *)map->name);
     host_free(host, map);
 }

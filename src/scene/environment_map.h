@@ -18,6 +18,7 @@ struct environment_map {
     const char *name;           // of the file, for messages
     uint64_t key;               // hash of the content
     struct image radiance;      // cd/m², 3 channels, finite, ≥ 0, without the sun
+    struct image coarse;        // the same, averaged over texels of 5.6°
     struct environment_sun sun; // in the map's space
     float sh_error[4];          // of 2 to 5 bands: RMS of the difference over that of the radiance
     float sh[3][SH_MAX_COUNT];  // of the radiance, in the map's space
@@ -38,3 +39,4 @@ void environment_map_release(const struct environment_map *map); // accepts NULL
 
 // Interpolated linearly; direction: unit, in the map's space.
 vec3s environment_map_radiance(const struct environment_map *map, vec3s direction);
+vec3s environment_map_coarse(const struct environment_map *map, vec3s direction);

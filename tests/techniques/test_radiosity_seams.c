@@ -55,7 +55,7 @@ static const void *data_of(const struct baked *b, const char *name)
 static float *light_of(const struct baked *b, const struct chart_seams *seams,
                        const struct chart_seams *closed)
 {
-    enum { ENTRIES = CHART_SEAM_ENTRIES, VALUES = LIGHT_MAP_SKY_VALUES };
+    enum { ENTRIES = CHART_SEAM_ENTRIES, VALUES = 4 };
     const float *sky = data_of(b, LIGHT_MAP_SKY), *weight = data_of(b, LIGHT_MAP_SEAM_WEIGHT);
     const uint32_t *texel = data_of(b, LIGHT_MAP_SEAM_TEXEL);
     const size_t all = 2 * (size_t)b->map.charts.width * b->map.charts.height;
@@ -85,7 +85,7 @@ static double mean_irradiance(const struct baked *b)
     double sum = 0.0, area = 0.0;
     for (uint32_t i = 0; i < b->map.texel_count; i++) {
         const double a = (double)chart_texel_of(&b->map.charts, i)->area_m2;
-        sum += a * (double)sky[LIGHT_MAP_SKY_VALUES * (size_t)i];
+        sum += a * (double)sky[4 * (size_t)i];
         area += a;
     }
     return sum / area;

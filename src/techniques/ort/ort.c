@@ -110,8 +110,8 @@ static void list_pipelines(const struct ort *s, struct gpu_objects *out)
 static void list_uploads(struct gpu_objects *out)
 {
 #define IMAGE(thing) { GPU_IMAGE, .member = TABLE(thing) }
-    GPU_ADD(out, 0, IMAGE(texels), IMAGE(places), IMAGE(lists), IMAGE(entries), IMAGE(bins),
-            IMAGE(steps));
+    GPU_ADD(out, 0, IMAGE(texels), IMAGE(sky), IMAGE(places), IMAGE(lists), IMAGE(entries),
+            IMAGE(bins), IMAGE(steps));
 }
 
 static void list(const struct ort *s, struct gpu_objects *out)
@@ -212,8 +212,9 @@ static uint64_t memory_estimate(const void *options)
     const uint64_t bins = (places / 3 * (uint64_t)o->offsets) / (ORT_BIN_SIDE * ORT_BIN_SIDE) + 1;
     // Levels of light; steps, and light along rows.
     const uint64_t light = o->prefilter ? (16 * ORT_LEVELS + 4 + 8) * places : 16 * places;
-    return light_map_table_bytes(TEXEL_PARTS * texels, 16) + light_map_table_bytes(texels, 4) +
-           light_map_bytes(texels) + bins * ORT_BIN_SIDE * ORT_BIN_SIDE * weight + light +
+    return light_map_table_bytes((TEXEL_PARTS + TEXEL_SKY_WORDS) * texels, 16) +
+           light_map_table_bytes(texels, 4) + light_map_bytes(texels) +
+           bins * ORT_BIN_SIDE * ORT_BIN_SIDE * weight + light +
            light_map_table_bytes(6 * places / ORT_RUN, 16) + light_map_table_bytes(3 * texels, 8) +
            places * 8;
 }

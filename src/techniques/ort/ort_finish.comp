@@ -5,8 +5,10 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#define LIGHT_MAP_TEXELS_BINDING 1
-#define LIGHT_MAP_PAINT_BINDING  5
+#define LIGHT_MAP_TEXELS_BINDING  1
+#define LIGHT_MAP_PAINT_BINDING   5
+#define LIGHT_MAP_SKY_BINDING     6
+#define LIGHT_MAP_PATCHES_BINDING 7
 #include "techniques/common/light_map/texels.glsl"
 #include "techniques/ort/ort_shared.h"
 

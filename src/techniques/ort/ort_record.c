@@ -4,14 +4,15 @@
 static void record_direct(struct ort *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const struct ort_direct_push push = { s->map.texel_count, view->shadow_radius,
-                                          light_map_sources(&s->paint, s->options.emitters) };
+                                          light_map_sources(&s->paint, view, s->options.emitters) };
     gpu_scope_begin(cmd, "direct");
-    gpu_dispatch(cmd, s->pipelines.direct,
-                 GPU_BIND(FRAME_LIGHT_BINDINGS(view),
-                          LIGHT_MAP_TEXEL_BINDINGS(&s->paint, s->tables.texels),
-                          { .name = "ort_places", .image = s->tables.places },
-                          { .name = "first_order", .image = s->tables.first_order }),
-                 &push, sizeof push, gpu_groups(push.texels, ORT_LOCAL), 1, 1);
+    gpu_dispatch(
+        cmd, s->pipelines.direct,
+        GPU_BIND(FRAME_LIGHT_BINDINGS(view),
+                 LIGHT_MAP_TEXEL_BINDINGS(view, &s->paint, s->tables.texels, s->tables.sky),
+                 { .name = "ort_places", .image = s->tables.places },
+                 { .name = "first_order", .image = s->tables.first_order }),
+        &push, sizeof push, gpu_groups(push.texels, ORT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
 }
 
@@ -75,15 +76,16 @@ static void record_gather(struct ort *s, struct gpu_cmd *cmd)
 static void record_finish(struct ort *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const struct ort_finish_push push = { s->map.texel_count, s->map.height,
-                                          light_map_sources(&s->paint, s->options.emitters) };
+                                          light_map_sources(&s->paint, view, s->options.emitters) };
     gpu_scope_begin(cmd, "finish");
-    gpu_dispatch(cmd, s->pipelines.finish,
-                 GPU_BIND(view->constants_binding,
-                          LIGHT_MAP_TEXEL_BINDINGS(&s->paint, s->tables.texels),
-                          { .name = "ort_places", .image = s->tables.places },
-                          { .name = "ort_sums", .image = s->tables.sums },
-                          { .name = "texel_light", .image = s->tables.texel_light }),
-                 &push, sizeof push, gpu_groups(push.texels, ORT_LOCAL), 1, 1);
+    gpu_dispatch(
+        cmd, s->pipelines.finish,
+        GPU_BIND(view->constants_binding,
+                 LIGHT_MAP_TEXEL_BINDINGS(view, &s->paint, s->tables.texels, s->tables.sky),
+                 { .name = "ort_places", .image = s->tables.places },
+                 { .name = "ort_sums", .image = s->tables.sums },
+                 { .name = "texel_light", .image = s->tables.texel_light }),
+        &push, sizeof push, gpu_groups(push.texels, ORT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
 }
 

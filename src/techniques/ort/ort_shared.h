@@ -61,11 +61,11 @@ struct ort_finish_push {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct ort_direct_push) == 16, "layout is shared with GLSL");
+_Static_assert(sizeof(struct ort_direct_push) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct ort_spread_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct ort_level_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct ort_gather_push) == 16, "layout is shared with GLSL");
-_Static_assert(sizeof(struct ort_finish_push) == 16, "layout is shared with GLSL");
+_Static_assert(sizeof(struct ort_finish_push) == 20, "layout is shared with GLSL");
 #endif
 
 #endif

@@ -10,7 +10,7 @@
 #include "techniques/ort/ort_shared.h"
 
 struct ort_tables {
-    gpu_image texels, places;       // of texels
+    gpu_image texels, sky, places;  // of texels
     gpu_image lists, entries, bins; // of the gather
     gpu_image first_order, light;   // of the newest light: by place; in pairs, levels of it
     gpu_image steps, filtered;      // between linked texels; light along rows

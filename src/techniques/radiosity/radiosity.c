@@ -89,10 +89,11 @@ static void list_probes(const struct radiosity *s, struct gpu_objects *out)
 static void list_uploads(struct gpu_objects *out)
 {
 #define IMAGE(thing) { GPU_IMAGE, .member = TABLE(thing) }
-    GPU_ADD(out, 0, IMAGE(texels), IMAGE(neighbours), IMAGE(clusters), IMAGE(spans), IMAGE(members),
-            IMAGE(groups), IMAGE(factors.order), IMAGE(factors.tiles), IMAGE(cluster_factors.order),
-            IMAGE(cluster_factors.tiles), { GPU_BUFFER, .member = TABLE(labels) },
-            { GPU_BUFFER, .member = PROBES(table) }, { GPU_BUFFER, .member = PROBES(factors) },
+    GPU_ADD(out, 0, IMAGE(texels), IMAGE(sky), IMAGE(neighbours), IMAGE(clusters), IMAGE(spans),
+            IMAGE(members), IMAGE(groups), IMAGE(factors.order), IMAGE(factors.tiles),
+            IMAGE(cluster_factors.order), IMAGE(cluster_factors.tiles),
+            { GPU_BUFFER, .member = TABLE(labels) }, { GPU_BUFFER, .member = PROBES(table) },
+            { GPU_BUFFER, .member = PROBES(factors) },
             { GPU_IMAGE, .member = PROBES(volume.depth) });
 }
 
@@ -227,7 +228,8 @@ static uint64_t memory_estimate(const void *options)
     const uint64_t clusters = texels / (uint64_t)(o->cluster * o->cluster) + 1;
     const uint64_t nodes = 2 * clusters, sources = (uint64_t)o->sources;
     const uint64_t of_texels =
-        light_map_table_bytes(TEXEL_PARTS * texels, 16) + rows_bytes(texels, 8 * sources) +
+        light_map_table_bytes((TEXEL_PARTS + TEXEL_SKY_WORDS) * texels, 16) +
+        rows_bytes(texels, 8 * sources) +
         light_map_table_bytes(RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR * texels, 16) +
         light_map_table_bytes(texels, 16) + 2 * light_map_table_bytes(3 * texels, 8) +
         places * sizeof(struct radiosity_gpu_label);

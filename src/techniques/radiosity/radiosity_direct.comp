@@ -3,12 +3,14 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#define SHADOW_FACES_BINDING     2
-#define SHADOW_MAPS_BINDING      3
-#define SHADOW_SUN_MAPS_BINDING  12
-#define LIGHT_MAP_TEXELS_BINDING 4
-#define LIGHT_MAP_LIGHTS_BINDING 5
-#define LIGHT_MAP_PAINT_BINDING  7
+#define SHADOW_FACES_BINDING      2
+#define SHADOW_MAPS_BINDING       3
+#define SHADOW_SUN_MAPS_BINDING   12
+#define LIGHT_MAP_TEXELS_BINDING  4
+#define LIGHT_MAP_LIGHTS_BINDING  5
+#define LIGHT_MAP_PAINT_BINDING   7
+#define LIGHT_MAP_SKY_BINDING     8
+#define LIGHT_MAP_PATCHES_BINDING 9
 #define FRAME_CONSTANTS_COPIED
 #include "techniques/common/light_map/first_order.glsl"
 #include "techniques/radiosity/radiosity_shared.h"

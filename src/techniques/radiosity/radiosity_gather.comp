@@ -4,8 +4,10 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#define LIGHT_MAP_TEXELS_BINDING 1
-#define LIGHT_MAP_PAINT_BINDING  7
+#define LIGHT_MAP_TEXELS_BINDING  1
+#define LIGHT_MAP_PAINT_BINDING   7
+#define LIGHT_MAP_SKY_BINDING     8
+#define LIGHT_MAP_PATCHES_BINDING 9
 #include "core/basis.glsl"
 #include "techniques/radiosity/radiosity_pack.glsl"
 #include "techniques/common/light_map/texels.glsl"

@@ -9,14 +9,16 @@ struct span {
 static void record_direct(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view,
                           struct span rows)
 {
-    const struct radiosity_direct_push push = { rows.first, rows.count, s->map.texel_count,
-                                                view->shadow_radius,
-                                                light_map_sources(&s->paint, s->options.emitters) };
-    gpu_dispatch(cmd, s->pipelines.direct,
-                 GPU_BIND(FRAME_LIGHT_BINDINGS(view),
-                          LIGHT_MAP_TEXEL_BINDINGS(&s->paint, s->tables.texels),
-                          { .name = "radiosity_flux", .image = s->tables.flux }),
-                 &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
+    const struct radiosity_direct_push push = {
+        rows.first, rows.count, s->map.texel_count, view->shadow_radius,
+        light_map_sources(&s->paint, view, s->options.emitters)
+    };
+    gpu_dispatch(
+        cmd, s->pipelines.direct,
+        GPU_BIND(FRAME_LIGHT_BINDINGS(view),
+                 LIGHT_MAP_TEXEL_BINDINGS(view, &s->paint, s->tables.texels, s->tables.sky),
+                 { .name = "radiosity_flux", .image = s->tables.flux }),
+        &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
 static void record_clusters(struct radiosity *s, struct gpu_cmd *cmd)
@@ -97,16 +99,18 @@ static void record_gather_of(struct radiosity *s, struct gpu_cmd *cmd,
                              struct span rows)
 {
     const struct radiosity_gather_push push = { rows.first, rows.count, s->map.texel_count,
-                                                light_map_sources(&s->paint, s->options.emitters) };
-    gpu_dispatch(cmd, s->pipelines.gather,
-                 GPU_BIND(view->constants_binding,
-                          LIGHT_MAP_TEXEL_BINDINGS(&s->paint, s->tables.texels),
-                          { .name = "radiosity_order", .image = s->tables.factors.order },
-                          { .name = "radiosity_tiles", .image = s->tables.factors.tiles },
-                          { .name = "radiosity_factors", .image = block->table },
-                          { .name = "radiosity_sent", .image = s->tables.solution },
-                          { .name = "texel_light", .image = s->tables.light }),
-                 &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
+                                                light_map_sources(&s->paint, view,
+                                                                  s->options.emitters) };
+    gpu_dispatch(
+        cmd, s->pipelines.gather,
+        GPU_BIND(view->constants_binding,
+                 LIGHT_MAP_TEXEL_BINDINGS(view, &s->paint, s->tables.texels, s->tables.sky),
+                 { .name = "radiosity_order", .image = s->tables.factors.order },
+                 { .name = "radiosity_tiles", .image = s->tables.factors.tiles },
+                 { .name = "radiosity_factors", .image = block->table },
+                 { .name = "radiosity_sent", .image = s->tables.solution },
+                 { .name = "texel_light", .image = s->tables.light }),
+        &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
 static void record_gather(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view,

@@ -80,11 +80,11 @@ struct radiosity_view_push {
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct radiosity_gpu_label) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_view_push) == 20, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_direct_push) == 24, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_direct_push) == 28, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_clusters_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_solve_push) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_nodes_push) == 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_gather_push) == 20, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_gather_push) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_smooth_push) == 12, "layout is shared with GLSL");
 #endif
 

@@ -26,7 +26,7 @@ struct radiosity_rows {
 };
 
 struct radiosity_tables {
-    gpu_image texels, neighbours;               // of texels
+    gpu_image texels, sky, neighbours;          // of texels
     gpu_image clusters, spans, members, groups; // of clusters
     gpu_image flux, light, smoothed;            // [texels] of the newest light
     gpu_image sent, radiosity[2];               // [clusters and nodes] likewise

@@ -252,6 +252,7 @@ static bool upload_clusters(struct radiosity *s, const struct content *c)
 static bool upload_all(struct radiosity *s, const struct content *c, const struct tensors *bake)
 {
     return light_map_upload_texels(&c->texels, s->host, s->gpu, &s->tables.texels) &&
+           light_map_upload_sky(&c->texels, s->host, s->gpu, bake, &s->tables.sky) &&
            radiosity_upload_factors(s, c->source, c->factor, c->cluster_source,
                                     c->cluster_factor) &&
            upload_neighbours(s, c) && upload_clusters(s, c) &&

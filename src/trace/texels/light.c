@@ -2,7 +2,6 @@
 
 #include "core/rng.h"
 #include "core/sampling.h"
-#include "core/sh.h"
 #include "trace/surface.h"
 #include "trace/texels/inside.h"
 
@@ -56,9 +55,8 @@ static void add_sky(struct texel_lights *out, const struct texel_receiver *r, ve
                     float cosine)
 {
     const float weight = GLM_PIf / (float)r->rays; // of a cosine-distributed ray, sr
-    float basis[TEXEL_SKY_SH];
-    sh_eval(3, direction, basis);
-    for (int i = 0; i < TEXEL_SKY_SH; i++) out->sky.irradiance[i] += weight * basis[i];
+    out->sky.irradiance += weight;
+    out->sky_patches[environment_patch_of(direction)] += weight;
     for (int k = 0; k < 3; k++) out->sky.vector[k] += weight * direction.raw[k] / cosine;
 }
 
@@ -100,4 +98,18 @@ void texel_gather_light(const struct trace_scene *scene, const struct texel_rece
                         texel_visit visit, void *user, struct texel_lights *out)
 {
     texel_gather(scene, receiver, &(struct texel_visitor){ .hit = visit, .user = user }, out);
+}
+
+// Rounding errors are carried on, so that the sum is 255.
+void texel_sky_shares(const struct texel_lights *lights, uint8_t out[ENVIRONMENT_PATCHES])
+{
+    const float scale = lights->sky.irradiance > 0.0f ? 255.0f / lights->sky.irradiance : 0.0f;
+    float rest = 0.0f;
+    for (int i = 0; i < ENVIRONMENT_PATCHES; i++) {
+        const float share = lights->sky_patches[i] * scale + rest;
+        const float rounded =
+            lights->sky_patches[i] > 0.0f ? fminf(fmaxf(rintf(share), 0.0f), 255.0f) : 0.0f;
+        out[i] = (uint8_t)rounded;
+        rest = share - rounded;
+    }
 }

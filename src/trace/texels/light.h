@@ -43,21 +43,10 @@ struct texel_light {
     float irradiance, vector[3];
 };
 
-// Transfer of light from where no ray meets a surface: irradiance for each coefficient of the
-// environment's radiance (core/sh.h), and the vector irradiance of radiance 1.
-enum { TEXEL_SKY_SH = 9 };
-struct texel_sky {
-    float irradiance[TEXEL_SKY_SH], vector[3];
-};
-// Irradiance of a uniform radiance of 1: its coefficient is √(4π).
-static inline float texel_sky_irradiance(const struct texel_sky *sky)
-{
-    return sky->irradiance[0] * 3.5449077018110318f;
-}
-
 struct texel_lights {
-    struct texel_sky sky;
-    struct texel_light emitted[3]; // by colour, lux
+    struct texel_light sky;                 // of radiance 1
+    float sky_patches[ENVIRONMENT_PATCHES]; // irradiance by patches of radiance 1
+    struct texel_light emitted[3];          // by colour, lux
 };
 
 // Calls `visit`, which may be NULL, for each ray that meets a surface; local: its direction in the
@@ -74,3 +63,6 @@ struct texel_visitor {
 };
 void texel_gather(const struct trace_scene *scene, const struct texel_receiver *receiver,
                   const struct texel_visitor *visitor, struct texel_lights *out);
+
+// Shares of the patches in the irradiance of the sky, of 255; all 0 without sky.
+void texel_sky_shares(const struct texel_lights *lights, uint8_t out[ENVIRONMENT_PATCHES]);

@@ -1,6 +1,5 @@
 // First-order irradiance of texels: all lights with shadows, emissive surfaces, the sky and paint.
-// Define LIGHT_MAP_LIGHTS_BINDING, LIGHT_MAP_TEXELS_BINDING, LIGHT_MAP_PAINT_BINDING and those of
-// shadow.glsl first.
+// Define LIGHT_MAP_LIGHTS_BINDING and the numbers of texels.glsl and shadow.glsl first.
 #ifndef AG_LIGHT_MAP_FIRST_ORDER_GLSL
 #define AG_LIGHT_MAP_FIRST_ORDER_GLSL
 

@@ -16,17 +16,19 @@
 #define TEXEL_NORMAL      1 // unit, of its side
 #define TEXEL_SHADING     2 // mean shading normal, of length 1 or less
 #define TEXEL_REFLECTANCE 3 // by colour
-// Irradiance along the normal for each of 9 coefficients of the environment's radiance, then the
-// vector irradiance of radiance 1.
-#define TEXEL_SKY_0     4
-#define TEXEL_SKY_PARTS 3
-#define TEXEL_EMITTED_0 7 // by colour: irradiance along the normal, vector irradiance, lux
-#define TEXEL_PARTS     10
+#define TEXEL_SKY_LIGHT   4 // irradiance along the normal, vector irradiance: radiance 1
+#define TEXEL_EMITTED_0   5 // the same by colour, lux
+#define TEXEL_PARTS       8
+
+// Words of 16 bytes of a texel in the table of shares of the environment's patches, a byte each:
+// entry word · texels + texel. They sum to 255, or 0.
+#define TEXEL_SKY_WORDS 4
 
 // First-order light besides that of punctual lights and the sky.
 struct light_map_sources {
-    float emitters;   // factor of the light of emissive surfaces
-    uint32_t painted; // 0: no texel has paint, and another table is bound for it
+    float emitters;     // factor of the light of emissive surfaces
+    uint32_t painted;   // 0: no texel has paint, and another table is bound for it
+    uint32_t sky_words; // TEXEL_SKY_WORDS; 0: the environment is uniform
 };
 
 // Painted irradiance of a texel (paint.h).
@@ -63,7 +65,7 @@ struct light_map_apply_push {
 #define LIGHT_MAP_APPLY_DIELECTRIC 2
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct light_map_sources) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct light_map_sources) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_painted) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_paint_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_show_push) == 12, "layout is shared with GLSL");

@@ -2,7 +2,7 @@
 // created before the first call. Passes read it by light_map_painted_light (texels.glsl).
 #pragma once
 
-#include "gpu/gpu.h"
+#include "frame/frame.h"
 #include "techniques/common/light_map/map_shared.h"
 
 struct charts;
@@ -38,13 +38,16 @@ bool light_map_paint_record(struct light_map_paint *paint, struct gpu_cmd *cmd);
 
 // Bindings, in GPU_BIND, and push constants of shaders that include texels.glsl. Without paint the
 // table of texels is bound for its table and not read.
-#define LIGHT_MAP_TEXEL_BINDINGS(paint, texels)                                                    \
-    { .name = "light_map_texels", .image = (texels) },                                             \
+#define LIGHT_MAP_TEXEL_BINDINGS(view, paint, texels, sky)                                         \
+    (view)->environment_patches_binding, { .name = "light_map_texels", .image = (texels) },        \
+        { .name = "light_map_sky", .image = (sky) },                                               \
     {                                                                                              \
         .name = "light_map_paint", .image = (paint)->table.id ? (paint)->table : (texels)          \
     }
-static inline struct light_map_sources light_map_sources(const struct light_map_paint *paint,
-                                                         bool emitters)
+static inline struct light_map_sources
+light_map_sources(const struct light_map_paint *paint, const struct frame_view *view, bool emitters)
 {
-    return (struct light_map_sources){ emitters ? 1.0f : 0.0f, paint->table.id != 0 };
+    return (struct light_map_sources){ emitters ? 1.0f : 0.0f, paint->table.id != 0,
+                                       view->constants->environment_scale > 0.0f ? TEXEL_SKY_WORDS
+                                                                                 : 0 };
 }

@@ -4,14 +4,12 @@
 #include "scene/charts/seams.h"
 
 #define LIGHT_MAP_ALBEDO      "texels/reflectance" // F32 [texels][4]
-#define LIGHT_MAP_SKY         "texels/sky"         // F32 [texels][12], struct texel_sky
+#define LIGHT_MAP_SKY         "texels/sky"         // F32 [texels][4]
+#define LIGHT_MAP_SKY_SHARES  "texels/sky_shares"  // U8 [texels][ENVIRONMENT_PATCHES]
 #define LIGHT_MAP_EMITTED     "texels/emitted"     // F32 [texels][3][4]
 #define LIGHT_MAP_POINT       "texels/point"       // F32 [texels][4]
 #define LIGHT_MAP_SEAM_TEXEL  "seams/texel"        // U32 [places][CHART_SEAM_ENTRIES]
 #define LIGHT_MAP_SEAM_WEIGHT "seams/weight"       // F32 [places][CHART_SEAM_ENTRIES]
-
-// Values of a texel in LIGHT_MAP_SKY.
-enum { LIGHT_MAP_SKY_VALUES = 12 };
 
 struct bake_plan;
 struct seam_closing;

@@ -1,6 +1,7 @@
 #include "techniques/common/light_map/texels.h"
 
 #include "bake/tensors.h"
+#include "scene/environment.h"
 #include "techniques/common/light_map/tensors.h"
 
 #include <string.h>
@@ -12,7 +13,7 @@ bool light_map_find_texels(struct light_map_texels *out, struct host *host,
     *out = (struct light_map_texels){ .charts = charts };
 #define EXPECT(...) TENSORS_EXPECT(host, bake, __VA_ARGS__)
     return (out->reflectance = EXPECT(LIGHT_MAP_ALBEDO, TENSOR_F32, n, 4)) &&
-           (out->sky = EXPECT(LIGHT_MAP_SKY, TENSOR_F32, n, LIGHT_MAP_SKY_VALUES)) &&
+           (out->sky = EXPECT(LIGHT_MAP_SKY, TENSOR_F32, n, 4)) &&
            (out->emitted = EXPECT(LIGHT_MAP_EMITTED, TENSOR_F32, n, 3, 4)) &&
            (out->point = EXPECT(LIGHT_MAP_POINT, TENSOR_F32, n, 4));
 #undef EXPECT
@@ -52,9 +53,7 @@ static void fill_texel(const struct light_map_texels *t, uint32_t i, vec4s *part
     parts[TEXEL_SHADING * count + i] = vec4_of(mean_shading(t, i), 0.0f);
     parts[TEXEL_REFLECTANCE * count + i] =
         vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), 0.0f);
-    for (size_t k = 0; k < TEXEL_SKY_PARTS; k++)
-        memcpy(&parts[(TEXEL_SKY_0 + k) * count + i],
-               t->sky + LIGHT_MAP_SKY_VALUES * (size_t)i + 4 * k, sizeof *parts);
+    memcpy(&parts[TEXEL_SKY_LIGHT * count + i], t->sky + 4 * (size_t)i, sizeof *parts);
     for (size_t k = 0; k < 3; k++)
         memcpy(&parts[(TEXEL_EMITTED_0 + k) * count + i], t->emitted + 12 * (size_t)i + 4 * k,
                sizeof *parts);
@@ -67,4 +66,19 @@ bool light_map_upload_texels(const struct light_map_texels *t, struct host *host
     vec4s *parts = host_alloc(host, light_map_table_room(count), sizeof *parts);
     for (uint32_t i = 0; parts && i < t->charts->side_texel_count; i++) fill_texel(t, i, parts);
     return light_map_table_upload(host, gpu, "texels", GPU_RGBA32F, parts, count, out);
+}
+
+bool light_map_upload_sky(const struct light_map_texels *t, struct host *host, struct gpu *gpu,
+                          const struct tensors *bake, gpu_image *out)
+{
+    const size_t count = t->charts->side_texel_count, words = TEXEL_SKY_WORDS * count;
+    const uint8_t *shares =
+        TENSORS_EXPECT(host, bake, LIGHT_MAP_SKY_SHARES, TENSOR_U8,
+                       light_map_rows(t->charts->side_texel_count), ENVIRONMENT_PATCHES);
+    uint8_t(*table)[16] =
+        shares ? host_alloc(host, light_map_table_room(words), sizeof *table) : NULL;
+    for (size_t i = 0; table && i < count; i++)
+        for (size_t k = 0; k < TEXEL_SKY_WORDS; k++)
+            memcpy(table[k * count + i], shares + ENVIRONMENT_PATCHES * i + 16 * k, 16);
+    return table && light_map_table_upload(host, gpu, "sky", GPU_RGBA32U, table, words, out);
 }

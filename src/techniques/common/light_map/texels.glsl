@@ -1,4 +1,5 @@
-// The table of texels (texels.h) and of their painted light (paint.h).
+// The tables of texels and their shares of the sky (texels.h), and of painted light (paint.h).
+// Binding numbers: LIGHT_MAP_TEXELS_BINDING, _SKY_BINDING, _PATCHES_BINDING, _PAINT_BINDING.
 #ifndef AG_LIGHT_MAP_TEXELS_GLSL
 #define AG_LIGHT_MAP_TEXELS_GLSL
 
@@ -7,6 +8,11 @@
 
 layout(set = 0, binding = LIGHT_MAP_TEXELS_BINDING,
        rgba32f) uniform readonly image2D light_map_texels;
+layout(set = 0, binding = LIGHT_MAP_SKY_BINDING, rgba32ui) uniform readonly uimage2D light_map_sky;
+layout(set = 0, binding = LIGHT_MAP_PATCHES_BINDING, scalar) uniform frame_environment_patches
+{
+    vec4 environment_patches[FRAME_ENVIRONMENT_PATCHES]; // scaled radiance
+};
 layout(set = 0, binding = LIGHT_MAP_PAINT_BINDING,
        rgba32f) uniform readonly image2D light_map_paint; // [texel] lux
 
@@ -15,19 +21,19 @@ vec4 light_map_texel_part(uint texel, uint texels, int part)
     return imageLoad(light_map_texels, light_map_at(part * texels + texel));
 }
 
-// Adds irradiance x and vector irradiance yzw of the environment, by colour. The vector irradiance
-// has the direction of that of a uniform sky.
-void light_map_add_sky(uint texel, uint texels, inout vec4 light[3])
+// Mean radiance of the environment by the texel's shares of its patches.
+vec3 light_map_sky_radiance(uint texel, uint texels, light_map_sources sources)
 {
-    if (environment_mean() == vec3(0.0)) return;
-    vec4 a = light_map_texel_part(texel, texels, TEXEL_SKY_0),
-         b = light_map_texel_part(texel, texels, TEXEL_SKY_0 + 1),
-         c = light_map_texel_part(texel, texels, TEXEL_SKY_0 + 2);
-    if (a.x <= 0.0) return;
-    float transfer[9] = float[9](a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, c.x);
-    vec3 irradiance = environment_irradiance(transfer);
-    vec3 along = c.yzw / (a.x * sqrt(4.0 * PI)); // over the irradiance of radiance 1
-    for (int k = 0; k < 3; k++) light[k] += irradiance[k] * vec4(1.0, along);
+    vec3 sum = sources.sky_words == 0u ? environment_mean() : vec3(0.0);
+    for (uint k = 0u; k < sources.sky_words; k++) {
+        uvec4 word = imageLoad(light_map_sky, light_map_at(k * texels + texel));
+        for (uint i = 0u; i < 4u; i++) {
+            vec4 share = unpackUnorm4x8(word[i]);
+            for (uint b = 0u; b < 4u; b++)
+                sum += share[b] * environment_patches[16u * k + 4u * i + b].rgb;
+        }
+    }
+    return sum;
 }
 
 // Irradiance x and vector irradiance yzw of the environment and of emissive surfaces, by colour.
@@ -37,7 +43,9 @@ vec4[3] light_map_unbounced(uint texel, uint texels, light_map_sources sources)
     for (int c = 0; c < 3; c++)
         light[c] = light_map_texel_part(texel, texels, TEXEL_EMITTED_0 + c) *
                    (sources.emitters * frame.radiance_scale);
-    light_map_add_sky(texel, texels, light);
+    vec4 sky = light_map_texel_part(texel, texels, TEXEL_SKY_LIGHT);
+    vec3 radiance = light_map_sky_radiance(texel, texels, sources);
+    for (int c = 0; c < 3; c++) light[c] += radiance[c] * sky;
     return light;
 }
 

@@ -10,10 +10,8 @@ struct light_map_texels {
     const struct charts *charts;
     const float *point;       // [texels][4] position (m), share that is not inside geometry
     const float *reflectance; // [texels][4], the last the mean cosine of shading normals
-    // [texels][LIGHT_MAP_SKY_VALUES] irradiance for each coefficient of the environment's
-    // radiance, and vector irradiance of radiance 1.
-    const float *sky;
-    const float *emitted; // [texels][3][4] the same by colour, lux
+    const float *sky;         // [texels][4] irradiance and vector irradiance: radiance 1
+    const float *emitted;     // [texels][3][4] the same by colour, lux
     // [texels][3] mean shading normals, which receive first-order light. NULL: the surface's
     // normal, times the mean cosine.
     const float *shading;
@@ -26,3 +24,6 @@ float light_map_texel_area(const struct light_map_texels *texels, uint32_t texel
 uint32_t *light_map_shown(const struct light_map_texels *texels, struct host *host);
 bool light_map_upload_texels(const struct light_map_texels *texels, struct host *host,
                              struct gpu *gpu, gpu_image *out);
+// The table of the shares of the environment's patches, of the tensor LIGHT_MAP_SKY_SHARES.
+bool light_map_upload_sky(const struct light_map_texels *texels, struct host *host, struct gpu *gpu,
+                          const struct tensors *bake, gpu_image *out);

@@ -36,7 +36,7 @@ static void gather(void *user, size_t i)
         .seed = pcg_hash((uint32_t)i) | 1u,
     };
     texel_gather_light(job->scene, &receiver, NULL, NULL, &light);
-    job->images->sky[i] = texel_sky_irradiance(&light.sky) / GLM_PIf;
+    job->images->sky[i] = light.sky.irradiance / GLM_PIf;
     for (int c = 0; c < 3; c++) job->images->emitted[i].raw[c] = light.emitted[c].irradiance;
 }
 

@@ -9,7 +9,16 @@
 #include <string.h>
 
 enum { TEXELS_PER_TASK = 128 };
-enum { OUT_HITS, OUT_ALBEDO, OUT_SKY, OUT_EMITTED, OUT_POINT, OUT_NORMAL, OUT_COUNT };
+enum {
+    OUT_HITS,
+    OUT_ALBEDO,
+    OUT_SKY,
+    OUT_SKY_SHARES,
+    OUT_EMITTED,
+    OUT_POINT,
+    OUT_NORMAL,
+    OUT_COUNT
+};
 
 bool ort_find_texels(struct ort_texels *out, const struct bake_task *task)
 {
@@ -106,6 +115,7 @@ static void gather(const struct bake_task *task, uint32_t texel, vec3s position,
     texel_gather_light(scene->trace, &receiver, add_hit,
                        &(struct visit){ scene, bake_row(task, OUT_HITS, row), 0 }, &light);
     memcpy(bake_row(task, OUT_SKY, row), &light.sky, sizeof light.sky);
+    texel_sky_shares(&light, bake_row(task, OUT_SKY_SHARES, row));
     memcpy(bake_row(task, OUT_EMITTED, row), light.emitted, sizeof light.emitted);
 }
 
@@ -145,7 +155,13 @@ bool ort_add_texels(struct bake_plan *plan, const struct ort_scene *scene)
     const struct bake_output out[OUT_COUNT] = {
         { ORT_HITS, TENSOR_U32, 2, { texels, rays }, BAKE_ROWS, LAST_WAVE },
         { LIGHT_MAP_ALBEDO, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
-        { LIGHT_MAP_SKY, TENSOR_F32, 2, { texels, LIGHT_MAP_SKY_VALUES }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_SKY, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_SKY_SHARES,
+          TENSOR_U8,
+          2,
+          { texels, ENVIRONMENT_PATCHES },
+          BAKE_ROWS,
+          BAKE_SAVED },
         { LIGHT_MAP_EMITTED, TENSOR_F32, 3, { texels, 3, 4 }, BAKE_ROWS, BAKE_SAVED },
         { LIGHT_MAP_POINT, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { ORT_NORMALS, TENSOR_F32, 2, { texels, 3 }, BAKE_ROWS, BAKE_SAVED },

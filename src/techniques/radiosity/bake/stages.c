@@ -82,6 +82,7 @@ enum {
     OUT_FACTOR,
     OUT_ALBEDO,
     OUT_SKY,
+    OUT_SKY_SHARES,
     OUT_EMITTED,
     OUT_POINT,
     OUT_PART,
@@ -116,6 +117,7 @@ static void gather_texel(const struct bake_task *task, struct room *room, uint64
                                               task->bake_seed ^ (uint64_t)texel << 32, room->row);
     write_row(room->row, count, bake_row(task, OUT_SOURCE, i), bake_row(task, OUT_FACTOR, i));
     memcpy(bake_row(task, OUT_SKY, i), &gather->light.sky, sizeof gather->light.sky);
+    texel_sky_shares(&gather->light, bake_row(task, OUT_SKY_SHARES, i));
     memcpy(bake_row(task, OUT_EMITTED, i), gather->light.emitted, sizeof gather->light.emitted);
     *(float *)bake_row(task, OUT_DISTANCE, i) = gather->inverse_distance;
     const vec4s albedo = texel_reflectance(job->scene.trace, charts, texel, NULL);
@@ -145,7 +147,13 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
         { RADIOSITY_SOURCE, TENSOR_U32, 2, { texels, sources }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_FACTOR, TENSOR_F16, 3, { texels, sources, 3 }, BAKE_ROWS, BAKE_SAVED },
         { LIGHT_MAP_ALBEDO, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
-        { LIGHT_MAP_SKY, TENSOR_F32, 2, { texels, LIGHT_MAP_SKY_VALUES }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_SKY, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_SKY_SHARES,
+          TENSOR_U8,
+          2,
+          { texels, ENVIRONMENT_PATCHES },
+          BAKE_ROWS,
+          BAKE_SAVED },
         { LIGHT_MAP_EMITTED, TENSOR_F32, 3, { texels, 3, 4 }, BAKE_ROWS, BAKE_SAVED },
         { LIGHT_MAP_POINT, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_PART, TENSOR_U8, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
