@@ -176,8 +176,10 @@ static float peak_of(const struct image *image)
 static uint64_t key_of(const struct environment_map *map)
 {
     const struct image *image = &map->radiance;
-    const uint64_t key = hash_bytes(&map->sun.illuminance_lux, sizeof(vec3s),
-                                    hash_bytes(&map->sun.to_sun, sizeof(vec3s), 0));
+    const int size[] = { image->width, image->height };
+    uint64_t key = hash_bytes(size, sizeof size, 0);
+    key = hash_bytes(&map->sun.to_sun, sizeof(vec3s), key);
+    key = hash_bytes(&map->sun.illuminance_lux, sizeof(vec3s), key);
     return hash_bytes(image->pixels,
                       (size_t)image->width * (size_t)image->height * 3 * sizeof(float), key);
 }
