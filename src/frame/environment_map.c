@@ -10,7 +10,8 @@
 #include <string.h>
 
 // Level l has lobes of standard deviation (π/4) / side(l), half a texel's angle, for each of two
-// axes. The last has a side of 1, and a lobe of 45°.
+// axes. The last has a side of 1, and a lobe of 45°. Lookups, which interpolate between texels of
+// that size, see lobes √2 as wide.
 enum { LEAST_SIDE = 16, MOST_SIDE = 512, FACES = 6, TAPS = 24, LEAST_WIDTH = 16 };
 
 static const int PEAK_EXPONENT = 15; // texels are below 2¹⁵

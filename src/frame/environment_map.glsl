@@ -20,8 +20,8 @@ vec3 environment_lobe(vec3 direction, float sigma)
     vec3 at =
         vec3(frame.environment_cos * direction.x - frame.environment_sin * direction.z, direction.y,
              frame.environment_sin * direction.x + frame.environment_cos * direction.z);
-    // Level l has lobes of (π/4) 2^l / side.
-    float level = log2(max(sigma * frame.environment_side * (4.0 / PI), 1.0));
+    // Level l has lobes of (π/4) 2^l / side, which interpolation between texels makes √2 as wide.
+    float level = log2(max(sigma * frame.environment_side * (4.0 / (sqrt(2.0) * PI)), 1.0));
     return frame.uniform_sky + frame.environment_scale * textureLod(environment_map, at, level).rgb;
 }
 
