@@ -1,6 +1,7 @@
 // Irradiance of a fixture's scene by techniques and by the reference.
 #include "techniques/light_trial.h"
 
+#include "scene/scene_edit.h"
 #include "techniques/gi_fixture.h"
 #include "techniques/gi_spec.h"
 #include "trace/trace.h"
@@ -62,7 +63,10 @@ static void add_to_scene(struct scene *scene, const struct world_light *light)
 struct trial_irradiance trial_reference(struct frame_fixture *s, int bounces, int samples)
 {
     for (int i = 0; i < s->input.light_count; i++) add_to_scene(s->scene, &s->lights[i]);
-    s->scene->environment.sky = s->input.environment.sky;
+    const struct environment *environment = &s->input.environment;
+    s->scene->environment.sky = environment->sky;
+    scene_set_environment_map(s->scene, environment->map, environment->strength,
+                              environment->rotation_rad);
     assert_true(pose_init(&s->pose, s->scene, -1, 0));
     struct reference_options options = reference_options_default();
     options.bounces = bounces;

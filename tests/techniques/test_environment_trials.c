@@ -1,0 +1,346 @@
+// Techniques under an environment map: against a uniform sky, against the reference, dimmed and
+// rotated with the scene. Each prints its figures.
+#include "scene/environment_fixture.h"
+#include "techniques/gi_fixture.h"
+#include "techniques/light_trial.h"
+#include "techniques/light_trial_scenes.h"
+
+#include <stdlib.h>
+
+// Small bakes; values of light maps are half floats.
+#define RADIOSITY "radiosity:texels=4096"
+#define ORT       "ort:texels=1024,offsets=100,coordinates=charts"
+#define ORT_ROOM  "ort:texels=4096,offsets=400,coordinates=charts"
+#define DICTIONARY(texels)                                                                         \
+    ":texels=" #texels ",rays=256,prior_modes=16,modes=12,lightfield_positions=4,"                 \
+    "lightfield_directions=6,lightfield_modes=16,response_modes=12,block_probes=2"
+#define MRT "mrt" DICTIONARY(8)
+#define DRT "drt" DICTIONARY(8)
+
+static const double PI = 3.14159265358979;
+
+// ---- scenes, rotated about +y in quarters: +x to −z, as environments turn
+
+static vec3s quarter(vec3s p, int turns)
+{
+    for (int i = 0; i < turns; i++) p = vec3_of(p.z, p.y, -p.x);
+    return p;
+}
+
+static void add_box(struct frame_fixture *s, vec3s min, vec3s max, int turns, int material)
+{
+    const vec3s a = quarter(min, turns), b = quarter(max, turns);
+    fixture_box(s, glms_vec3_minv(a, b), glms_vec3_maxv(a, b), false, material);
+}
+
+enum scene_kind { BOX, BOX_ON_FLOOR };
+
+// A box over nothing, of which each point sees its hemisphere; a box on a floor.
+static void build(struct frame_fixture *s, struct gpu *gpu, enum scene_kind kind, int turns)
+{
+    fixture_init(s, gpu);
+    s->width = s->height = 24;
+    const int material = fixture_matte(s, vec3_of(0.7f, 0.6f, 0.5f));
+    add_box(s, vec3_of(-1, 0, -1), vec3_of(1, 2, 1), turns, material);
+    if (kind == BOX_ON_FLOOR) {
+        const vec3s a = quarter(vec3_of(-4, 0, 4), turns), b = quarter(vec3_of(4, 0, 4), turns);
+        fixture_quad(s, a, b, glms_vec3_scale(a, -1), glms_vec3_scale(b, -1), material);
+    }
+    fixture_look(s, quarter(vec3_of(3, 4, 4), turns), vec3_of(0, 0.8f, 0));
+    if (kind == BOX) s->input.camera.vertical_fov_rad = 0.6f;
+}
+
+struct image_of {
+    float *irradiance, *depth;
+    size_t pixels;
+};
+
+static struct image_of render(struct frame_fixture *s, const char *text)
+{
+    struct gi_spec spec;
+    struct image_of image = { .pixels = (size_t)s->width * s->height };
+    fixture_open(s);
+    CHECK(gi_spec_parse(&spec, test_host(), text));
+    struct gi *gi = gi_fixture_create(s->gpu, &spec, &s->pose, s->width, s->height);
+    assert_non_null(gi);
+    s->indirect = gi_hook(gi);
+    fixture_render(s);
+    image.irradiance = fixture_read(s, READ_IRRADIANCE);
+    image.depth = fixture_read(s, READ_DEPTH);
+    gi_destroy(gi);
+    gi_spec_finish(&spec);
+    return image;
+}
+
+static struct image_of image_under(struct gpu *gpu, const char *gi, enum scene_kind kind, int turns,
+                                   const struct environment *environment)
+{
+    struct frame_fixture s;
+    build(&s, gpu, kind, turns);
+    s.input.environment = *environment;
+    const struct image_of image = render(&s, gi);
+    fixture_finish(&s);
+    return image;
+}
+
+static void image_free(struct image_of *image)
+{
+    free(image->irradiance);
+    free(image->depth);
+}
+
+// Over pixels with a surface: by channel the mean of a, and of factor · b; the largest difference
+// over the mean of its channel.
+struct comparison {
+    double mean[2][3], most;
+};
+
+static struct comparison compare(const struct image_of *a, const struct image_of *b, double factor)
+{
+    struct comparison c = { 0 };
+    double most[3] = { 0 };
+    int count = 0;
+    for (size_t i = 0; i < a->pixels; i++) {
+        if (!(a->depth[i] > 0) || !(b->depth[i] > 0)) continue;
+        count++;
+        for (size_t k = 0; k < 3; k++) {
+            const double x = (double)a->irradiance[3 * i + k];
+            const double y = factor * (double)b->irradiance[3 * i + k];
+            c.mean[0][k] += x;
+            c.mean[1][k] += y;
+            most[k] = fmax(most[k], fabs(x - y));
+        }
+    }
+    assert_true(count > 100);
+    for (int k = 0; k < 3; k++) {
+        c.mean[0][k] /= count;
+        c.mean[1][k] /= count;
+        c.most = fmax(c.most, most[k] / c.mean[1][k]);
+    }
+    return c;
+}
+
+static double mean_difference(const struct comparison *c)
+{
+    double most = 0;
+    for (int k = 0; k < 3; k++) most = fmax(most, fabs(c->mean[0][k] / c->mean[1][k] - 1));
+    return most;
+}
+
+static vec3s uniform(vec3s d)
+{
+    (void)d;
+    return vec3_of(3, 2, 1);
+}
+
+// Bands 0 and 1, of which 9 coefficients have all: red from +x, green from +y, blue from +z.
+static vec3s gradient(vec3s d)
+{
+    return vec3_of(2 + 1.6f * d.x, 2 + 1.6f * d.y, 2 + 1.6f * d.z);
+}
+
+struct trial {
+    const char *gi;
+    double tolerance;
+};
+#define COUNT(cases) (sizeof(cases) / sizeof *(cases))
+
+TEST_GPU(a_uniform_map_is_a_uniform_sky)
+{
+    static const struct trial cases[] = {
+        { "vct:quality=high", 0.01 }, { "lpv", 0.01 },     { "holpv", 0.01 },
+        { "ambient", 1e-3 },          { RADIOSITY, 2e-3 }, { ORT, 2e-3 }
+    };
+    const struct environment map = { .map = fixture_map(32, uniform), .strength = 1 };
+    const struct environment sky = { .sky = uniform(vec3_of(0, 1, 0)) };
+    for (size_t i = 0; i < COUNT(cases); i++)
+        for (int kind = BOX; kind <= BOX_ON_FLOOR; kind++) {
+            struct image_of a = image_under(gpu, cases[i].gi, kind, 0, &map);
+            struct image_of b = image_under(gpu, cases[i].gi, kind, 0, &sky);
+            const struct comparison c = compare(&a, &b, 1);
+            print_message("%s: uniform map against sky: at most %.5f\n", cases[i].gi, c.most);
+            CHECK(c.mean[0][0] > 1 && c.most <= cases[i].tolerance);
+            image_free(&a);
+            image_free(&b);
+        }
+    environment_map_release(map.map);
+}
+
+TEST_GPU(strength_is_a_factor_of_all_light)
+{
+    static const struct trial cases[] = {
+        { "vct:quality=high", 0.01 }, { "lpv", 0.01 },     { "holpv", 0.01 },
+        { "ambient", 1e-3 },          { RADIOSITY, 2e-3 }, { ORT, 2e-3 }
+    };
+    const struct environment once = { .map = fixture_map(32, gradient), .strength = 1 };
+    struct environment thrice = once;
+    thrice.strength = 3;
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        struct image_of a = image_under(gpu, cases[i].gi, BOX_ON_FLOOR, 0, &thrice);
+        struct image_of b = image_under(gpu, cases[i].gi, BOX_ON_FLOOR, 0, &once);
+        const struct comparison c = compare(&a, &b, 3);
+        print_message("%s: strength 3 against thrice: at most %.5f\n", cases[i].gi, c.most);
+        CHECK(c.mean[0][0] > 1 && c.most <= cases[i].tolerance);
+        image_free(&a);
+        image_free(&b);
+    }
+    environment_map_release(once.map);
+}
+
+TEST_GPU(rotating_everything_gives_the_same_light)
+{
+    static const struct trial cases[] = {
+        { "vct:quality=high", 0.03 }, { "lpv", 0.01 },     { "holpv", 0.01 },
+        { "ambient", 0.01 },          { RADIOSITY, 0.01 }, { ORT, 0.01 }
+    };
+    struct environment e = { .map = fixture_map(64, gradient), .strength = 1 };
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        e.rotation_rad = 0.3f;
+        struct image_of still = image_under(gpu, cases[i].gi, BOX_ON_FLOOR, 0, &e);
+        e.rotation_rad += GLM_PI_2f;
+        struct image_of rotated = image_under(gpu, cases[i].gi, BOX_ON_FLOOR, 1, &e);
+        const struct comparison c = compare(&rotated, &still, 1);
+        print_message("%s: rotated by a quarter: means by %.5f, pixels by at most %.4f\n",
+                      cases[i].gi, mean_difference(&c), c.most);
+        CHECK(mean_difference(&c) <= cases[i].tolerance);
+        image_free(&rotated);
+        image_free(&still);
+    }
+    environment_map_release(e.map);
+}
+
+// ---- against the reference
+
+static struct trial_irradiance expected_under(struct gpu *gpu, enum scene_kind kind,
+                                              const struct environment *environment)
+{
+    struct frame_fixture s;
+    build(&s, gpu, kind, 0);
+    s.input.environment = *environment;
+    const struct trial_irradiance expected = trial_reference(&s, -1, 64);
+    fixture_finish(&s);
+    return expected;
+}
+
+static void check_shares(struct gpu *gpu, enum scene_kind kind, const struct trial *cases,
+                         size_t count)
+{
+    const struct environment e = { .map = fixture_map(64, gradient),
+                                   .strength = 2,
+                                   .rotation_rad = 0.5f };
+    const struct trial_irradiance expected = expected_under(gpu, kind, &e);
+    for (size_t i = 0; i < count; i++) {
+        struct frame_fixture s;
+        build(&s, gpu, kind, 0);
+        s.input.environment = e;
+        const struct trial_irradiance got = trial_technique(&s, cases[i].gi);
+        fixture_finish(&s);
+        print_message("%s: %.3f %.3f %.3f of the reference's %.2f %.2f %.2f lux\n", cases[i].gi,
+                      got.mean[0] / expected.mean[0], got.mean[1] / expected.mean[1],
+                      got.mean[2] / expected.mean[2], expected.mean[0], expected.mean[1],
+                      expected.mean[2]);
+        for (int c = 0; c < 3; c++)
+            CHECK_RELATIVE(got.mean[c], expected.mean[c], cases[i].tolerance);
+    }
+    environment_map_release(e.map);
+}
+
+TEST_GPU(a_convex_body_gets_the_light_of_the_map)
+{
+    static const struct trial cases[] = { { "vct:quality=high", 0.1 }, { "lpv", 0.25 },
+                                          { "holpv", 0.25 },           { "ambient", 0.03 },
+                                          { RADIOSITY, 0.1 },          { ORT, 0.1 } };
+    check_shares(gpu, BOX, cases, COUNT(cases));
+}
+
+TEST_GPU(a_box_on_a_floor_gets_the_light_of_the_map)
+{
+    static const struct trial cases[] = { { "vct:quality=high", 0.1 },
+                                          { "lpv", 0.25 },
+                                          { "holpv", 0.25 },
+                                          { RADIOSITY, 0.1 },
+                                          { MRT, 0.15 },
+                                          { DRT, 0.15 },
+                                          { ORT, 0.1 } };
+    check_shares(gpu, BOX_ON_FLOOR, cases, COUNT(cases));
+}
+
+// ---- darkness
+
+static double room_irradiance(struct gpu *gpu, const char *gi, bool dark,
+                              const struct environment *environment)
+{
+    struct frame_fixture s;
+    trial_two_rooms(&s, gpu, dark);
+    s.input.light_count = 0;
+    s.input.environment = *environment;
+    const struct trial_irradiance e = trial_technique(&s, gi);
+    fixture_finish(&s);
+    return e.mean[1];
+}
+
+// Cones leak as in a room beside a sunlit one; texels of ort are large here. Both leak no more than
+// under a uniform sky.
+TEST_GPU(a_closed_room_under_a_bright_map_stays_dark)
+{
+    static const struct trial cases[] = { { "vct:quality=high", 0.05 },
+                                          { "lpv", 0.005 },
+                                          { "holpv", 0.005 },
+                                          { RADIOSITY, 0.005 },
+                                          { ORT_ROOM, 0.01 } };
+    const struct environment e = { .map = fixture_map(64, gradient), .strength = 1000 };
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        const double open = room_irradiance(gpu, cases[i].gi, false, &e);
+        const double dark = room_irradiance(gpu, cases[i].gi, true, &e);
+        print_message("%s: closed room %.5f of the open one (%.0f lux)\n", cases[i].gi, dark / open,
+                      open);
+        CHECK(open > 0.1 * PI * 1000 && dark <= cases[i].tolerance * open);
+    }
+    environment_map_release(e.map);
+}
+
+// ---- mirrors
+
+// A polished metal plate: the cone of each pixel meets nothing but the map.
+TEST_GPU(a_polished_plate_shows_the_map)
+{
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
+    struct material metal = material_default();
+    metal.metallic = 1;
+    metal.roughness = 0.1f;
+    fixture_floor(&s, 3, fixture_material(&s, &metal));
+    fixture_look(&s, vec3_of(1, 2, 1.5f), vec3_of(0, 0, 0));
+    s.input.camera.vertical_fov_rad = 0.7f;
+    s.input.environment = (struct environment){ .map = fixture_map(128, gradient),
+                                                .strength = 2,
+                                                .rotation_rad = 1.2f };
+    struct gi_spec spec;
+    fixture_open(&s);
+    CHECK(gi_spec_parse(&spec, test_host(), "vct:quality=high"));
+    struct gi *gi = gi_fixture_create(gpu, &spec, &s.pose, s.width, s.height);
+    assert_non_null(gi);
+    s.indirect = gi_hook(gi);
+    fixture_render(&s);
+    float *color = fixture_read(&s, READ_COLOR);
+    double most = 0, sum = 0, expected_sum = 0;
+    for (uint32_t i = 0; i < s.width * s.height; i++) {
+        const vec3s d = glms_vec3_normalize(
+            fixture_ray(&s, (float)(i % s.width) + 0.5f, (float)(i / s.width) + 0.5f));
+        const vec3s expected = environment_radiance(&s.input.environment, vec3_of(d.x, -d.y, d.z));
+        for (uint32_t c = 0; c < 3; c++) {
+            const double got = (double)color[3 * i + c];
+            most = fmax(most, fabs(got / (double)expected.raw[c] - 1));
+            sum += got;
+            expected_sum += (double)expected.raw[c];
+        }
+    }
+    print_message("vct: plate %.4f of the map, off by at most %.4f\n", sum / expected_sum, most);
+    CHECK_RELATIVE(sum, expected_sum, 0.05);
+    CHECK(most < 0.1);
+    free(color);
+    gi_destroy(gi);
+    gi_spec_finish(&spec);
+    environment_map_release(s.input.environment.map);
+    fixture_finish(&s);
+}
