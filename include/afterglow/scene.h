@@ -40,9 +40,10 @@ AG_API enum ag_result ag_scene_create(struct ag_context *context, struct ag_scen
 AG_API void ag_scene_destroy(struct ag_scene *scene);
 /// Moves a scene to another context, for renderers there: load or build it on another thread in a
 /// context of that thread, while this one renders. Neither context may be used by another thread
-/// during the call; it copies nothing, and pointers to the scene stay valid. AG_ERROR_ARGUMENT if a
-/// renderer, reference or bake uses the scene, or if the contexts differ in `reallocate` or, where
-/// that is given, in `user`: the new context frees the scene.
+/// during the call; it copies nothing but an environment with other uses, and pointers to the scene
+/// stay valid. AG_ERROR_ARGUMENT if a renderer, reference or bake uses the scene, or if the
+/// contexts differ in `reallocate` or, where that is given, in `user`: the new context frees the
+/// scene.
 AG_API enum ag_result ag_scene_transfer(struct ag_scene *scene, struct ag_context *to);
 
 /// How alpha (base_color times its map and the vertex colour) is used, as in glTF.

@@ -3,6 +3,7 @@
 
 #include "scene/dark.h"
 #include "scene/defaults.h"
+#include "scene/environment_map.h"
 #include "scene/import/import.h"
 #include "scene/limits.h"
 
@@ -154,6 +155,12 @@ enum ag_result ag_scene_transfer(struct ag_scene *scene, struct ag_context *to)
                "the scene is in use by %d renderers, %d references and %d bakes", scene->renderers,
                scene->references, scene->bakes);
     AG_REQUIRE(from, same_memory(from, to), "the contexts have different allocators");
+    struct environment *environment = &scene->scene->environment;
+    if (environment->map) {
+        const struct environment_map *map = environment_map_move(environment->map, &to->host);
+        if (!map) return api_done(to, false);
+        environment->map = map;
+    }
     pose_finish(&scene->pose); // made again by the next query
     scene->pose = (struct scene_pose){ 0 };
     scene->pose_moment = (struct moment){ 0 };

@@ -36,6 +36,10 @@ struct environment_map *environment_map_create(struct host *host, const char *na
 struct environment_map *environment_map_of_sky(struct host *host, const struct sun_sky *sky);
 void environment_map_retain(const struct environment_map *map);  // accepts NULL
 void environment_map_release(const struct environment_map *map); // accepts NULL
+// Moves a use to another host with the same memory, which the map then needs instead of its own:
+// the same map where there is no other use, else a copy. NULL, and nothing has changed: no memory.
+const struct environment_map *environment_map_move(const struct environment_map *map,
+                                                   struct host *host);
 
 // Interpolated linearly; direction: unit, in the map's space.
 vec3s environment_map_radiance(const struct environment_map *map, vec3s direction);

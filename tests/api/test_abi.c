@@ -425,6 +425,26 @@ static const struct {
     AT(ag_lightmap_info, texels, 16),
     AT(ag_lightmap_info, texels_per_m, 20),
     AT(ag_lightmap_info, reserved, 24),
+    SIZE(ag_sun_sky_desc, 56),
+    AT(ag_sun_sky_desc, elevation, 0),
+    AT(ag_sun_sky_desc, azimuth, 4),
+    AT(ag_sun_sky_desc, turbidity, 8),
+    AT(ag_sun_sky_desc, ground_albedo, 12),
+    AT(ag_sun_sky_desc, reserved, 24),
+    SIZE(ag_environment_info, 104),
+    AT(ag_environment_info, width, 0),
+    AT(ag_environment_info, height, 4),
+    AT(ag_environment_info, mean, 8),
+    AT(ag_environment_info, has_sun, 20),
+    AT(ag_environment_info, to_sun, 24),
+    AT(ag_environment_info, sun_lux, 36),
+    AT(ag_environment_info, sun_radius, 48),
+    AT(ag_environment_info, sh_error, 52),
+    AT(ag_environment_info, reserved, 72),
+    SIZE(ag_environment_use, 40),
+    AT(ag_environment_use, strength, 0),
+    AT(ag_environment_use, rotation, 4),
+    AT(ag_environment_use, reserved, 8),
     SIZE(ag_light_paint, 96),
     AT(ag_light_paint, x, 0),
     AT(ag_light_paint, y, 4),
@@ -567,6 +587,17 @@ TEST(reserved_members_of_scenes_bakes_and_references_are_refused)
     memset(&look, 0xff, sizeof look);
     assert_int_equal(ag_scene_get_material(scene, 0, &look), AG_OK);
     CHECK_KNOWN(look.material, ag_scene_set_material(scene, 0, &look.material));
+
+    struct ag_environment *environment = NULL;
+    struct ag_sun_sky_desc sky;
+    memset(&sky, 0xff, sizeof sky);
+    ag_sun_sky_desc_default(&sky);
+    assert_int_equal(ag_environment_from_sun_sky(context, &sky, &environment), AG_OK);
+    struct ag_environment_use use;
+    memset(&use, 0xff, sizeof use);
+    ag_environment_use_default(&use);
+    CHECK_KNOWN(use, ag_scene_set_environment(scene, environment, &use));
+    ag_environment_destroy(environment);
 
     struct ag_reference *reference = NULL;
     struct ag_reference_desc desc;

@@ -2,7 +2,7 @@
 add_library(ag_test_program STATIC ${CMAKE_CURRENT_LIST_DIR}/program.c)
 target_compile_definitions(ag_test_program PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
 target_link_libraries(ag_test_program PUBLIC ag_test_framework PkgConfig::JANSSON PRIVATE afterglow_flags)
-foreach(name usage info diff reference render compare interrupt hostile lightmap lightmap_lights export unwrap)
+foreach(name usage info environment diff reference render compare interrupt hostile lightmap lightmap_lights export unwrap)
   ag_test(cli/${name} USES image LIBRARIES ag_test_program)
   target_compile_definitions(test_cli_${name} PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
   add_dependencies(test_cli_${name} afterglow)
@@ -49,5 +49,5 @@ set_tests_properties(bench.frame PROPERTIES TIMEOUT 300 LABELS examples PASS_REG
 
 # Drivers leave memory behind when they are unloaded, without a name by which to suppress it. What of ours lives on a device
 # is held to account by the tests of gpu, frame and api.
-set_tests_properties(cli.bake cli.info cli.interrupt cli.render cli.compare examples.minimal examples.textured examples.measure examples.side_by_side examples.balls examples.views examples.host bench.frame
+set_tests_properties(cli.bake cli.environment cli.info cli.interrupt cli.render cli.compare examples.minimal examples.textured examples.measure examples.side_by_side examples.balls examples.views examples.host bench.frame
   PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
