@@ -5,6 +5,7 @@
 #include "techniques/prt/prt.h"
 
 #include "techniques/prt/prt_state.h"
+#include "bake/report.h"
 #include "scene/scene.h"
 #include "scene/statics.h"
 
@@ -46,7 +47,7 @@ static bool create(void *state, const struct technique_create *how)
 static void list(const struct prt *s, struct gpu_objects *out)
 {
     const size_t texels = s->charts.side_texel_count;
-    const uint32_t first = LIGHT_MAP_CONSTANTS;
+    const uint32_t first = LIGHT_MAP_CONSTANTS, rows = prt_codebook_rows(&s->options);
     gpu_objects_clear(out);
     light_map_list(&s->light_map, offsetof(struct prt, light_map), s->options.specular, out);
     if (texels == 0) return;
@@ -54,14 +55,43 @@ static void list(const struct prt *s, struct gpu_objects *out)
         (struct gpu_constant){ PRT_COEFFICIENTS, prt_coefficients(&s->options) };
     out->constants[first + 1] =
         (struct gpu_constant){ PRT_BOUNCES, s->options.transfer == PRT_INTERREFLECTED };
-    GPU_ADD(
-        out, 0,
-        { GPU_IMAGE, "texel_light", TABLE(texel_light),
-          .image = light_map_table(GPU_RG32U, 3 * texels) },
-        { GPU_PIPELINE, PIPELINE(light), .shader = &shader_prt_light_comp, .consts = 3u << first });
+    out->constants[first + 2] = (struct gpu_constant){ PRT_VECTORS, prt_vectors(&s->options) };
+    GPU_ADD(out, 0,
+            { GPU_IMAGE, "texel_light", TABLE(texel_light),
+              .image = light_map_table(GPU_RG32U, 3 * texels) });
+    if (rows > 0)
+        GPU_ADD(out, 0,
+                { GPU_IMAGE, "row_light", TABLE(row_light),
+                  .image = light_map_table(GPU_RGBA32F, rows) },
+                { GPU_PIPELINE, PIPELINE(rows), .shader = &shader_prt_rows_comp,
+                  .consts = 3u << first },
+                { GPU_PIPELINE, PIPELINE(light), .shader = &shader_prt_light_clusters_comp,
+                  .consts = 4u << first });
+    else
+        GPU_ADD(out, 0,
+                { GPU_PIPELINE, PIPELINE(light), .shader = &shader_prt_light_vectors_comp,
+                  .consts = 3u << first });
     // Created by prt_upload.
     GPU_ADD(out, 0, { GPU_IMAGE, .member = TABLE(texels) },
-            { GPU_IMAGE, .member = TABLE(transfer) });
+            { GPU_IMAGE, .member = TABLE(transfer) }, { GPU_IMAGE, .member = TABLE(clusters) },
+            { GPU_IMAGE, .member = TABLE(weights) });
+}
+
+static bool bake_report(struct report *report, struct bake *bake, const struct technique_bake *how)
+{
+    const struct prt_options *o = how->options;
+    const struct tensor *cluster = tensors_find(bake_tensors(bake), PRT_CLUSTER);
+    const struct tensor *error = tensors_find(bake_tensors(bake), PRT_ERROR);
+    const double texel = 2.0 * prt_dimension(o);
+    if (!cluster || !error) return true;
+    const double texels = (double)cluster->shape[0], vectors = (double)prt_vectors(o);
+    const float *squares = error->data;
+    report_number(report, "vector_bytes", texel * texels);
+    report_number(report, "compressed_bytes",
+                  (2.0 + 2.0 * vectors) * texels + texel * (double)prt_codebook_rows(o));
+    report_number(report, "squared_error",
+                  squares[1] > 0.0f ? (double)squares[0] / (double)squares[1] : 0.0);
+    return true;
 }
 
 static bool load(void *state, const struct tensors *bake)
@@ -144,9 +174,14 @@ static uint32_t more_needs(const void *options)
 static uint64_t memory_estimate(const void *options)
 {
     const struct prt_options *o = options;
-    const uint64_t texels = (uint64_t)o->texels;
-    return light_map_table_bytes(TEXEL_PARTS * texels, 16) +
-           light_map_table_bytes(prt_row_entries(o) * texels, 8) +
+    const uint64_t texels = (uint64_t)o->texels, rows = prt_codebook_rows(o);
+    const uint64_t of_texels = rows > 0
+                                   ? light_map_table_bytes(texels, 4) +
+                                         light_map_table_bytes(prt_weight_entries(o) * texels, 8) +
+                                         light_map_table_bytes(rows, 16)
+                                   : 0;
+    return light_map_table_bytes(TEXEL_PARTS * texels, 16) + of_texels +
+           light_map_table_bytes(prt_row_entries(o) * (rows > 0 ? rows : texels), 8) +
            light_map_table_bytes(3 * texels, 8) + light_map_bytes(texels);
 }
 
@@ -164,6 +199,7 @@ const struct technique technique_prt = {
     .state_size = sizeof(struct prt),
     .more_needs = more_needs,
     .bake = prt_bake,
+    .bake_report = bake_report,
     .create = create,
     .load = load,
     .invalidate = invalidate,

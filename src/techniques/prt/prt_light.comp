@@ -4,7 +4,11 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#if PRT_COMPRESSED
+#include "techniques/prt/prt_clusters.glsl"
+#else
 #include "techniques/prt/prt_transfer.glsl"
+#endif
 
 layout(local_size_x = PRT_LOCAL) in;
 
@@ -20,13 +24,22 @@ vec4 texel_part(uint texel, int part)
     return imageLoad(prt_texels, light_map_at(part * push.texels + texel));
 }
 
+vec3 texel_irradiance(uint texel)
+{
+#if PRT_COMPRESSED
+    return prt_cluster_irradiance(texel, push.texels);
+#else
+    return prt_row_irradiance(texel, push.texels);
+#endif
+}
+
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.texels) return;
     vec3 normal = texel_part(i, TEXEL_NORMAL).xyz;
     // Sums of few bands ring below 0.
-    vec3 irradiance = max(prt_row_irradiance(i, push.texels), vec3(0.0));
+    vec3 irradiance = max(texel_irradiance(i), vec3(0.0));
     for (int c = 0; c < 3; c++) {
         vec4 sum = vec4(irradiance[c], irradiance[c] * normal);
         sum += texel_part(i, TEXEL_EMITTED_0 + c) * push.emitters;

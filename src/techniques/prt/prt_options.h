@@ -15,8 +15,33 @@ static inline int prt_bands(const struct prt_options *options)
 {
     return 2 + options->coefficients;
 }
+enum { PRT_NONE, PRT_PCA, PRT_VQ, PRT_CPCA };
+
 // Coefficients of a function over the sphere.
 static inline uint32_t prt_coefficients(const struct prt_options *options)
 {
     return (uint32_t)(prt_bands(options) * prt_bands(options));
+}
+// Numbers of a texel's transfer vector: with bounces for each coefficient the direct one, then the
+// bounced ones by colour.
+static inline uint32_t prt_dimension(const struct prt_options *options)
+{
+    return prt_coefficients(options) * (options->transfer == PRT_INTERREFLECTED ? 4 : 1);
+}
+// Of compressed vectors; 0 clusters: they are not.
+static inline uint32_t prt_clusters(const struct prt_options *options)
+{
+    if (options->compression == PRT_NONE) return 0;
+    return options->compression == PRT_PCA ? 1 : (uint32_t)options->clusters;
+}
+static inline uint32_t prt_vectors(const struct prt_options *options)
+{
+    const uint32_t vectors = (uint32_t)options->vectors, dimension = prt_dimension(options);
+    if (options->compression == PRT_VQ) return 0;
+    return vectors < dimension ? vectors : dimension;
+}
+// Means and vectors of all clusters.
+static inline uint32_t prt_codebook_rows(const struct prt_options *options)
+{
+    return prt_clusters(options) * (1 + prt_vectors(options));
 }

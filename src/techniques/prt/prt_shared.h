@@ -8,19 +8,25 @@
 
 #define PRT_LOCAL 64 // workgroup size over texels
 
-// Transfer vectors in a table of four halves: entry k · rows + row. With bounces it has
-// coefficient k: the direct one and by colour the bounced ones; without, the direct coefficients
-// 4k … 4k + 3.
+// Transfer vectors of texels, or rows of a codebook, in a table of four halves: entry k · rows +
+// row. With bounces it has coefficient k: the direct one and by colour the bounced ones; without,
+// the direct coefficients 4k … 4k + 3.
 #define PRT_ROW_HALVES 4
 
 // Specialization constants: coefficients of a vector; whether it has bounces.
 #define PRT_COEFFICIENTS 0
 #define PRT_BOUNCES      1
+// Of a cluster's subspace.
+#define PRT_VECTORS 2
 
 // Uniform block "prt_light": coefficients of distant light, scaled radiance by colour.
 struct prt_light {
     vec4s direct[PRT_MAX_COEFFICIENTS];  // of the environment
     vec4s bounced[PRT_MAX_COEFFICIENTS]; // and of suns, whose direct light the frame draws
+};
+
+struct prt_rows_push {
+    uint32_t rows;
 };
 
 struct prt_light_push {
@@ -31,6 +37,7 @@ struct prt_light_push {
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct prt_light) == 2 * PRT_MAX_COEFFICIENTS * 16, "layout is shared with "
                                                                           "GLSL");
+_Static_assert(sizeof(struct prt_rows_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct prt_light_push) == 8, "layout is shared with GLSL");
 #endif
 

@@ -15,11 +15,13 @@ struct prt {
     struct charts charts; // without texels: an empty scene
     struct light_map light_map;
     struct {
-        gpu_image texels, transfer; // of the bake
-        gpu_image texel_light;      // of the newest light
+        gpu_image texels, transfer;  // of the bake; the latter of texels or clusters
+        gpu_image clusters, weights; // of compressed texels
+        gpu_image row_light;         // of the newest light, of each row of the codebook
+        gpu_image texel_light;       // and of texels
     } tables;
     struct {
-        gpu_pipeline light;
+        gpu_pipeline rows, light;
     } pipelines;
     struct light_map_followed followed;
     struct kept kept;
@@ -29,10 +31,12 @@ struct prt {
 // Entries of a row in the table of transfer vectors.
 static inline uint32_t prt_row_entries(const struct prt_options *options)
 {
-    const uint32_t coefficients = prt_coefficients(options);
-    return options->transfer == PRT_INTERREFLECTED
-               ? coefficients
-               : (coefficients + PRT_ROW_HALVES - 1) / PRT_ROW_HALVES;
+    return (prt_dimension(options) + PRT_ROW_HALVES - 1) / PRT_ROW_HALVES;
+}
+// Entries of a texel in the table of weights.
+static inline uint32_t prt_weight_entries(const struct prt_options *options)
+{
+    return (prt_vectors(options) + PRT_ROW_HALVES - 1) / PRT_ROW_HALVES;
 }
 
 // ---- prt_upload.c

@@ -12,6 +12,12 @@
 #define PRT_BOUNCE  "transfer/bounce"  // F16 [coefficients][texels][3], interreflected
 #define PRT_EMITTED "transfer/emitted" // F32 [texels][3]: bounces of emitted light, interreflected
 
+// In place of the first two with compression:
+#define PRT_CODEBOOK "compressed/rows"    // F16 [clusters · (1 + vectors)][dimension]
+#define PRT_CLUSTER  "compressed/cluster" // U16 [texels]
+#define PRT_WEIGHT   "compressed/weight"  // F16 [texels][vectors], if there are vectors
+#define PRT_ERROR    "compressed/error" // F32 [2]: Σ |x − x̂|² and Σ |x − mean|² over the texels
+
 // ---- prt_charts.c
 bool prt_charts(const struct scene_pose *statics, const void *options, struct host *host,
                 struct charts *out);

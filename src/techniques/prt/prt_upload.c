@@ -7,8 +7,10 @@ struct content {
     struct light_map_texels texels;
     const uint16_t *direct; // PRT_DIRECT
     const uint16_t *bounce; // PRT_BOUNCE; NULL: without bounces
-    float *emitted;         // [texels][3][4] with bounces, as LIGHT_MAP_EMITTED
-    uint32_t *shown;        // [texels] whose light each one shows
+    // Compressed: PRT_CODEBOOK, PRT_CLUSTER, PRT_WEIGHT.
+    const uint16_t *codebook, *cluster, *weight;
+    float *emitted;  // [texels][3][4] with bounces, as LIGHT_MAP_EMITTED
+    uint32_t *shown; // [texels] whose light each one shows
 };
 
 // Bounced light comes from all around: its vector irradiance is along the normal.
@@ -32,51 +34,94 @@ static bool add_emitted_bounces(struct prt *s, const struct tensors *bake, struc
     return true;
 }
 
-static bool find_tensors(struct prt *s, const struct tensors *bake, struct content *out)
+static bool find_vectors(struct prt *s, const struct tensors *bake, struct content *out)
 {
     const uint64_t texels = light_map_rows(s->charts.side_texel_count);
     const uint64_t coefficients = prt_coefficients(&s->options);
-    *out = (struct content){ 0 };
     out->direct = TENSORS_EXPECT(s->host, bake, PRT_DIRECT, TENSOR_F16, coefficients, texels);
-    if (!out->direct) return false;
-    if (s->options.transfer == PRT_INTERREFLECTED &&
-        !(out->bounce =
-              TENSORS_EXPECT(s->host, bake, PRT_BOUNCE, TENSOR_F16, coefficients, texels, 3)))
-        return false;
-    return light_map_find_texels(&out->texels, s->host, &s->charts, bake) &&
-           (!out->bounce || add_emitted_bounces(s, bake, out));
+    if (!out->direct || s->options.transfer != PRT_INTERREFLECTED) return out->direct != NULL;
+    out->bounce = TENSORS_EXPECT(s->host, bake, PRT_BOUNCE, TENSOR_F16, coefficients, texels, 3);
+    return out->bounce != NULL;
 }
 
-static void fill_row(const struct prt *s, const struct content *c, size_t row, uint16_t *table)
+static bool check_clusters(const struct prt *s, const struct content *c)
 {
-    const size_t rows = s->charts.side_texel_count, count = prt_coefficients(&s->options);
-    for (size_t k = 0; k < count; k++) {
-        const size_t at = k * rows + row;
-        if (!c->bounce) {
-            table[PRT_ROW_HALVES * (k / PRT_ROW_HALVES * rows + row) + k % PRT_ROW_HALVES] =
-                c->direct[at];
-            continue;
-        }
-        table[PRT_ROW_HALVES * at] = c->direct[at];
-        for (size_t a = 0; a < 3; a++) table[PRT_ROW_HALVES * at + 1 + a] = c->bounce[3 * at + a];
-    }
+    for (uint32_t i = 0; i < s->charts.side_texel_count; i++)
+        if (c->cluster[i] >= prt_clusters(&s->options))
+            return host_fail(s->host, FAIL_FORMAT, "bake of prt: texel %u is in cluster %u of %u",
+                             i, c->cluster[i], prt_clusters(&s->options));
+    return true;
+}
+
+static bool find_codebook(struct prt *s, const struct tensors *bake, struct content *out)
+{
+    const uint64_t texels = light_map_rows(s->charts.side_texel_count);
+    const uint64_t rows = prt_codebook_rows(&s->options), vectors = prt_vectors(&s->options);
+    out->codebook =
+        TENSORS_EXPECT(s->host, bake, PRT_CODEBOOK, TENSOR_F16, rows, prt_dimension(&s->options));
+    if (!out->codebook) return false;
+    out->cluster = TENSORS_EXPECT(s->host, bake, PRT_CLUSTER, TENSOR_U16, texels);
+    if (!out->cluster || !check_clusters(s, out)) return false;
+    if (!TENSORS_EXPECT(s->host, bake, PRT_ERROR, TENSOR_F32, 2)) return false;
+    if (vectors == 0) return true;
+    out->weight = TENSORS_EXPECT(s->host, bake, PRT_WEIGHT, TENSOR_F16, texels, vectors);
+    return out->weight != NULL;
+}
+
+static bool find_tensors(struct prt *s, const struct tensors *bake, struct content *out)
+{
+    *out = (struct content){ 0 };
+    const bool ok = s->options.compression == PRT_NONE ? find_vectors(s, bake, out)
+                                                       : find_codebook(s, bake, out);
+    return ok && light_map_find_texels(&out->texels, s->host, &s->charts, bake) &&
+           (s->options.transfer != PRT_INTERREFLECTED || add_emitted_bounces(s, bake, out));
+}
+
+// Number k of a transfer vector, or of a row of the codebook.
+static uint16_t value_of(const struct prt *s, const struct content *c, size_t row, size_t k)
+{
+    const size_t texels = s->charts.side_texel_count;
+    if (c->codebook) return c->codebook[row * prt_dimension(&s->options) + k];
+    if (!c->bounce) return c->direct[k * texels + row];
+    const size_t at = k / 4 * texels + row;
+    return k % 4 == 0 ? c->direct[at] : c->bounce[3 * at + k % 4 - 1];
 }
 
 static bool upload_transfer(struct prt *s, const struct content *c)
 {
-    const size_t count = (size_t)prt_row_entries(&s->options) * s->charts.side_texel_count;
-    uint16_t *table =
-        host_alloc(s->host, light_map_table_room(count), PRT_ROW_HALVES * sizeof *table);
-    for (size_t i = 0; table && i < s->charts.side_texel_count; i++) fill_row(s, c, i, table);
+    const size_t rows = c->codebook ? prt_codebook_rows(&s->options) : s->charts.side_texel_count;
+    const size_t count = prt_row_entries(&s->options) * rows, halves = PRT_ROW_HALVES;
+    uint16_t *table = host_alloc(s->host, light_map_table_room(count), halves * sizeof *table);
+    for (size_t k = 0; table && k < prt_dimension(&s->options); k++)
+        for (size_t row = 0; row < rows; row++)
+            table[halves * (k / halves * rows + row) + k % halves] = value_of(s, c, row, k);
     return light_map_table_upload(s->host, s->gpu, "transfer", GPU_RG32U, table, count,
                                   &s->tables.transfer);
+}
+
+static bool upload_clusters(struct prt *s, const struct content *c)
+{
+    const size_t texels = s->charts.side_texel_count, vectors = prt_vectors(&s->options);
+    const size_t count = prt_weight_entries(&s->options) * texels, halves = PRT_ROW_HALVES;
+    if (!c->codebook) return true;
+    uint32_t *clusters = host_alloc(s->host, light_map_table_room(texels), sizeof *clusters);
+    uint16_t *weights = host_alloc(s->host, light_map_table_room(count), halves * sizeof *weights);
+    for (size_t i = 0; clusters && i < texels; i++) clusters[i] = c->cluster[i];
+    for (size_t i = 0; weights && i < texels; i++)
+        for (size_t k = 0; k < vectors; k++)
+            weights[halves * (k / halves * texels + i) + k % halves] = c->weight[i * vectors + k];
+    const bool ok = light_map_table_upload(s->host, s->gpu, "clusters", GPU_R32U, clusters, texels,
+                                           &s->tables.clusters);
+    return light_map_table_upload(s->host, s->gpu, "weights", GPU_RG32U, weights, count,
+                                  &s->tables.weights) &&
+           ok;
 }
 
 static bool upload_all(struct prt *s, struct content *c, const struct tensors *bake)
 {
     if (s->charts.side_texel_count == 0) return true;
     c->shown = light_map_shown(&c->texels, s->host);
-    return c->shown && upload_transfer(s, c) &&
+    return c->shown && upload_transfer(s, c) && upload_clusters(s, c) &&
            light_map_upload_texels(&c->texels, s->host, s->gpu, &s->tables.texels) &&
            light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c->shown, bake);
 }

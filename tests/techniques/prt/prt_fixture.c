@@ -154,10 +154,41 @@ bool prt_is_open(const struct prt_baked *baked, uint32_t texel)
     return point[4 * (size_t)texel + 3] > 0;
 }
 
+// Number `at` of the vector of a texel: that of its cluster's mean and vectors.
+static float decoded(const struct prt_baked *baked, uint32_t texel, size_t at)
+{
+    const struct tensor *rows = tensors_find(baked->tensors, PRT_CODEBOOK);
+    const struct tensor *weight = tensors_find(baked->tensors, PRT_WEIGHT);
+    const uint16_t *cluster = tensors_find(baked->tensors, PRT_CLUSTER)->data;
+    const size_t vectors = weight ? weight->shape[1] : 0, dim = rows->shape[1];
+    const uint16_t *row = (const uint16_t *)rows->data + cluster[texel] * (1 + vectors) * dim + at;
+    double sum = (double)float_from_half(row[0]);
+    for (size_t k = 0; k < vectors; k++)
+        sum += (double)float_from_half(((const uint16_t *)weight->data)[texel * vectors + k]) *
+               (double)float_from_half(row[(1 + k) * dim]);
+    return (float)sum;
+}
+
+// Coefficients, and whether there are bounces.
+static size_t count_coefficients(const struct prt_baked *baked, bool *bounces)
+{
+    const struct tensor *direct = tensors_find(baked->tensors, PRT_DIRECT);
+    *bounces = tensors_find(baked->tensors, PRT_EMITTED) != NULL;
+    if (direct) return direct->shape[0];
+    return tensors_find(baked->tensors, PRT_CODEBOOK)->shape[1] / (*bounces ? 4 : 1);
+}
+
 vec4s prt_coefficient(const struct prt_baked *baked, uint32_t texel, size_t k)
 {
     const struct tensor *direct = tensors_find(baked->tensors, PRT_DIRECT);
     const struct tensor *bounce = tensors_find(baked->tensors, PRT_BOUNCE);
+    bool bounces;
+    count_coefficients(baked, &bounces);
+    if (!direct) {
+        vec4s out = { { decoded(baked, texel, bounces ? 4 * k : k), 0, 0, 0 } };
+        for (size_t c = 1; bounces && c < 4; c++) out.raw[c] = decoded(baked, texel, 4 * k + c);
+        return out;
+    }
     const size_t at = k * direct->shape[1] + texel;
     vec4s out = { { float_from_half(((const uint16_t *)direct->data)[at]), 0, 0, 0 } };
     for (size_t c = 0; bounce && c < 3; c++)
@@ -169,7 +200,8 @@ void prt_irradiance(const struct prt_baked *baked, uint32_t texel, const struct 
                     float out[3])
 {
     double sum[3] = { 0 };
-    const size_t count = tensors_find(baked->tensors, PRT_DIRECT)->shape[0];
+    bool bounces;
+    const size_t count = count_coefficients(baked, &bounces);
     for (size_t k = 0; k < count; k++) {
         const vec4s t = prt_coefficient(baked, texel, k);
         for (int c = 0; c < 3; c++)

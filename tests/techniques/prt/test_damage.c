@@ -33,10 +33,10 @@ static void check_refused(struct damage_fixture *u, const char *message)
     if (!strstr(test_last_message(), message) || newline) fail_msg("%s", test_last_message());
 }
 
-TEST_GPU(a_bake_without_a_tensor_or_with_another_shape_is_refused)
+static void check_tensors(struct gpu *gpu, const char *text)
 {
     struct damage_fixture u;
-    open_subject(&u, gpu, SMALL);
+    open_subject(&u, gpu, text);
     CHECK(damage_loads(&u));
     for (size_t i = 0; i < u.set.count; i++) {
         u.at[i].name = "another";
@@ -48,8 +48,16 @@ TEST_GPU(a_bake_without_a_tensor_or_with_another_shape_is_refused)
             damage_restore(&u, i);
         }
     }
-    print_message("%zu tensors\n", u.set.count);
+    print_message("%s: %zu tensors\n", text, u.set.count);
     damage_close(&u);
+}
+
+TEST_GPU(a_bake_without_a_tensor_or_with_another_shape_is_refused)
+{
+    check_tensors(gpu, SMALL);
+    check_tensors(gpu, SMALL ",transfer=shadowed");
+    check_tensors(gpu, SMALL ",compression=vq");
+    check_tensors(gpu, SMALL ",compression=cpca");
 }
 
 // One element of each tensor of floats.
@@ -75,6 +83,21 @@ TEST_GPU(a_bake_with_a_value_that_is_not_finite_is_refused)
     }
     print_message("%d tensors with a value that is not finite were refused\n", changed);
     CHECK(changed >= 6);
+    damage_close(&u);
+}
+
+TEST_GPU(a_bake_with_a_cluster_that_it_has_not_is_refused)
+{
+    struct damage_fixture u;
+    open_subject(&u, gpu, SMALL ",compression=cpca,clusters=8");
+    CHECK(damage_loads(&u));
+    const size_t i = damage_index(&u, "compressed/cluster");
+    const size_t count = u.at[i].bytes / sizeof(uint16_t), places[] = { 0, count / 2, count - 1 };
+    for (size_t k = 0; k < 3; k++) {
+        ((uint16_t *)damage_own(&u, i))[places[k]] = k == 1 ? UINT16_MAX : 8;
+        check_refused(&u, "is in cluster");
+        damage_restore(&u, i);
+    }
     damage_close(&u);
 }
 
@@ -104,13 +127,16 @@ static uint16_t noise(uint64_t i)
 // The validation layers, and the sanitizer where it is on, report reads beyond bounds.
 TEST_GPU(a_bake_of_hostile_vectors_draws)
 {
-    struct damage_fixture u;
-    open_subject(&u, gpu, SMALL);
-    for (int i = 0; i < 2; i++) {
-        const char *name = i ? "transfer/bounce" : "transfer/direct";
-        fill(&u, name, huge);
-        fill(&u, name, negative);
-        fill(&u, name, noise);
+    static const char *const NAMES[2][2] = { { "transfer/direct", "transfer/bounce" },
+                                             { "compressed/rows", "compressed/weight" } };
+    for (int compressed = 0; compressed < 2; compressed++) {
+        struct damage_fixture u;
+        open_subject(&u, gpu, compressed ? SMALL ",compression=cpca" : SMALL);
+        for (int i = 0; i < 2; i++) {
+            fill(&u, NAMES[compressed][i], huge);
+            fill(&u, NAMES[compressed][i], negative);
+            fill(&u, NAMES[compressed][i], noise);
+        }
+        damage_close(&u);
     }
-    damage_close(&u);
 }

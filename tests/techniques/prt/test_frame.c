@@ -118,7 +118,13 @@ TEST_GPU(light_of_texels_is_the_sum_of_their_transfer_vectors)
                                         "coefficients=25",
                                         "transfer=shadowed",
                                         "transfer=shadowed,coefficients=25",
-                                        "transfer=unshadowed,coefficients=16" };
+                                        "transfer=unshadowed,coefficients=16",
+                                        "compression=pca",
+                                        "compression=vq,clusters=100",
+                                        "compression=cpca,clusters=16",
+                                        "compression=cpca,clusters=9,vectors=3,coefficients=25",
+                                        "compression=cpca,clusters=8,vectors=5,transfer=shadowed",
+                                        "compression=pca,vectors=32,transfer=shadowed" };
     for (size_t i = 0; i < sizeof MORE / sizeof *MORE; i++) {
         struct prt_fixture f;
         struct prt_light light;
@@ -131,7 +137,7 @@ TEST_GPU(light_of_texels_is_the_sum_of_their_transfer_vectors)
         fixture_render(&f.s);
         const double worst = compare_texels(&f, &baked, &light, 1);
         print_message("%s: %.2g off\n", MORE[i], worst);
-        CHECK(worst <= 0x1p-11 + 1e-6);
+        CHECK(worst <= 0x1p-11 + 2e-6);
         close_stack(&g);
         prt_baked_finish(&baked);
         prt_fixture_close(&f);

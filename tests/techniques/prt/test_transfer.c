@@ -344,6 +344,42 @@ TEST(hits_of_a_texel_are_the_rays_that_do_not_meet_the_sky)
     prt_fixture_close(&f);
 }
 
+// ---- compression
+
+// Floor, boxes, a sphere with a hole: clusters with subspaces are closer than points and than one
+// subspace, which have at least as many bytes.
+TEST(clustered_components_of_a_scene_are_better_than_both_at_equal_bytes)
+{
+    static const char *const MORE[] = { "compression=cpca,clusters=16,vectors=6",
+                                        "compression=pca,vectors=9",
+                                        "compression=vq,clusters=1024" };
+    struct prt_fixture f;
+    double error[3], bytes[3];
+    prt_fixture_init(&f);
+    fixture_floor(&f.s, 2, prt_fixture_diffuse(&f, 0.7f));
+    fixture_box(&f.s, vec3_of(-1, 0, -0.5f), vec3_of(0, 1, 0.5f), false,
+                fixture_matte(&f.s, vec3_of(0.8f, 0.5f, 0.2f)));
+    fixture_box(&f.s, vec3_of(-1, 1.3f, -1.5f), vec3_of(1.5f, 1.4f, 1), false,
+                fixture_matte(&f.s, vec3_of(0.3f, 0.5f, 0.8f)));
+    prt_fixture_sphere(&f, vec3_of(1, 0.8f, 0), 0.7f, 16, 4, true, prt_fixture_diffuse(&f, 0.6f));
+    prt_fixture_open(&f, "texels=4096,rays=128");
+    for (int i = 0; i < 3; i++) {
+        struct prt_baked baked = prt_fixture_bake(&f, MORE[i], 0);
+        const struct tensor *rows = tensors_find(baked.tensors, PRT_CODEBOOK),
+                            *weight = tensors_find(baked.tensors, PRT_WEIGHT),
+                            *cluster = tensors_find(baked.tensors, PRT_CLUSTER);
+        const float *squares = tensors_find(baked.tensors, PRT_ERROR)->data;
+        error[i] = (double)(squares[0] / squares[1]);
+        bytes[i] =
+            (double)(rows->bytes + (weight ? weight->bytes : 0) + (i == 1 ? 0 : cluster->bytes));
+        print_message("%s: error %.2g of the variance, %.0f bytes\n", MORE[i], error[i], bytes[i]);
+        prt_baked_finish(&baked);
+    }
+    CHECK(bytes[1] >= bytes[0] && bytes[2] >= 0.9 * bytes[0]);
+    CHECK(error[0] < error[1] && error[0] < error[2]);
+    prt_fixture_close(&f);
+}
+
 // ---- rotation
 
 // A box, a slab over it and a floor, turned around their middle.

@@ -34,3 +34,7 @@ bool prt_add_texels(struct bake_plan *plan, const struct prt_scene *scene);
 
 // ---- transfer.c: transfer vectors with bounces, by coefficient
 bool prt_add_transfer(struct bake_plan *plan, const struct prt_scene *scene);
+
+// ---- compression.c: of those vectors, if there is one
+enum { PRT_COMPRESSION_WAVE = 2 };
+bool prt_add_compression(struct bake_plan *plan, const struct prt_scene *scene);

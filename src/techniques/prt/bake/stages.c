@@ -1,4 +1,5 @@
-// The stages of a bake, in the order of their waves: texels · transfer, seams.
+// The stages of a bake, in the order of their waves: texels · transfer, emitters, seams ·
+// compression.
 #include "techniques/prt/bake/scene.h"
 
 #include "bake/plan.h"
@@ -59,7 +60,7 @@ static bool add_stages(struct bake_plan *plan, struct prt_scene *scene,
     bake_plan_set_light_map(
         plan, (struct bake_light_map){ charts->count, charts->texels_per_m, plan_at });
     return prt_add_texels(plan, scene) && prt_add_transfer(plan, scene) &&
-           light_map_add_seams(plan, &scene->closing, charts);
+           light_map_add_seams(plan, &scene->closing, charts) && prt_add_compression(plan, scene);
 }
 
 bool prt_bake(struct bake_plan *plan, const struct technique_bake *how)

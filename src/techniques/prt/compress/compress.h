@@ -1,0 +1,62 @@
+// Compression of points by clusters of affine subspaces (Sloan, Hall, Hart & Snyder 2003,
+// "Clustered Principal Components for Precomputed Radiance Transfer", section 4): a point is the
+// mean of its cluster plus a weighted sum of the cluster's vectors,
+//
+//     x ≈ m_c + Σ w_k b_ck,  w_k = b_ck · (x − m_c).
+//
+// Without vectors this is vector quantisation, with one cluster principal component analysis.
+#pragma once
+
+#include "core/host.h"
+
+#include <stdint.h>
+
+struct prt_points {
+    const float *at; // [count][dim]
+    size_t count, dim;
+};
+
+struct prt_compression {
+    uint32_t clusters; // at least 1
+    uint32_t vectors;  // of a cluster, at most the dimension
+    uint64_t seed;
+    bool (*stop)(void *user); // NULL: never
+    void *user;
+};
+
+// prt_codebook_finish accepts zero.
+struct prt_codebook {
+    struct host *host;
+    size_t clusters, vectors, dim;
+    float *rows;       // [clusters][1 + vectors][dim]: mean, then orthonormal vectors
+    uint32_t *cluster; // [points]
+    double error;      // Σ |x − x̂|² over the points
+};
+
+// Clusters by vector quantisation: seeds by their squared distances (Arthur & Vassilvitskii 2007,
+// "k-means++"), then Lloyd's rounds. With vectors rounds follow in which points move to the
+// subspace nearest to them (section 4.2). Deterministic. False: no memory, or stopped
+// (FAIL_CANCELLED).
+bool prt_compress(struct host *host, const struct prt_points *points,
+                  const struct prt_compression *how, struct prt_codebook *out);
+void prt_codebook_finish(struct prt_codebook *codebook);
+static inline const float *prt_codebook_row(const struct prt_codebook *codebook, size_t cluster,
+                                            size_t row)
+{
+    return codebook->rows + (cluster * (1 + codebook->vectors) + row) * codebook->dim;
+}
+
+// [vectors] of a point in a cluster.
+void prt_weigh(const struct prt_codebook *codebook, uint32_t cluster, const float *point,
+               float *weights);
+// Σ |x − mean|² of the points.
+double prt_variance(const struct prt_points *points);
+
+// ---- for compress.c: lloyd.c, seeds.c
+
+// The nearest subspace of each point and the squared distances to them, [count].
+bool prt_assign(const struct prt_points *points, struct prt_codebook *codebook, float *error);
+// Means and vectors of the points of each cluster.
+bool prt_update(const struct prt_points *points, struct prt_codebook *codebook);
+// Means of the clusters.
+bool prt_find_seeds(const struct prt_points *points, uint64_t seed, struct prt_codebook *codebook);
