@@ -302,17 +302,13 @@ void environment_map_release(const struct environment_map *map)
     if (map && atomic_fetch_sub(&writable(map)->users, 1) == 1) destroy(writable(map));
 }
 
-static bool copy_to(struct environment_map *copy, const struct environment_map *map)
+static bool copy_light(struct environment_map *copy, const struct environment_map *map)
 {
     const struct image *from = &map->radiance;
+    copy->sun = map->sun;
     if (!image_init(&copy->radiance, copy->host, from->width, from->height, 3)) return false;
     memcpy(copy->radiance.pixels, from->pixels,
            (size_t)from->width * (size_t)from->height * 3 * sizeof *from->pixels);
-    memcpy(copy->sh, map->sh, sizeof copy->sh);
-    memcpy(copy->sh_error, map->sh_error, sizeof copy->sh_error);
-    copy->sun = map->sun;
-    copy->peak = map->peak;
-    copy->key = map->key;
     return true;
 }
 
@@ -324,10 +320,7 @@ const struct environment_map *environment_map_move(const struct environment_map 
         return map;
     }
     struct environment_map *copy = begin(host, map->name);
-    if (copy && !copy_to(copy, map)) {
-        destroy(copy);
-        copy = NULL;
-    }
+    if (copy) copy = end(copy, copy_light(copy, map));
     if (copy) environment_map_release(map);
     return copy;
 }

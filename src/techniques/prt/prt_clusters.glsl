@@ -8,9 +8,10 @@
 
 layout(constant_id = PRT_VECTORS) const uint VECTORS = 8;
 
-layout(set = 0, binding = 0, r32ui) uniform readonly uimage2D prt_clusters;  // [texel]
-layout(set = 0, binding = 1, rg32ui) uniform readonly uimage2D prt_weights;  // [entry][texel]
-layout(set = 0, binding = 4, rgba32f) uniform readonly image2D prt_row_light; // [cluster][1 + vector]
+layout(set = 0, binding = 0, r32ui) uniform readonly uimage2D prt_clusters; // [texel]
+layout(set = 0, binding = 1, rg32ui) uniform readonly uimage2D prt_weights; // [entry][texel]
+layout(set = 0, binding = 4,
+       rgba32f) uniform readonly image2D prt_row_light; // [cluster][1 + vector]
 
 vec3 prt_cluster_irradiance(uint texel, uint texels)
 {
