@@ -160,7 +160,12 @@ static enum status render_frame(struct job *job, int frame)
     desc.exposure_ev = a->exposure_ev;
     enum status status = session_camera(&job->session, desc.time_s, &desc.camera);
     if (status != DONE) return status;
-    enum ag_result result = ag_renderer_render(job->renderer, &desc);
+    const struct session *session = &job->session;
+    enum ag_result result = AG_OK;
+    if (a->environment && a->environment_value.turn != 0.0f)
+        result =
+            environment_turn(session->scene, session->environment, &a->environment_value, frame);
+    if (result == AG_OK) result = ag_renderer_render(job->renderer, &desc);
     if (result != AG_OK) return fail_library(job->session.context, result);
     // The first of several frames includes one-time work.
     bool counts = job->measure && (frame > 0 || a->frames == 1);

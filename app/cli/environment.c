@@ -18,6 +18,10 @@ static bool set_member(struct environment_value *v, const char *name, double num
         v->use.rotation = radians(fmod(number, 360.0));
         return true;
     }
+    if (strcmp(name, "turn") == 0) {
+        v->turn = radians(fmod(number, 360.0));
+        return true;
+    }
     if (strcmp(name, "strength") == 0) {
         *why = "strength must be 0 to 1e6";
         v->use.strength = (float)number;
@@ -37,8 +41,8 @@ static bool set_member(struct environment_value *v, const char *name, double num
         v->sky.turbidity = (float)number;
         return number >= 2.0 && number <= 10.0;
     }
-    *why = sky ? "its members are elevation, azimuth, turbidity, rotation and strength"
-               : "its members are rotation and strength";
+    *why = sky ? "its members are elevation, azimuth, turbidity, rotation, strength and turn"
+               : "its members are rotation, strength and turn";
     return false;
 }
 
@@ -77,6 +81,7 @@ bool value_environment(const char *text, struct environment_value *out, const ch
     const size_t length = colon ? (size_t)(colon - text) : strlen(text);
     ag_sun_sky_desc_default(&out->sky);
     ag_environment_use_default(&out->use);
+    out->turn = 0.0f;
     *why = "it must be FILE.hdr, FILE.exr or sun-sky, with members after a colon";
     if (length == 0 || length >= sizeof out->path) return false;
     memcpy(out->path, text, length);
@@ -95,12 +100,10 @@ enum ag_result environment_make(struct ag_context *context, const struct environ
                           : ag_environment_from_sun_sky(context, &value->sky, out);
 }
 
-enum ag_result environment_apply(struct ag_context *context, struct ag_scene *scene,
-                                 const struct environment_value *value)
+enum ag_result environment_turn(struct ag_scene *scene, const struct ag_environment *environment,
+                                const struct environment_value *value, int frame)
 {
-    struct ag_environment *environment = NULL;
-    enum ag_result result = environment_make(context, value, &environment);
-    if (result == AG_OK) result = ag_scene_set_environment(scene, environment, &value->use);
-    ag_environment_destroy(environment);
-    return result;
+    struct ag_environment_use use = value->use;
+    use.rotation += (float)frame * value->turn;
+    return ag_scene_set_environment(scene, environment, &use);
 }

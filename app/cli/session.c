@@ -28,6 +28,7 @@ enum status session_begin(struct session *session, const struct arguments *argum
 void session_end(struct session *session)
 {
     ag_scene_destroy(session->scene);
+    ag_environment_destroy(session->environment);
     ag_context_destroy(session->context);
     *session = (struct session){ 0 };
 }
@@ -238,7 +239,9 @@ static enum status set_environment(struct session *session)
     static const float NONE[3] = { 0, 0, 0 };
     const struct arguments *a = session->arguments;
     enum ag_result result =
-        environment_apply(session->context, session->scene, &a->environment_value);
+        environment_make(session->context, &a->environment_value, &session->environment);
+    if (result == AG_OK)
+        result = environment_turn(session->scene, session->environment, &a->environment_value, 0);
     if (result == AG_OK && !a->has_sky) result = ag_scene_set_sky(session->scene, NONE);
     return result == AG_OK ? DONE : fail_option(session, result, "--environment");
 }

@@ -11,12 +11,13 @@ struct session {
     const struct arguments *arguments;
     struct ag_context *context;
     struct ag_scene *scene;
-    const char *name;            // of the scene, as given to session_load
-    int animation;               // index for API calls
-    char camera_name[SPEC_SIZE]; // in results: a name, or the options for it
-    char light[LIGHT_SIZE];      // in results: the options for it; "": that of the scene
-    bool made_up_light;          // the scene has none
-    bool made_up;                // the scene has no camera; the generated one stays fixed
+    struct ag_environment *environment; // of the option; NULL: none
+    const char *name;                   // of the scene, as given to session_load
+    int animation;                      // index for API calls
+    char camera_name[SPEC_SIZE];        // in results: a name, or the options for it
+    char light[LIGHT_SIZE];             // in results: the options for it; "": that of the scene
+    bool made_up_light;                 // the scene has none
+    bool made_up;                       // the scene has no camera; the generated one stays fixed
     struct ag_camera made_up_camera;
     char notes[MAX_NOTES][NOTE_SIZE]; // about default light and camera, see session_say
     int note_count;
