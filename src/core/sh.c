@@ -2,6 +2,7 @@
 #include "core/sh_basis.h"
 
 #include <assert.h>
+#include <math.h>
 
 // K_lm = √((2 − δ_m0) (2l+1)/4π · (l−m)!/(l+m)!): row l, column m.
 static const double NORM[SH_MAX_BANDS][SH_MAX_BANDS] = {
@@ -52,6 +53,13 @@ void sh_eval(int bands, vec3s direction, float *out)
                    (double[3]){ (double)direction.x, (double)direction.y, (double)direction.z },
                    values);
     for (int i = 0; i < SH_COUNT(bands); i++) out[i] = (float)values[i];
+}
+
+float sh_window(int band, float width)
+{
+    if (!(width > 0.0f)) return 1.0f;
+    if ((float)band >= width) return 0.0f;
+    return 0.5f + 0.5f * cosf(3.14159265f * (float)band / width);
 }
 
 float sh_dot(int bands, const float *coefficients, vec3s direction)

@@ -30,6 +30,11 @@ void sh_convolve(int bands, const float *coefficients, const float *zonal, float
 // 0.
 void sh_irradiance(int bands, const float *radiance, float *out);
 
+// Factor of a band by a Hann window (Sloan 2008, "Windowing"): (1 + cos(π band / width)) / 2, 0
+// from `width` on. Few bands of a small bright light ring below 0; windowed ones ring less, and are
+// wider. width 0: 1, no window.
+float sh_window(int band, float width);
+
 // Rotation of a function by the rotation matrix `to_from`: out(to_from · ω) = in(ω). out may not be
 // in.
 void sh_rotate(int bands, mat3s to_from, const float *in, float *out);

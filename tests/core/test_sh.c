@@ -56,6 +56,26 @@ TEST(first_nine_functions_are_the_known_polynomials_in_order)
     }
 }
 
+// A point of light: its windowed projection has the same mean, and less than a third of the
+// ringing.
+TEST(a_window_reduces_ringing)
+{
+    enum { BANDS = 5 };
+    const vec3s to_light = glms_vec3_normalize(vec3_of(1, 2, -3));
+    struct rng rng = rng_for(7, 0, 0);
+    float plain[SH_MAX_COUNT], windowed[SH_MAX_COUNT], least = 0.0f, least_windowed = 0.0f;
+    sh_eval(BANDS, to_light, plain);
+    for (int band = 0, i = 0; band < BANDS; band++)
+        for (; i < SH_COUNT(band + 1); i++) windowed[i] = plain[i] * sh_window(band, BANDS);
+    for (int k = 0; k < 2000; k++) {
+        const vec3s d = sample_sphere(rng_vec2(&rng));
+        least = fminf(least, sh_dot(BANDS, plain, d));
+        least_windowed = fminf(least_windowed, sh_dot(BANDS, windowed, d));
+    }
+    CHECK(windowed[0] == plain[0] && sh_window(3, 3.0f) == 0.0f && sh_window(3, 0.0f) == 1.0f);
+    CHECK(least < 0.0f && least_windowed > least / 3.0f);
+}
+
 TEST(functions_are_orthonormal_to_order_five)
 {
     double sum[SH_MAX_COUNT][SH_MAX_COUNT] = { { 0.0 } };

@@ -20,6 +20,16 @@ static void add_sun(const struct frame_light *sun, int bands, struct prt_light *
         for (int c = 0; c < 3; c++) out->bounced[i].raw[c] += sun->intensity.raw[c] * y[i];
 }
 
+static void apply_window(int bands, float width, struct prt_light *out)
+{
+    for (int band = 0, i = 0; band < bands; band++)
+        for (; i < SH_COUNT(band + 1); i++)
+            for (int c = 0; c < 3; c++) {
+                out->direct[i].raw[c] *= sh_window(band, width);
+                out->bounced[i].raw[c] *= sh_window(band, width);
+            }
+}
+
 void prt_project(const struct prt_options *options, const struct frame_view *view,
                  struct prt_light *out)
 {
@@ -29,4 +39,5 @@ void prt_project(const struct prt_options *options, const struct frame_view *vie
     for (int i = 0; i < SH_COUNT(bands); i++) out->bounced[i] = out->direct[i];
     for (int i = 0; options->suns && i < view->light_count; i++)
         if (view->lights[i].type == FRAME_LIGHT_SUN) add_sun(&view->lights[i], bands, out);
+    apply_window(bands, options->window, out);
 }
