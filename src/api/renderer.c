@@ -93,7 +93,9 @@ enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
 void renderer_warn_of_darkness(const struct ag_renderer *r)
 {
     const struct scene *scene = r->scene->scene;
+    struct world_light sun;
     bool only_emitters = scene->light_count == 0 && environment_is_black(&scene->environment) &&
+                         !environment_sun_light(&scene->environment, &sun) &&
                          scene_has_emission(scene);
     if (only_emitters && !gi_spec_gathers_emission(&r->spec))
         host_log(renderer_host(r), LOG_WARNING,

@@ -456,6 +456,43 @@ TEST(the_sun_of_an_environment_is_a_light_of_the_next_frame)
     fixture_close(&s);
 }
 
+// Black but for its sun.
+static struct ag_environment *sun_alone(struct ag_context *context)
+{
+    enum { WIDTH = 256 };
+    struct ag_environment *environment = NULL;
+    struct ag_environment_info info;
+    struct ag_image *image = NULL;
+    assert_int_equal(ag_image_create(context, WIDTH, WIDTH / 2, 1, &image), AG_OK);
+    image->pixels[WIDTH * 40 + 100] = 1e6f;
+    assert_int_equal(ag_environment_from_image(context, image, &environment), AG_OK);
+    ag_image_destroy(context, image);
+    assert_int_equal(ag_environment_get_info(environment, &info), AG_OK);
+    assert_true(info.has_sun && info.mean[1] == 0);
+    return environment;
+}
+
+TEST(a_scene_with_a_sun_is_not_lit_by_emissive_surfaces_alone)
+{
+    struct renderer_fixture s = fixture_open("none", NULL);
+    for (int lit = 0; lit < 2; lit++) {
+        struct ag_renderer_desc desc = fixture_renderer_desc("none");
+        struct ag_environment *sun = sun_alone(s.context);
+        ag_renderer_destroy(s.renderer);
+        ag_scene_destroy(s.scene);
+        s.renderer = NULL;
+        assert_int_equal(ag_scene_load(s.context, "@cornell", &s.scene), AG_OK);
+        if (lit) use(s.scene, sun, 1);
+        ag_environment_destroy(sun);
+        fixture_last_warning[0] = 0;
+        assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &s.renderer), AG_OK);
+        assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+        const bool warned = strstr(fixture_last_warning, "only emissive surfaces");
+        CHECK(warned != (lit == 1));
+    }
+    fixture_close(&s);
+}
+
 // Light of a new pose is made in the background, from a snapshot that has the old environment.
 TEST(an_environment_is_replaced_while_light_is_made_in_the_background)
 {
