@@ -96,7 +96,7 @@ TEST(files_that_cannot_be_read_are_named)
 
 #define SPHERES "reference @spheres --size 24x16 --spp 4 --quiet"
 #define UPWARDS SPHERES " --eye 0,90,0 --target 1,100,1"
-#define MANY    "reference @spheres --size 24x16 --spp 64 --quiet"
+#define MANY    "reference @spheres --size 24x16 --spp 32 --quiet"
 
 // The first pixel.
 static void check_background(const char *path, double red, double green, double blue)

@@ -119,8 +119,8 @@ struct mrt_apply_push {
 
 struct mrt_clutter_fill_push {
     uint32_t places;
-    float emitted; // radiance scale; 0: emissive surfaces are no sources
-    vec3s sky;     // irradiance of a texel whose `sky` is 1
+    float emitted;           // radiance scale; 0: emissive surfaces are no sources
+    vec3s environment_sh[9]; // of struct frame_constants
 };
 
 // Uniform block "mrt_level".
@@ -169,7 +169,7 @@ _Static_assert(sizeof(struct mrt_gpu_clutter_group) == 8, "layout is shared with
 _Static_assert(sizeof(struct mrt_gpu_clutter_place) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_sample) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_apply_push) == 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_clutter_fill_push) == 20, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_clutter_fill_push) == 116, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_level_params) == 116, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_view_push) == 4, "layout is shared with GLSL");

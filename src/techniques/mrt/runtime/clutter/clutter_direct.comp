@@ -29,6 +29,7 @@ layout(set = 0, binding = 9, scalar) writeonly buffer mrt_clutter_direct
 };
 
 shared float radiosity[MRT_LOCAL * 3];
+shared float environment[MRT_LOCAL * 3]; // irradiance of unoccluded texels, times their share
 
 void main()
 {
@@ -37,15 +38,22 @@ void main()
     mrt_texel texel = texel_table[place.texel];
     vec3 irradiance = vec3(0.0);
     add_lights(texel, irradiance);
-    for (uint c = 0u; c < 3u; c++)
+    vec3 unoccluded = place.share * environment_irradiance_at(texel.normal);
+    for (uint c = 0u; c < 3u; c++) {
         radiosity[3u * lane + c] = place.share * texel.albedo[c] * irradiance[c];
+        environment[3u * lane + c] = unoccluded[c];
+    }
     barrier();
     mrt_gpu_clutter_group group = group_table[gl_WorkGroupID.x];
     for (uint i = lane; i < 3u * group.faces; i += MRT_LOCAL) {
         mrt_gpu_clutter_face face = face_table[group.first_face + i / 3u];
         uint c = i % 3u, first = face.first_sample;
-        float sum = unbounced_of(face.emitted, face.sky, PI * environment_mean())[c];
-        for (uint k = first; k < first + face.samples; k++) sum += radiosity[3u * k + c];
+        float sum = 0.0, sky = 0.0;
+        for (uint k = first; k < first + face.samples; k++) {
+            sum += radiosity[3u * k + c];
+            sky += environment[3u * k + c];
+        }
+        sum += unbounced_of(face.emitted, face.sky, vec3(sky))[c];
         c_direct[(face.clutter * 3u + c) * 4u * QUADS_R + face.slot] = sum;
     }
 }

@@ -30,13 +30,23 @@ layout(set = 0, binding = 2, scalar) readonly buffer mrt_texels
 };
 layout(set = 0, binding = 3, rgba16f) writeonly uniform image2DArray clutter_map;
 
+// Irradiance of a surface that sees all of its hemisphere: as environment_irradiance_at.
+vec3 environment_at(vec3 normal)
+{
+    float transfer[9];
+    vec3 sum = vec3(0.0);
+    sh9_clamped_cosine(normal, transfer);
+    for (int i = 0; i < 9; i++) sum += transfer[i] * push.environment_sh[i];
+    return max(sum, vec3(0.0));
+}
+
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.places) return;
     mrt_gpu_clutter_place place = place_table[i];
     vec3 unbounced = texel_table[place.texel].emitted * push.emitted;
-    unbounced += texel_table[place.texel].sky * push.sky;
+    unbounced += texel_table[place.texel].sky * environment_at(texel_table[place.texel].normal);
     vec3 values[4];
     for (uint v = 0u; v < 4u; v++) values[v] = light_table[place.light * 4u + v];
     values[0] += unbounced / SH_Y0;

@@ -8,6 +8,7 @@
 #include "technique_shaders.h"
 
 #include <math.h>
+#include <string.h>
 
 uint32_t mrt_clutter_of_opening(const struct mrt_clutter_input *clutter, int opening)
 {
@@ -156,7 +157,7 @@ static void note_unbounced(struct mrt_runtime *runtime, const struct frame_view 
 {
     struct mrt_clutter_fill_push *push = &runtime->clutter.map.fill_push;
     push->emitted = runtime->level.emitters * view->constants->radiance_scale;
-    push->sky = glms_vec3_scale(view->constants->sky, GLM_PIf);
+    memcpy(push->environment_sh, view->constants->environment_sh, sizeof push->environment_sh);
 }
 
 void mrt_record_clutter_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
