@@ -209,6 +209,64 @@ TEST_GPU(rotating_everything_gives_the_same_light)
     environment_map_release(e.map);
 }
 
+// The same stack, after frames under the first environment.
+static struct image_of image_after(struct gpu *gpu, const char *text,
+                                   const struct environment *first,
+                                   const struct environment *second)
+{
+    enum { BEFORE = 3, AFTER = 12 };
+    struct frame_fixture s;
+    struct gi_spec spec;
+    build(&s, gpu, BOX_ON_FLOOR, 0);
+    struct image_of image = { .pixels = (size_t)s.width * s.height };
+    fixture_open(&s);
+    CHECK(gi_spec_parse(&spec, test_host(), text));
+    struct gi *gi = gi_fixture_create(gpu, &spec, &s.pose, s.width, s.height);
+    assert_non_null(gi);
+    s.indirect = gi_hook(gi);
+    for (int i = 0; i < BEFORE + AFTER; i++) {
+        s.input.environment = i < BEFORE ? *first : *second;
+        fixture_render(&s);
+    }
+    image.irradiance = fixture_read(&s, READ_IRRADIANCE);
+    image.depth = fixture_read(&s, READ_DEPTH);
+    gi_destroy(gi);
+    gi_spec_finish(&spec);
+    fixture_finish(&s);
+    return image;
+}
+
+// Light that is kept from frame to frame follows; vct accumulates over frames.
+TEST_GPU(light_follows_an_environment_that_turns_or_is_replaced)
+{
+    static const struct trial cases[] = { { "vct:quality=high", 0.05 },
+                                          { "vct", 0.05 },
+                                          { "lpv", 0.005 },
+                                          { "holpv", 0.005 },
+                                          { "ambient", 0.002 },
+                                          { RADIOSITY, 0.005 },
+                                          { ORT, 0.005 },
+                                          { MRT, 0.005 },
+                                          { DRT, 0.005 } };
+    const struct environment first = { .map = fixture_map(32, gradient), .strength = 1 };
+    struct environment turned = first;
+    turned.rotation_rad = GLM_PIf;
+    const struct environment other = { .map = fixture_map(32, uniform), .strength = 1 };
+    const struct environment *const changes[] = { &turned, &other };
+    for (size_t i = 0; i < COUNT(cases); i++)
+        for (int k = 0; k < 2; k++) {
+            struct image_of got = image_after(gpu, cases[i].gi, &first, changes[k]);
+            struct image_of alone = image_after(gpu, cases[i].gi, changes[k], changes[k]);
+            const struct comparison c = compare(&got, &alone, 1);
+            print_message("%s: after a change: pixels by at most %.4f\n", cases[i].gi, c.most);
+            CHECK(c.most <= cases[i].tolerance);
+            image_free(&got);
+            image_free(&alone);
+        }
+    environment_map_release(first.map);
+    environment_map_release(other.map);
+}
+
 // ---- against the reference
 
 static struct trial_irradiance expected_under(struct gpu *gpu, enum scene_kind kind,
