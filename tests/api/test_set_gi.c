@@ -32,7 +32,6 @@ static const struct {
     { "ort", "", 0 },
     { "ort", ",order=slices,parts=3,precision=byte", 0 },
     { "prt", "", 0 },
-    { "prt", ",compression=cpca", 0 },
     { "dnrt", "", 0 },
 };
 

@@ -1,5 +1,5 @@
 // Irradiance by weights of a cluster's mean and vectors, which are lit as vectors are: E = E_0 +
-// Σ w_k E_k (Sloan, Hall, Hart & Snyder 2003, section 5).
+// Σ w_k E_k (Sloan, Hall, Hart & Snyder 2003; Hong 2015, section 2.5.1.5).
 #ifndef AG_PRT_CLUSTERS_GLSL
 #define AG_PRT_CLUSTERS_GLSL
 

@@ -28,7 +28,7 @@ static inline uint32_t prt_dimension(const struct prt_options *options)
 {
     return prt_coefficients(options) * (options->transfer == PRT_INTERREFLECTED ? 4 : 1);
 }
-// Of compressed vectors; 0 clusters: they are not.
+// The codebook of compressed vectors; 0 clusters: there is none.
 static inline uint32_t prt_clusters(const struct prt_options *options)
 {
     if (options->compression == PRT_NONE) return 0;

@@ -16,7 +16,7 @@
 // Specialization constants: coefficients of a vector; whether it has bounces.
 #define PRT_COEFFICIENTS 0
 #define PRT_BOUNCES      1
-// Of a cluster's subspace.
+// Vectors of a cluster's subspace.
 #define PRT_VECTORS 2
 
 // Uniform block "prt_light": coefficients of distant light, scaled radiance by colour.

@@ -175,14 +175,16 @@ static bool stop(void *user)
     return --*(int *)user < 0;
 }
 
-TEST(compression_stops_between_rounds)
+TEST(compression_stops_where_it_is_told)
 {
     struct prt_points points = make_points(2000, 30, 1);
     struct prt_codebook book;
-    int rounds = 2;
-    CHECK(!prt_compress(test_host(), &points, &(struct prt_compression){ 32, 2, 0, stop, &rounds },
-                        &book));
-    CHECK(test_host()->failure == FAIL_CANCELLED);
-    prt_codebook_finish(&book);
+    for (int polls = 0; polls < 40; polls += 9) {
+        int left = polls;
+        CHECK(!prt_compress(test_host(), &points,
+                            &(struct prt_compression){ 32, 2, 0, stop, &left }, &book));
+        CHECK(test_host()->failure == FAIL_CANCELLED);
+        prt_codebook_finish(&book);
+    }
     points_finish(&points);
 }

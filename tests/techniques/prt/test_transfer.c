@@ -48,15 +48,15 @@ TEST(unshadowed_vectors_are_the_clamped_cosine_around_the_normal)
 
 // ---- shadows
 
-// Of a disk of radius r, parallel to the surface at a height h, seen from a place whose distance
-// from its axis is a.
+// The form factor of a disk of radius r, parallel to the surface at a height h, from a place at a
+// distance a from its axis.
 static double disk_form_factor(double r, double h, double a)
 {
     const double z = h * h + a * a + r * r;
     return 0.5 * (1 - (z - 2 * r * r) / sqrt(z * z - 4 * r * r * a * a));
 }
 
-// Of a sphere that is above the horizon.
+// That of a sphere above the horizon.
 static double sphere_form_factor(double r, double h, double a)
 {
     const double d2 = h * h + a * a;
@@ -244,6 +244,34 @@ TEST(bounces_end_where_they_are_told)
     CHECK(left > 0 && left < 0.01 * sqrt(4 * GLM_PI) * ratio / (1 - ratio));
     prt_baked_finish(&all);
     prt_baked_finish(&few);
+    prt_fixture_close(&f);
+}
+
+// Nothing absorbs: light from all directions arrives from all directions.
+TEST(a_white_scene_in_a_white_sky_is_a_furnace)
+{
+    struct prt_fixture f;
+    struct prt_light sky;
+    double least = HUGE_VAL, most = 0;
+    prt_fixture_init(&f);
+    fixture_floor(&f.s, 2, prt_fixture_diffuse(&f, 1));
+    fixture_box(&f.s, vec3_of(-1, 0, -0.5f), vec3_of(0, 1, 0.5f), false,
+                prt_fixture_diffuse(&f, 1));
+    fixture_box(&f.s, vec3_of(-1.5f, 1.4f, -1.5f), vec3_of(1.5f, 1.6f, 1.5f), false,
+                prt_fixture_diffuse(&f, 1));
+    prt_fixture_open(&f, "density=8,rays=256,bounces=64,threshold=0");
+    struct prt_baked baked = prt_fixture_bake(&f, "", 0);
+    prt_uniform_light(&sky);
+    for (uint32_t i = 0; i < f.charts.side_texel_count; i++) {
+        float e[3];
+        if (!prt_is_open(&baked, i)) continue;
+        prt_irradiance(&baked, i, &sky, e);
+        least = fmin(least, (double)e[0] / GLM_PI);
+        most = fmax(most, (double)e[0] / GLM_PI);
+    }
+    print_message("%.4f to %.4f of π\n", least, most);
+    CHECK(least > 0.98 && most < 1.002);
+    prt_baked_finish(&baked);
     prt_fixture_close(&f);
 }
 

@@ -1,5 +1,5 @@
-// Bounces as a Neumann series (Sloan, Kautz & Snyder 2002, section 5.3). Of irradiance T_0
-// surfaces of reflectance ρ send the radiance ρ T_0 / π, and
+// Bounces as a Neumann series (Sloan, Kautz & Snyder 2002; Hong 2015, section 2.5.1.2). Of
+// irradiance T_0 surfaces of reflectance ρ send the radiance ρ T_0 / π, and
 //
 //     T_{b+1}(x) = ∫ (1 − V(ω)) ρ(y)/π T_b(y) (n·ω)₊ dω,
 //

@@ -1,6 +1,5 @@
 // The first stage: where texels are sampled, what they reflect, what their rays meet, the transfer
-// of the sky that they see (Sloan, Kautz & Snyder 2002, section 4.1), and light of emissive
-// surfaces.
+// of the sky that they see (Sloan, Kautz & Snyder 2002), and light of emissive surfaces.
 #include "techniques/prt/bake/scene.h"
 
 #include "bake/plan.h"

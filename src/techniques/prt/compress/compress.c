@@ -50,11 +50,6 @@ static double sum_of(const float *values, size_t count)
     return sum;
 }
 
-static bool stopped(struct host *host, const struct prt_compression *how)
-{
-    return how->stop && how->stop(how->user) && !host_fail(host, FAIL_CANCELLED, "cancelled");
-}
-
 // Rounds until the error falls by less than a ten-thousandth. `error`: of the last one.
 static bool run_rounds(const struct prt_points *points, const struct prt_compression *how,
                        struct prt_codebook *book, float *error)
@@ -63,7 +58,7 @@ static bool run_rounds(const struct prt_points *points, const struct prt_compres
     static const double STABLE = 1e-4;
     for (int round = 0; round < MOST_ROUNDS; round++) {
         const double before = book->error;
-        if (stopped(book->host, how) || !prt_assign(points, book, error)) return false;
+        if (!prt_assign(points, how, book, error)) return false;
         book->error = sum_of(error, points->count);
         if (!fill_empty(points, book, error) || !prt_update(points, book)) return false;
         if (round > 0 && book->error >= before * (1.0 - STABLE)) break;
@@ -84,9 +79,10 @@ static bool add_vectors(const struct prt_points *points, size_t vectors, struct 
 }
 
 // The last round has changed the subspaces.
-static bool settle(const struct prt_points *points, struct prt_codebook *book, float *error)
+static bool settle(const struct prt_points *points, const struct prt_compression *how,
+                   struct prt_codebook *book, float *error)
 {
-    if (!prt_assign(points, book, error)) return false;
+    if (!prt_assign(points, how, book, error)) return false;
     book->error = sum_of(error, points->count);
     return true;
 }
@@ -95,13 +91,13 @@ static bool compress(const struct prt_points *points, const struct prt_compressi
                      struct prt_codebook *book, float *error)
 {
     if (how->clusters > 1 &&
-        (!prt_find_seeds(points, how->seed, book) || !run_rounds(points, how, book, error)))
+        (!prt_find_seeds(points, how, book) || !run_rounds(points, how, book, error)))
         return false;
     if (how->clusters == 1 && !prt_update(points, book)) return false;
     if (how->vectors > 0 && !add_vectors(points, how->vectors, book)) return false;
     if (how->vectors > 0 && how->clusters > 1 && !run_rounds(points, how, book, error))
         return false;
-    return settle(points, book, error);
+    return settle(points, how, book, error);
 }
 
 static void find_mean(const struct prt_points *points, float *mean)

@@ -1,6 +1,6 @@
 // Compression of points by clusters of affine subspaces (Sloan, Hall, Hart & Snyder 2003,
-// "Clustered Principal Components for Precomputed Radiance Transfer", section 4): a point is the
-// mean of its cluster plus a weighted sum of the cluster's vectors,
+// "Clustered Principal Components for Precomputed Radiance Transfer"; Hong 2015, section 2.5.1.5):
+// a point is the mean of its cluster plus a weighted sum of the cluster's vectors,
 //
 //     x ≈ m_c + Σ w_k b_ck,  w_k = b_ck · (x − m_c).
 //
@@ -20,7 +20,7 @@ struct prt_compression {
     uint32_t clusters; // at least 1
     uint32_t vectors;  // of a cluster, at most the dimension
     uint64_t seed;
-    bool (*stop)(void *user); // NULL: never
+    bool (*stop)(void *user); // polled every few milliseconds; NULL: never
     void *user;
 };
 
@@ -34,9 +34,8 @@ struct prt_codebook {
 };
 
 // Clusters by vector quantisation: seeds by their squared distances (Arthur & Vassilvitskii 2007,
-// "k-means++"), then Lloyd's rounds. With vectors rounds follow in which points move to the
-// subspace nearest to them (section 4.2). Deterministic. False: no memory, or stopped
-// (FAIL_CANCELLED).
+// "k-means++"), then Lloyd's rounds. With vectors, rounds follow in which points move to the
+// subspace nearest to them. Deterministic. False: no memory, or stopped (FAIL_CANCELLED).
 bool prt_compress(struct host *host, const struct prt_points *points,
                   const struct prt_compression *how, struct prt_codebook *out);
 void prt_codebook_finish(struct prt_codebook *codebook);
@@ -55,8 +54,14 @@ double prt_variance(const struct prt_points *points);
 // ---- for compress.c: lloyd.c, seeds.c
 
 // The nearest subspace of each point and the squared distances to them, [count].
-bool prt_assign(const struct prt_points *points, struct prt_codebook *codebook, float *error);
+bool prt_assign(const struct prt_points *points, const struct prt_compression *how,
+                struct prt_codebook *codebook, float *error);
 // Means and vectors of the points of each cluster.
 bool prt_update(const struct prt_points *points, struct prt_codebook *codebook);
 // Means of the clusters.
-bool prt_find_seeds(const struct prt_points *points, uint64_t seed, struct prt_codebook *codebook);
+bool prt_find_seeds(const struct prt_points *points, const struct prt_compression *how,
+                    struct prt_codebook *codebook);
+static inline bool prt_stopped(struct host *host, const struct prt_compression *how)
+{
+    return how->stop && how->stop(how->user) && !host_fail(host, FAIL_CANCELLED, "cancelled");
+}

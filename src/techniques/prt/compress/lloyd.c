@@ -8,7 +8,7 @@
 
 // ---- points to clusters
 
-// Of all rows of a codebook: with means m and vectors b, |m|² and b·m.
+// Products of all rows of a codebook with their means: with a mean m and vectors b, |m|² and b·m.
 struct norms {
     float *of; // [clusters][1 + vectors]
 };
@@ -73,7 +73,8 @@ static bool assign_block(const struct prt_points *points, size_t first, struct m
     return true;
 }
 
-bool prt_assign(const struct prt_points *points, struct prt_codebook *book, float *error)
+bool prt_assign(const struct prt_points *points, const struct prt_compression *how,
+                struct prt_codebook *book, float *error)
 {
     enum { MOST_PRODUCTS = 1 << 20, LEAST_POINTS = 16 };
     const size_t count = book->clusters * (1 + book->vectors);
@@ -86,7 +87,8 @@ bool prt_assign(const struct prt_points *points, struct prt_codebook *book, floa
         const size_t left = points->count - first;
         struct matrix_f32 block =
             matrix_f32_block(&products, 0, 0, left < most ? left : most, count);
-        ok = assign_block(points, first, &block, &rows, &norms, book, error);
+        ok = !prt_stopped(book->host, how) &&
+             assign_block(points, first, &block, &rows, &norms, book, error);
     }
     matrix_f32_finish(book->host, &products);
     host_free(book->host, norms.of);
@@ -124,26 +126,41 @@ static void update_mean(const struct prt_points *points, const size_t *member, s
     }
 }
 
+// Σ (x − m)(x − m)ᵀ over the members, a block of them at a time.
+static bool find_scatter(const struct prt_points *points, const size_t *member, size_t count,
+                         struct host *host, const float *mean, struct matrix_f64 *scatter)
+{
+    enum { BLOCK = 1024 };
+    const size_t dim = points->dim;
+    struct matrix_f64 x = { 0 };
+    bool ok = matrix_f64_init(host, &x, count < BLOCK ? count : BLOCK, dim) &&
+              matrix_f64_init(host, scatter, dim, dim);
+    for (size_t first = 0; ok && first < count; first += BLOCK) {
+        const size_t left = count - first, rows = left < BLOCK ? left : BLOCK;
+        const struct matrix_f64 block = matrix_f64_block(&x, 0, 0, rows, dim);
+        for (size_t i = 0; i < rows; i++)
+            for (size_t d = 0; d < dim; d++)
+                block.at[i * dim + d] = (double)(points->at[member[first + i] * dim + d] - mean[d]);
+        ok = matrix_f64_multiply(host, 1, &block, TRANSPOSED, &block, NOT_TRANSPOSED, 1, scatter);
+    }
+    matrix_f64_finish(host, &x);
+    return ok;
+}
+
 // Eigenvectors of the scatter matrix of a cluster, by descending variance.
 static bool update_vectors(const struct prt_points *points, const size_t *member, size_t count,
                            struct prt_codebook *book, float *mean)
 {
     const size_t dim = book->dim;
-    struct matrix_f64 x = { 0 }, scatter = { 0 };
+    struct matrix_f64 scatter = { 0 };
     struct linalg_eigen eigen = { 0 };
-    bool ok = matrix_f64_init(book->host, &x, count, dim) &&
-              matrix_f64_init(book->host, &scatter, dim, dim);
-    for (size_t i = 0; ok && i < count; i++)
-        for (size_t d = 0; d < dim; d++)
-            x.at[i * dim + d] = (double)(points->at[member[i] * dim + d] - mean[d]);
-    ok = ok &&
-         matrix_f64_multiply(book->host, 1, &x, TRANSPOSED, &x, NOT_TRANSPOSED, 0, &scatter) &&
-         linalg_symmetric_eigen(book->host, "scatter of transfer vectors", &scatter, &eigen);
+    const bool ok =
+        find_scatter(points, member, count, book->host, mean, &scatter) &&
+        linalg_symmetric_eigen(book->host, "scatter of transfer vectors", &scatter, &eigen);
     for (size_t k = 0; ok && k < book->vectors; k++)
         for (size_t d = 0; d < dim; d++)
             mean[(1 + k) * dim + d] = (float)eigen.vectors.at[d * eigen.vectors.stride + k];
     linalg_eigen_finish(book->host, &eigen);
-    matrix_f64_finish(book->host, &x);
     matrix_f64_finish(book->host, &scatter);
     return ok;
 }

@@ -26,15 +26,17 @@ static size_t draw(const double *weight, size_t count, double target)
     return count - 1;
 }
 
-bool prt_find_seeds(const struct prt_points *points, uint64_t seed, struct prt_codebook *codebook)
+bool prt_find_seeds(const struct prt_points *points, const struct prt_compression *how,
+                    struct prt_codebook *codebook)
 {
     const size_t dim = points->dim, stride = (1 + codebook->vectors) * dim;
-    struct rng rng = rng_for((uint32_t)seed, (uint32_t)(seed >> 32), 0);
+    struct rng rng = rng_for((uint32_t)how->seed, (uint32_t)(how->seed >> 32), 0);
     double *nearest = host_alloc(codebook->host, points->count, sizeof *nearest);
     if (!nearest) return false;
     for (size_t i = 0; i < points->count; i++) nearest[i] = INFINITY;
     size_t next = (size_t)(rng_double(&rng) * (double)points->count);
-    for (size_t c = 0; c < codebook->clusters; c++) {
+    bool ok = true;
+    for (size_t c = 0; ok && c < codebook->clusters; c++) {
         float *mean = codebook->rows + c * stride;
         double sum = 0.0;
         memcpy(mean, points->at + next * dim, dim * sizeof *mean);
@@ -43,7 +45,8 @@ bool prt_find_seeds(const struct prt_points *points, uint64_t seed, struct prt_c
             sum += nearest[i];
         }
         next = draw(nearest, points->count, rng_double(&rng) * sum);
+        ok = !prt_stopped(codebook->host, how);
     }
     host_free(codebook->host, nearest);
-    return true;
+    return ok;
 }
