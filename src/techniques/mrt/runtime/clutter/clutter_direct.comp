@@ -1,6 +1,7 @@
 // The mean radiosity of direct light of each face of clutter, over its area (Loos 2015, section
-// 5.3.2, T_d->c). Lights and their shadows are those of a few texels of the face; light of emissive
-// surfaces and the sky at its texels is a mean of the table. A workgroup has whole faces.
+// 5.3.2, T_d->c). Lights and their shadows, and the environment by direction, are those of a few
+// texels of the face; light of emissive surfaces and the share of the environment are means of the
+// table. A workgroup has whole faces.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
