@@ -14,7 +14,7 @@ struct ag_environment;
 /// Reads a .hdr (RGBE) or .exr file: an equirectangular image of any size, radiance in cd/m²,
 /// linear Rec. 709. The top row is +y, the centre of the image −z, and columns grow towards +x.
 /// Untrusted input. Images wider than 4096 are averaged to that width. Values that are negative or
-/// not finite are black, with a warning.
+/// not finite are 0, with a warning.
 ///
 /// A small bright sun becomes a directional light with shadows (docs/environment.md): techniques
 /// and the reference get its illuminance from there, and the rest from the image.

@@ -30,14 +30,6 @@ static uint32_t levels_of(uint32_t side)
     return levels;
 }
 
-uint64_t frame_environment_bytes(int width)
-{
-    uint64_t texels = 0;
-    for (uint32_t side = width > 0 ? side_of(width) : 1; side > 0; side /= 2)
-        texels += (uint64_t)FACES * side * side;
-    return texels * (uint64_t)gpu_format_bytes(GPU_RGBA16F);
-}
-
 // ---- levels: equirectangular images, so that interpolation meets no edges
 
 // Directions of a lobe about +y, as a von Mises–Fisher distribution of sharpness 1/σ²: heights at
@@ -177,7 +169,7 @@ static bool create(struct frame_environment *e, const struct environment_map *ma
 {
     e->side = map ? side_of(map->radiance.width) : 1;
     e->texel_scale = map ? scale_of(map->peak) : 1.0f;
-    const struct gpu_image_desc desc = { .name = "frame.environment",
+    const struct gpu_image_desc desc = { .name = "scene.environment",
                                          .dimension = GPU_CUBE,
                                          .format = GPU_RGBA16F,
                                          .width = e->side,

@@ -26,5 +26,3 @@ bool frame_environment_prepare(struct frame_environment *e, const struct environ
 void frame_environment_constants(const struct frame_environment *e,
                                  const struct environment *environment,
                                  struct frame_constants *out);
-// Bytes of the cube for a map of that width.
-uint64_t frame_environment_bytes(int width);

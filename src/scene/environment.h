@@ -28,7 +28,7 @@ static inline vec3s environment_radiance(const struct environment *environment, 
 vec3s environment_mean(const struct environment *environment);
 bool environment_is_black(const struct environment *environment); // its sun apart
 
-// Hash of the radiance from all directions, the sun apart.
+// Hash of the light from all directions.
 uint64_t environment_key(const struct environment *environment);
 
 // Coefficients of the radiance by colour, cd/m² (core/sh.h). bands: at most SH_MAX_BANDS.

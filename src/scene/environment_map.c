@@ -71,8 +71,8 @@ static bool copy_clean(struct environment_map *map, const struct image *from, st
             wrong += !clean(image_at(from, x, y), from->channels, image_at(out, x, y));
     if (wrong > 0)
         host_log(map->host, LOG_WARNING,
-                 "environment %s: %zu pixels are negative, not finite or above %g cd/m²: they are "
-                 "black",
+                 "environment %s: %zu pixels have values that are negative, not finite or above %g "
+                 "cd/m²: these are 0",
                  map->name, wrong, (double)SCENE_MAX_RADIANCE);
     return true;
 }
