@@ -10,6 +10,12 @@ enum { WIDTH = 8, PIXELS = WIDTH * WIDTH, DIRECTIONS = 5 };
 
 static const vec3s SKY = { { 1, 10, 200 } };
 
+static void set_sky(struct rsm_fixture *rsm)
+{
+    rsm->constants.sky = SKY;
+    rsm->constants.environment_sh[0] = glms_vec3_scale(SKY, sqrtf(4.0f * GLM_PIf));
+}
+
 // No lights and no occluders: the sky fills the sphere, so that E = π L for every normal.
 static void check_furnace(struct rsm_fixture *rsm, struct lpv *lpv, double tolerance)
 {
@@ -41,7 +47,7 @@ TEST_GPU(lpv_passes_the_furnace_test_of_the_sky)
         struct rsm_fixture rsm;
         rsm_fixture_init(&rsm, gpu, WIDTH, WIDTH, 8, 0);
         rsm.view.bounds = (struct box3){ vec3_of(-2, -1, -3), vec3_of(2, 1, 3) };
-        rsm.constants.sky = SKY;
+        set_sky(&rsm);
         struct lpv *lpv = lpv_fixture_create(gpu, cases[i]);
         check_furnace(&rsm, lpv, 5e-3);
         lpv_fixture_destroy(lpv);
@@ -55,7 +61,7 @@ TEST_GPU(lpv_without_the_option_ignores_the_sky)
     float got[3 * PIXELS];
     rsm_fixture_init(&rsm, gpu, WIDTH, WIDTH, 8, 0);
     rsm.view.bounds = (struct box3){ vec3_of(-2, -1, -3), vec3_of(2, 1, 3) };
-    rsm.constants.sky = SKY;
+    set_sky(&rsm);
     rsm_fixture_show_wall(&rsm, vec3_of(-1, 0, -1), vec3_of(1, 0, 1), vec3_of(0, 1, 0),
                           vec3_of(0, 1, 0));
     rsm_fixture_upload(&rsm);
@@ -78,7 +84,7 @@ TEST_GPU(lpv_sky_adds_to_other_light)
         struct rsm_fixture rsm;
         rsm_fixture_init(&rsm, gpu, WIDTH, WIDTH, 8, 0);
         rsm.view.bounds = (struct box3){ vec3_of(-2, -1, -3), vec3_of(2, 1, 3) };
-        if (which & 1) rsm.constants.sky = SKY;
+        if (which & 1) set_sky(&rsm);
         rsm_fixture_set_emitters(&rsm, &point, which & 2 ? 1 : 0);
         rsm_fixture_show_wall(&rsm, vec3_of(-2, 0.9f, -3), vec3_of(4, 0, 0), vec3_of(0, 0, 6),
                               vec3_of(0, -1, 0));
@@ -87,7 +93,10 @@ TEST_GPU(lpv_sky_adds_to_other_light)
             gpu, "lpv:dim=16,sky=true,cell_margin=1,precision=float,closure=linear");
         lpv_fixture_render(lpv, &rsm);
         rsm_fixture_read_irradiance(&rsm, which == 3 ? both : got);
-        for (int k = 0; k < 3 * PIXELS && which < 3; k++) sum[k] += got[k];
+        for (int k = 0; k < 3 * PIXELS && which < 3; k++) {
+            CHECK(got[k] > 0.0f);
+            sum[k] += got[k];
+        }
         lpv_fixture_destroy(lpv);
         rsm_fixture_finish(&rsm);
     }
