@@ -219,14 +219,26 @@ bool frame_environment_prepare(struct frame_environment *e, const struct environ
     return true;
 }
 
+uint64_t frame_environment_follow(struct frame_environment *e,
+                                  const struct environment *environment)
+{
+    const uint64_t key = environment_key(environment);
+    if (!e->known || key != e->key) {
+        environment_sh(environment, 3, e->sh);
+        environment_patches(environment, e->patches);
+    }
+    e->known = true;
+    e->key = key;
+    return key;
+}
+
 void frame_environment_constants(const struct frame_environment *e,
                                  const struct environment *environment, struct frame_constants *out)
 {
-    float sh[3][SH_MAX_COUNT];
     const float scale = out->radiance_scale;
-    environment_sh(environment, 3, sh);
     for (int i = 0; i < SH_COUNT(3); i++)
-        out->environment_sh[i] = glms_vec3_scale(vec3_of(sh[0][i], sh[1][i], sh[2][i]), scale);
+        out->environment_sh[i] =
+            glms_vec3_scale(vec3_of(e->sh[0][i], e->sh[1][i], e->sh[2][i]), scale);
     out->uniform_sky = glms_vec3_scale(environment->sky, scale);
     out->environment_scale = e->map ? environment->strength * scale / e->texel_scale : 0.0f;
     out->environment_cos = cosf(environment->rotation_rad);

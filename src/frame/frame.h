@@ -92,8 +92,8 @@ struct frame_view {
     struct box3 bounds; // of the scene, world space; empty for an empty scene
     bool camera_cut, geometry_moved, lights_changed; // since the previous frame
     uint64_t environment_key; // of the environment in this moment (scene/environment.h)
-    // Of the lights, the environment and the filter of shadows, in the units of the frame: equal in
-    // frames whose direct light on still geometry is equal.
+    // Hash of lights, environment and shadow filter, in the units of the frame: equal in frames
+    // whose direct light on still geometry is equal.
     uint64_t light_hash;
     gpu_image layers[FRAME_LAYER_COUNT];
     // Reflective shadow maps: arrays of rsm_size² with rsm_face_count layers in use.

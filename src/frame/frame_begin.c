@@ -71,15 +71,13 @@ static float emissive_scale(const struct frame_constants *c, const struct frame_
     return own ? 1.0f : c->radiance_scale / input->gbuffer->emissive_scale;
 }
 
-static struct gpu_binding patches_of(struct gpu_cmd *cmd, const struct environment *environment,
+static struct gpu_binding patches_of(struct gpu_cmd *cmd, const struct frame_environment *e,
                                      float scale)
 {
     _Static_assert(FRAME_ENVIRONMENT_PATCHES == ENVIRONMENT_PATCHES, "one layout");
-    vec3s radiance[ENVIRONMENT_PATCHES];
     vec4s scaled[ENVIRONMENT_PATCHES];
-    environment_patches(environment, radiance);
     for (int i = 0; i < ENVIRONMENT_PATCHES; i++)
-        scaled[i] = vec4_of(glms_vec3_scale(radiance[i], scale), 0.0f);
+        scaled[i] = vec4_of(glms_vec3_scale(e->patches[i], scale), 0.0f);
     return gpu_transient(cmd, "frame_environment_patches", scaled, sizeof scaled);
 }
 
@@ -107,6 +105,7 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
     c->emissive_scale = emissive_scale(c, input);
     c->previous_scale_ratio = f->index == 0 ? 1.0f : c->radiance_scale / previous_scale;
     c->sky = glms_vec3_scale(light.sky, c->radiance_scale);
+    f->environment_key = frame_environment_follow(&f->common->environment, &input->environment);
     frame_environment_constants(&f->common->environment, &input->environment, c);
     f->emitted_irradiance = glms_vec3_scale(
         emitters_irradiance(&f->common->emitters, input->pose->bounds), c->radiance_scale);
@@ -115,7 +114,6 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
     c->frame_index = (uint32_t)f->index;
     begin_lights(f, input, c->radiance_scale);
     c->light_count = (uint32_t)f->light_count;
-    f->environment_key = environment_key(&input->environment);
     f->light_hash = light_hash(f);
     shadow_place(&f->common->shadow, f->lights, f->light_count,
                  &(struct shadow_view){
@@ -127,7 +125,7 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
                  });
     rsm_place(&f->common->rsm, f->lights, f->light_count, input->pose->bounds);
     f->constants_binding = gpu_transient(cmd, "frame_constants", c, sizeof *c);
-    f->patches_binding = patches_of(cmd, &input->environment, c->radiance_scale);
+    f->patches_binding = patches_of(cmd, &f->common->environment, c->radiance_scale);
     // Whole: direct.comp has a uniform block of this size.
     f->lights_binding = gpu_transient(cmd, "frame_lights", f->lights, sizeof f->lights);
 }

@@ -136,7 +136,7 @@ static float missing_share(int bands, double sh[3][SH_MAX_COUNT], double squares
     return squares > 0.0 ? (float)sqrt(fmax(1.0 - found / squares, 0.0)) : 0.0f;
 }
 
-// Samples at the middles of a grid of cells of 0.7° at most, of the image as it is interpolated.
+// Samples the interpolated image at the centres of cells of at most 0.7°.
 static bool project(struct environment_map *map)
 {
     enum { WIDTH = 512, HEIGHT = WIDTH / 2 };
@@ -193,7 +193,7 @@ static bool find_light(struct environment_map *map, const struct image *from)
     return ok;
 }
 
-// What follows from the image and its sun.
+// Computes the other members from the image and its sun.
 static bool complete(struct environment_map *map)
 {
     enum { COARSE_WIDTH = 64 };

@@ -241,7 +241,7 @@ TEST(spherical_harmonics_and_mean_equal_a_quadrature_of_the_radiance)
     environment_map_release(map);
 }
 
-// Wider and narrower than the grid of the projection, which is no multiple of their texels.
+// Widths above and below that of the projection's grid, which they do not divide.
 TEST(spherical_harmonics_of_fine_images_equal_a_quadrature_of_the_radiance)
 {
     static const int sizes[][2] = { { 700, 350 }, { 400, 300 }, { 20, 600 } };

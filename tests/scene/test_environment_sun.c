@@ -261,7 +261,7 @@ TEST(a_sun_gives_at_least_a_tenth_of_the_irradiance)
     }
 }
 
-// A lamp of 2.5° reaches into the ring about its edge, where its brightest texel is.
+// A disc of 2.5° reaches into the ring about its edge, where its brightest texel is.
 TEST(a_large_sun_is_found_whole_from_its_edge)
 {
     struct image image;

@@ -89,24 +89,13 @@ static void record_finish(struct ort *s, struct gpu_cmd *cmd, const struct frame
     gpu_scope_end(cmd);
 }
 
-static void record_map(struct ort *s, struct gpu_cmd *cmd)
-{
-    struct light_map *map = &s->light_map;
-    gpu_scope_begin(cmd, "light_map");
-    light_map_record_show(map, cmd, s->tables.texel_light, 0, map->owner_count);
-    if (s->options.seams && map->seam_count > 0)
-        light_map_record_seams(map, cmd, s->tables.texel_light, 0, map->seam_count);
-    map->shown = 1 - map->shown;
-    gpu_scope_end(cmd);
-}
-
 void ort_record_update(struct ort *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     record_direct(s, cmd, view);
     ort_record_levels(s, cmd);
     record_gather(s, cmd);
     record_finish(s, cmd, view);
-    record_map(s, cmd);
+    light_map_record_all(&s->light_map, cmd, s->tables.texel_light, s->options.seams);
 }
 
 static void record_replace(struct ort *s, struct gpu_cmd *cmd, const struct frame_view *view)

@@ -33,21 +33,10 @@ static void record_light(struct prt *s, struct gpu_cmd *cmd, const struct frame_
     gpu_scope_end(cmd);
 }
 
-static void record_map(struct prt *s, struct gpu_cmd *cmd)
-{
-    struct light_map *map = &s->light_map;
-    gpu_scope_begin(cmd, "light_map");
-    light_map_record_show(map, cmd, s->tables.texel_light, 0, map->owner_count);
-    if (s->options.seams && map->seam_count > 0)
-        light_map_record_seams(map, cmd, s->tables.texel_light, 0, map->seam_count);
-    map->shown = 1 - map->shown;
-    gpu_scope_end(cmd);
-}
-
 void prt_record_update(struct prt *s, struct gpu_cmd *cmd, const struct frame_view *view,
                        const struct prt_light *light)
 {
     record_rows(s, cmd, light);
     record_light(s, cmd, view, light);
-    record_map(s, cmd);
+    light_map_record_all(&s->light_map, cmd, s->tables.texel_light, s->options.seams);
 }

@@ -27,7 +27,7 @@ enum {
     RAYS = 1 << 12,
     MAP = 1 << 13,
 };
-// Of the variants of passes for light that most scenes lack.
+// Constants of variants for light that most scenes lack.
 enum { MORE_LIGHT = SMALL_EMITTERS | MAP };
 enum { SCENE_BASE_COLOR_MAP = 0, SCENE_MASKED = 4 }; // constant_id's of frame/scene.glsl
 

@@ -196,6 +196,15 @@ void light_map_record_seams(const struct light_map *map, struct gpu_cmd *cmd, gp
                  &push, sizeof push, gpu_groups(count, LIGHT_MAP_LOCAL), 1, 1);
 }
 
+void light_map_record_all(struct light_map *map, struct gpu_cmd *cmd, gpu_image light, bool seams)
+{
+    gpu_scope_begin(cmd, "light_map");
+    light_map_record_show(map, cmd, light, 0, map->owner_count);
+    if (seams && map->seam_count > 0) light_map_record_seams(map, cmd, light, 0, map->seam_count);
+    map->shown = 1 - map->shown;
+    gpu_scope_end(cmd);
+}
+
 void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
                             const struct frame_view *view)
 {

@@ -45,6 +45,8 @@ void light_map_record_show(const struct light_map *map, struct gpu_cmd *cmd, gpu
                            uint32_t first, uint32_t count);
 void light_map_record_seams(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
                             uint32_t first, uint32_t count);
+// The whole map in a scope, with or without closed seams; it is shown from now on.
+void light_map_record_all(struct light_map *map, struct gpu_cmd *cmd, gpu_image light, bool seams);
 // Irradiance and specular light of a view's pixels, from the map that is shown. Needs FRAME_ID.
 void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
                             const struct frame_view *view);
