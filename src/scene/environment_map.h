@@ -5,8 +5,8 @@
 
 #include "core/sh.h"
 #include "image/image.h"
-#include "scene/environment_sun.h"
-#include "scene/sun_sky.h"
+#include "scene/environment/find_sun.h"
+#include "scene/environment/sun_sky.h"
 
 #include <stdatomic.h>
 

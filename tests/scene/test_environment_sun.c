@@ -1,9 +1,9 @@
 // Suns of images: what is one, where it is, how much light it has, and that no light is lost.
 #include "framework/test.h"
 
-#include "scene/environment_sun.h"
+#include "scene/environment/find_sun.h"
 #include "scene/equirect.h"
-#include "scene/sun_sky.h"
+#include "scene/environment/sun_sky.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 // Known answers of the daylight model: formulas by hand, photometry of clear days, symmetries.
 #include "framework/test.h"
 
-#include "scene/cie.h"
-#include "scene/sun_sky.h"
+#include "scene/environment/cie.h"
+#include "scene/environment/sun_sky.h"
 
 #include <math.h>
 

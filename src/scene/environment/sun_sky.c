@@ -1,6 +1,6 @@
-#include "scene/sun_sky.h"
+#include "scene/environment/sun_sky.h"
 
-#include "scene/cie.h"
+#include "scene/environment/cie.h"
 
 #include <math.h>
 

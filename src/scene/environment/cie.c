@@ -1,4 +1,4 @@
-#include "scene/cie.h"
+#include "scene/environment/cie.h"
 
 #include <math.h>
 

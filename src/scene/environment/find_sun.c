@@ -1,4 +1,4 @@
-#include "scene/environment_sun.h"
+#include "scene/environment/find_sun.h"
 
 #include "scene/equirect.h"
 
