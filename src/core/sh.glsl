@@ -1,7 +1,7 @@
 // The GLSL twin of sh.h, bands 0 to 2: real, orthonormal, no Condon–Shortley sign, in the order
 // Y00, y, z, x, xy, yz, 3z² − 1, xz, x² − y². sh4_… works on bands 0 and 1 in a vec4, sh9_… on
-// bands 0 to 2 in an array of floats, or of RGB triples. Directions are unit vectors; coefficients
-// have the unit of the function.
+// bands 0 to 2 in an array of floats, or of RGB triples, sh25_… on bands 0 to 4. Directions are
+// unit vectors; coefficients have the unit of the function.
 //
 // Sources: Ramamoorthi & Hanrahan 2001 (irradiance), Sloan 2008 (zonal harmonics).
 #ifndef CORE_SH_GLSL
@@ -97,6 +97,33 @@ void sh9_clamped_cosine(vec3 direction, out float lobe[9])
     float basis[9];
     sh9_eval(direction, basis);
     sh9_irradiance(basis, lobe);
+}
+
+// ---- bands 0 to 4
+
+void sh25_eval(vec3 direction, out float basis[25])
+{
+    float x = direction.x, y = direction.y, z = direction.z;
+    float xx = x * x, yy = y * y, zz = z * z;
+    float low[9];
+    sh9_eval(direction, low);
+    for (int i = 0; i < 9; i++) basis[i] = low[i];
+    basis[9] = 0.59004359 * y * (3.0 * xx - yy);   // √(35/32π)
+    basis[10] = 2.89061144 * x * y * z;            // √(105/4π)
+    basis[11] = 0.45704580 * y * (5.0 * zz - 1.0); // √(21/32π)
+    basis[12] = 0.37317633 * z * (5.0 * zz - 3.0); // √(7/16π)
+    basis[13] = 0.45704580 * x * (5.0 * zz - 1.0);
+    basis[14] = 1.44530572 * z * (xx - yy); // √(105/16π)
+    basis[15] = 0.59004359 * x * (xx - 3.0 * yy);
+    basis[16] = 2.50334294 * x * y * (xx - yy);               // ¾ √(35/π)
+    basis[17] = 1.77013077 * y * z * (3.0 * xx - yy);         // ¾ √(35/2π)
+    basis[18] = 0.94617470 * x * y * (7.0 * zz - 1.0);        // ¾ √(5/π)
+    basis[19] = 0.66904654 * y * z * (7.0 * zz - 3.0);        // ¾ √(5/2π)
+    basis[20] = 0.10578555 * (zz * (35.0 * zz - 30.0) + 3.0); // 3/16 √(1/π)
+    basis[21] = 0.66904654 * x * z * (7.0 * zz - 3.0);
+    basis[22] = 0.47308735 * (xx - yy) * (7.0 * zz - 1.0); // ⅜ √(5/π)
+    basis[23] = 1.77013077 * x * z * (xx - 3.0 * yy);
+    basis[24] = 0.62583574 * (xx * (xx - 3.0 * yy) - yy * (3.0 * xx - yy)); // 3/16 √(35/π)
 }
 
 #endif

@@ -38,3 +38,14 @@ float sh_window(int band, float width);
 // Rotation of a function by the rotation matrix `to_from`: out(to_from · ω) = in(ω). out may not be
 // in.
 void sh_rotate(int bands, mat3s to_from, const float *in, float *out);
+// The same for many functions. Rows and columns of a band's matrix are from −l to l.
+struct sh_band {
+    int l;
+    double at[2 * SH_MAX_BANDS - 1][2 * SH_MAX_BANDS - 1];
+};
+struct sh_rotation {
+    int bands;
+    struct sh_band of[SH_MAX_BANDS];
+};
+void sh_rotation_init(struct sh_rotation *out, int bands, mat3s to_from);
+void sh_rotation_apply(const struct sh_rotation *rotation, const float *in, float *out);

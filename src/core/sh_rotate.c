@@ -6,30 +6,22 @@
 #include <assert.h>
 #include <math.h>
 
-enum { WIDTH = 2 * SH_MAX_BANDS - 1 };
-
-// The matrix of one band, rows and columns from −l to l.
-struct band {
-    int l;
-    double at[WIDTH][WIDTH];
-};
-
-static double entry(const struct band *band, int m, int n)
+static double entry(const struct sh_band *band, int m, int n)
 {
     return band->at[m + band->l][n + band->l];
 }
 
-static struct band band_one(mat3s to_from)
+static struct sh_band band_one(mat3s to_from)
 {
     static const int axis[3] = { 1, 2, 0 }; // y, z, x
-    struct band one = { .l = 1 };
+    struct sh_band one = { .l = 1 };
     for (int m = 0; m < 3; m++)
         for (int n = 0; n < 3; n++) one.at[m][n] = (double)to_from.raw[axis[n]][axis[m]];
     return one;
 }
 
 // Table 2 of the paper: ᵢP with i = −1, 0, 1.
-static double p_term(const struct band *one, const struct band *below, int i, int a, int n)
+static double p_term(const struct sh_band *one, const struct sh_band *below, int i, int a, int n)
 {
     int l = below->l + 1;
     if (n == l)
@@ -41,7 +33,7 @@ static double p_term(const struct band *one, const struct band *below, int i, in
     return entry(one, i, 0) * entry(below, a, n);
 }
 
-static double v_term(const struct band *one, const struct band *below, int m, int n)
+static double v_term(const struct sh_band *one, const struct sh_band *below, int m, int n)
 {
     if (m == 0) return p_term(one, below, 1, 1, n) + p_term(one, below, -1, -1, n);
     if (m == 1) return sqrt(2.0) * p_term(one, below, 1, 0, n);
@@ -50,7 +42,7 @@ static double v_term(const struct band *one, const struct band *below, int m, in
     return p_term(one, below, 1, m + 1, n) + p_term(one, below, -1, -m - 1, n);
 }
 
-static double w_term(const struct band *one, const struct band *below, int m, int n)
+static double w_term(const struct sh_band *one, const struct sh_band *below, int m, int n)
 {
     if (m > 0) return p_term(one, below, 1, m + 1, n) + p_term(one, below, -1, -m - 1, n);
     return p_term(one, below, 1, m - 1, n) - p_term(one, below, -1, 1 - m, n);
@@ -58,7 +50,7 @@ static double w_term(const struct band *one, const struct band *below, int m, in
 
 // One entry: u U + v V + w W. Terms with a zero factor are skipped: they would read outside the
 // band below.
-static double next_entry(const struct band *one, const struct band *below, int m, int n)
+static double next_entry(const struct sh_band *one, const struct sh_band *below, int m, int n)
 {
     int l = below->l + 1, k = m < 0 ? -m : m;
     double denominator = (n == l || n == -l) ? 2 * l * (2 * l - 1) : (l + n) * (l - n);
@@ -71,28 +63,36 @@ static double next_entry(const struct band *one, const struct band *below, int m
     return sum;
 }
 
-static void apply(const struct band *band, const float *in, float *out)
+void sh_rotation_init(struct sh_rotation *out, int bands, mat3s to_from)
 {
-    int first = band->l * band->l, width = 2 * band->l + 1;
-    for (int m = 0; m < width; m++) {
-        double sum = 0.0;
-        for (int n = 0; n < width; n++) sum += band->at[m][n] * (double)in[first + n];
-        out[first + m] = (float)sum;
+    assert(bands >= 1 && bands <= SH_MAX_BANDS);
+    out->bands = bands;
+    out->of[0] = (struct sh_band){ .at[0][0] = 1.0 };
+    if (bands > 1) out->of[1] = band_one(to_from);
+    for (int l = 2; l < bands; l++) {
+        out->of[l].l = l;
+        for (int m = -l; m <= l; m++)
+            for (int n = -l; n <= l; n++)
+                out->of[l].at[m + l][n + l] = next_entry(&out->of[1], &out->of[l - 1], m, n);
+    }
+}
+
+void sh_rotation_apply(const struct sh_rotation *rotation, const float *in, float *out)
+{
+    assert(in != out);
+    for (int l = 0; l < rotation->bands; l++) {
+        const int first = l * l, width = 2 * l + 1;
+        for (int m = 0; m < width; m++) {
+            double sum = 0.0;
+            for (int n = 0; n < width; n++) sum += rotation->of[l].at[m][n] * (double)in[first + n];
+            out[first + m] = (float)sum;
+        }
     }
 }
 
 void sh_rotate(int bands, mat3s to_from, const float *in, float *out)
 {
-    assert(in != out && bands >= 1 && bands <= SH_MAX_BANDS);
-    out[0] = in[0];
-    if (bands < 2) return;
-    struct band one = band_one(to_from), band = one;
-    apply(&band, in, out);
-    for (int l = 2; l < bands; l++) {
-        struct band below = band;
-        band.l = l;
-        for (int m = -l; m <= l; m++)
-            for (int n = -l; n <= l; n++) band.at[m + l][n + l] = next_entry(&one, &below, m, n);
-        apply(&band, in, out);
-    }
+    struct sh_rotation rotation;
+    sh_rotation_init(&rotation, bands, to_from);
+    sh_rotation_apply(&rotation, in, out);
 }

@@ -41,40 +41,76 @@ static bool create(void *state, const struct technique_create *how)
     return ok;
 }
 
+static enum light_map_specular specular_of(const struct prt_options *o)
+{
+    if (!o->specular) return LIGHT_MAP_DIFFUSE;
+    return o->glossy ? LIGHT_MAP_MIRRORED : LIGHT_MAP_SPECULAR;
+}
+
 #define TABLE(thing)    offsetof(struct prt, tables.thing)
 #define PIPELINE(thing) #thing, offsetof(struct prt, pipelines.thing)
+
+// transfer, clusters and weights are created by prt_upload.
+static void list_tables(size_t base, uint32_t rows, struct gpu_objects *out)
+{
+#define MEMBER(thing) offsetof(struct prt_tables, thing)
+    if (rows > 0)
+        GPU_ADD(out, base,
+                { GPU_IMAGE, "row_light", MEMBER(row_light),
+                  .image = light_map_table(GPU_RGBA32F, rows) });
+    GPU_ADD(out, base, { GPU_IMAGE, .member = MEMBER(transfer) },
+            { GPU_IMAGE, .member = MEMBER(clusters) }, { GPU_IMAGE, .member = MEMBER(weights) });
+#undef MEMBER
+}
+
+static void list_constants(const struct prt_options *o, struct gpu_constant *out)
+{
+    out[0] = (struct gpu_constant){ PRT_COEFFICIENTS, prt_coefficients(o) };
+    out[1] = (struct gpu_constant){ PRT_BOUNCES, o->transfer == PRT_INTERREFLECTED };
+    out[2] = (struct gpu_constant){ PRT_VECTORS, prt_vectors(o) };
+}
+
+static void list_pipelines(const struct prt *s, struct gpu_objects *out)
+{
+    const uint32_t first = LIGHT_MAP_CONSTANTS, of_vectors = 3u << first, of_weights = 4u << first;
+    const bool compressed = prt_codebook_rows(&s->options) > 0;
+    const uint32_t constants = compressed ? of_weights : of_vectors;
+    if (compressed)
+        GPU_ADD(out, 0,
+                { GPU_PIPELINE, PIPELINE(rows), .shader = &shader_prt_rows_comp,
+                  .consts = of_vectors });
+    GPU_ADD(
+        out, 0,
+        { GPU_PIPELINE, PIPELINE(light),
+          .shader = compressed ? &shader_prt_light_clusters_comp : &shader_prt_light_vectors_comp,
+          .consts = constants });
+    if (prt_is_glossy(&s->options))
+        GPU_ADD(out, 0,
+                { GPU_PIPELINE, PIPELINE(reflect),
+                  .shader = compressed ? &shader_prt_reflect_clusters_comp
+                                       : &shader_prt_reflect_vectors_comp,
+                  .consts = constants });
+}
 
 static void list(const struct prt *s, struct gpu_objects *out)
 {
     const size_t texels = s->charts.side_texel_count;
-    const uint32_t first = LIGHT_MAP_CONSTANTS, rows = prt_codebook_rows(&s->options);
+    const uint32_t rows = prt_codebook_rows(&s->options);
     gpu_objects_clear(out);
-    light_map_list(&s->light_map, offsetof(struct prt, light_map), s->options.specular, out);
+    light_map_list(&s->light_map, offsetof(struct prt, light_map), specular_of(&s->options), out);
     if (texels == 0) return;
-    out->constants[first] =
-        (struct gpu_constant){ PRT_COEFFICIENTS, prt_coefficients(&s->options) };
-    out->constants[first + 1] =
-        (struct gpu_constant){ PRT_BOUNCES, s->options.transfer == PRT_INTERREFLECTED };
-    out->constants[first + 2] = (struct gpu_constant){ PRT_VECTORS, prt_vectors(&s->options) };
+    list_constants(&s->options, out->constants + LIGHT_MAP_CONSTANTS);
+    list_pipelines(s, out);
     GPU_ADD(out, 0,
             { GPU_IMAGE, "texel_light", TABLE(texel_light),
-              .image = light_map_table(GPU_RG32U, 3 * texels) });
-    if (rows > 0)
-        GPU_ADD(out, 0,
-                { GPU_IMAGE, "row_light", TABLE(row_light),
-                  .image = light_map_table(GPU_RGBA32F, rows) },
-                { GPU_PIPELINE, PIPELINE(rows), .shader = &shader_prt_rows_comp,
-                  .consts = 3u << first },
-                { GPU_PIPELINE, PIPELINE(light), .shader = &shader_prt_light_clusters_comp,
-                  .consts = 4u << first });
-    else
-        GPU_ADD(out, 0,
-                { GPU_PIPELINE, PIPELINE(light), .shader = &shader_prt_light_vectors_comp,
-                  .consts = 3u << first });
-    // Created by prt_upload.
-    GPU_ADD(out, 0, { GPU_IMAGE, .member = TABLE(texels) },
-            { GPU_IMAGE, .member = TABLE(transfer) }, { GPU_IMAGE, .member = TABLE(clusters) },
-            { GPU_IMAGE, .member = TABLE(weights) });
+              .image = light_map_table(GPU_RG32U, 3 * texels) },
+            { GPU_IMAGE, .member = TABLE(texels) });
+    list_tables(TABLE(vectors), rows, out);
+    if (!prt_is_glossy(&s->options)) return;
+    GPU_ADD(out, 0,
+            { GPU_IMAGE, "texel_radiance", TABLE(texel_radiance),
+              .image = light_map_table(GPU_RG32U, texels) });
+    list_tables(TABLE(matrices), PRT_OUTGOING * rows, out);
 }
 
 static bool bake_report(struct report *report, struct bake *bake, const struct technique_bake *how)
@@ -134,18 +170,19 @@ static void follow(void *state, const struct scene_pose *pose, bool wait)
 static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct prt *s = state;
-    struct prt_light light;
     kept_update(&s->kept, view, view->light_hash);
     if (s->charts.side_texel_count == 0 || (view->keep && s->kept.same)) return;
-    prt_project(&s->options, view, &light);
-    prt_record_update(s, cmd, view, &light);
+    prt_project(&s->options, view, &s->light);
+    prt_record_update(s, cmd, view);
 }
 
 static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct prt *s = state;
-    if (view->layers[FRAME_ID].id && s->charts.side_texel_count > 0)
-        light_map_record_apply(&s->light_map, cmd, view);
+    if (!view->layers[FRAME_ID].id || s->charts.side_texel_count == 0) return;
+    if (prt_is_glossy(&s->options) && view->layers[FRAME_SPECULAR].id)
+        prt_record_reflect(s, cmd, view);
+    light_map_record_apply(&s->light_map, cmd, view);
 }
 
 static gpu_image light_map(void *state)

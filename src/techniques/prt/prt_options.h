@@ -11,6 +11,12 @@ struct prt_options {
 
 enum { PRT_UNSHADOWED, PRT_SHADOWED, PRT_INTERREFLECTED };
 
+// Rays of a transfer matrix, over the hemisphere.
+static inline uint32_t prt_glossy_rays(const struct prt_options *options)
+{
+    enum { MOST_RAYS = 2048 };
+    return options->rays < MOST_RAYS ? (uint32_t)options->rays : MOST_RAYS;
+}
 static inline int prt_bands(const struct prt_options *options)
 {
     return 2 + options->coefficients;

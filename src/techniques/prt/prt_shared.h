@@ -6,6 +6,10 @@
 
 #define PRT_MAX_COEFFICIENTS 25
 
+// Bands and coefficients of the radiance that specular lobes reflect, by outgoing direction.
+#define PRT_OUTGOING_BANDS 5
+#define PRT_OUTGOING       25
+
 #define PRT_LOCAL 64 // workgroup size over texels
 
 // Transfer vectors of texels, or rows of a codebook, in a table of four halves: entry k · rows +
@@ -29,6 +33,13 @@ struct prt_rows_push {
     uint32_t rows;
 };
 
+// Outgoing radiance towards the camera. rows: of the codebook, or texels.
+struct prt_reflect_push {
+    vec3s camera; // world, m
+    uint32_t texels, rows;
+    float emitters;
+};
+
 struct prt_light_push {
     uint32_t texels;
     float emitters; // factor of the light of emissive surfaces
@@ -38,6 +49,7 @@ struct prt_light_push {
 _Static_assert(sizeof(struct prt_light) == 2 * PRT_MAX_COEFFICIENTS * 16, "layout is shared with "
                                                                           "GLSL");
 _Static_assert(sizeof(struct prt_rows_push) == 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct prt_reflect_push) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct prt_light_push) == 8, "layout is shared with GLSL");
 #endif
 

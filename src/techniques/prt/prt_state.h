@@ -8,6 +8,13 @@
 #include "techniques/prt/project.h"
 #include "techniques/prt/prt_tensors.h"
 
+// Transfer vectors, or matrices, of which each row is one: row out · R + r of r of R.
+struct prt_tables {
+    gpu_image transfer;          // of texels, or of the rows of a codebook
+    gpu_image clusters, weights; // of compressed texels
+    gpu_image row_light;         // of the newest light, of each row of the codebook
+};
+
 struct prt {
     struct prt_options options;
     struct host *host;
@@ -15,14 +22,16 @@ struct prt {
     struct charts charts; // without texels: an empty scene
     struct light_map light_map;
     struct {
-        gpu_image texels, transfer;  // of the bake; the latter of texels or clusters
-        gpu_image clusters, weights; // of compressed texels
-        gpu_image row_light;         // of the newest light, of each row of the codebook
-        gpu_image texel_light;       // and of texels
+        gpu_image texels;           // of the bake
+        gpu_image texel_light;      // of the newest light
+        gpu_image texel_radiance;   // that texels reflect towards the newest view, with `glossy`
+        struct prt_tables vectors;  // of diffuse transfer
+        struct prt_tables matrices; // of glossy transfer
     } tables;
     struct {
-        gpu_pipeline rows, light;
+        gpu_pipeline rows, light, reflect;
     } pipelines;
+    struct prt_light light; // the newest
     struct light_map_followed followed;
     struct kept kept;
     bool said_lights;
@@ -39,6 +48,12 @@ static inline uint32_t prt_weight_entries(const struct prt_options *options)
     return (prt_vectors(options) + PRT_ROW_HALVES - 1) / PRT_ROW_HALVES;
 }
 
+// Reflections by matrices.
+static inline bool prt_is_glossy(const struct prt_options *options)
+{
+    return options->glossy && options->specular;
+}
+
 // ---- prt_upload.c
 
 // Tables of the light map and of a bake, which is untrusted, on the GPU.
@@ -46,6 +61,7 @@ bool prt_upload(struct prt *state, const struct tensors *bake);
 
 // ---- prt_record.c
 
-// The light map under distant light and emissive surfaces.
-void prt_record_update(struct prt *state, struct gpu_cmd *cmd, const struct frame_view *view,
-                       const struct prt_light *light);
+// The light map under the newest light and emissive surfaces.
+void prt_record_update(struct prt *state, struct gpu_cmd *cmd, const struct frame_view *view);
+// The radiance that texels reflect towards a view, by the newest light.
+void prt_record_reflect(struct prt *state, struct gpu_cmd *cmd, const struct frame_view *view);

@@ -12,11 +12,23 @@
 #define PRT_BOUNCE  "transfer/bounce"  // F16 [coefficients][texels][3], interreflected
 #define PRT_EMITTED "transfer/emitted" // F32 [texels][3]: bounces of emitted light, interreflected
 
-// In place of the first two with compression:
+// With `glossy`:
+#define PRT_MATRIX    "glossy/matrix"    // F16 [texels][PRT_OUTGOING][dimension]
+#define PRT_ROUGHNESS "glossy/roughness" // F32 [texels]
+
+// In place of the vectors with compression:
 #define PRT_CODEBOOK "compressed/rows"    // F16 [clusters · (1 + vectors)][dimension]
 #define PRT_CLUSTER  "compressed/cluster" // U16 [texels]
 #define PRT_WEIGHT   "compressed/weight"  // F16 [texels][vectors], if there are vectors
 #define PRT_ERROR    "compressed/error" // F32 [2]: Σ |x − x̂|² and Σ |x − mean|² over the texels
+
+// And of the matrices, of PRT_OUTGOING rows each:
+#define PRT_GLOSSY_CODEBOOK                                                                        \
+    "compressed/glossy_rows"                           // F16 [clusters · (1 + vectors)]
+                                                       // [PRT_OUTGOING][dimension]
+#define PRT_GLOSSY_CLUSTER "compressed/glossy_cluster" // U16 [texels]
+#define PRT_GLOSSY_WEIGHT  "compressed/glossy_weight"  // F16 [texels][vectors]
+#define PRT_GLOSSY_ERROR   "compressed/glossy_error"   // F32 [2]
 
 // ---- prt_charts.c
 bool prt_charts(const struct scene_pose *statics, const void *options, struct host *host,

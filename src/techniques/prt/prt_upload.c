@@ -7,8 +7,10 @@ struct content {
     struct light_map_texels texels;
     const uint16_t *direct; // PRT_DIRECT
     const uint16_t *bounce; // PRT_BOUNCE; NULL: without bounces
-    // Compressed: PRT_CODEBOOK, PRT_CLUSTER, PRT_WEIGHT.
-    const uint16_t *codebook, *cluster, *weight;
+    struct compressed {
+        const uint16_t *rows, *cluster, *weight; // PRT_CODEBOOK, PRT_CLUSTER, PRT_WEIGHT
+    } vectors, matrices;                         // NULL: not compressed
+    const uint16_t *matrix;                      // PRT_MATRIX
     float *emitted;  // [texels][3][4] with bounces, as LIGHT_MAP_EMITTED
     uint32_t *shown; // [texels] whose light each one shows
 };
@@ -44,28 +46,54 @@ static bool find_vectors(struct prt *s, const struct tensors *bake, struct conte
     return out->bounce != NULL;
 }
 
-static bool check_clusters(const struct prt *s, const struct content *c)
+static bool check_clusters(const struct prt *s, const uint16_t *cluster)
 {
     for (uint32_t i = 0; i < s->charts.side_texel_count; i++)
-        if (c->cluster[i] >= prt_clusters(&s->options))
+        if (cluster[i] >= prt_clusters(&s->options))
             return host_fail(s->host, FAIL_FORMAT, "bake of prt: texel %u is in cluster %u of %u",
-                             i, c->cluster[i], prt_clusters(&s->options));
+                             i, cluster[i], prt_clusters(&s->options));
     return true;
+}
+
+// Of the tensors of vectors, or of matrices.
+static bool find_points(struct prt *s, const struct tensors *bake, bool matrices,
+                        struct compressed *out)
+{
+    const uint64_t texels = light_map_rows(s->charts.side_texel_count);
+    const uint64_t vectors = prt_vectors(&s->options);
+    const char *cluster = matrices ? PRT_GLOSSY_CLUSTER : PRT_CLUSTER;
+    out->cluster = TENSORS_EXPECT(s->host, bake, cluster, TENSOR_U16, texels);
+    if (!out->cluster || !check_clusters(s, out->cluster)) return false;
+    if (!TENSORS_EXPECT(s->host, bake, matrices ? PRT_GLOSSY_ERROR : PRT_ERROR, TENSOR_F32, 2))
+        return false;
+    if (vectors == 0) return true;
+    out->weight = TENSORS_EXPECT(s->host, bake, matrices ? PRT_GLOSSY_WEIGHT : PRT_WEIGHT,
+                                 TENSOR_F16, texels, vectors);
+    return out->weight != NULL;
 }
 
 static bool find_codebook(struct prt *s, const struct tensors *bake, struct content *out)
 {
+    const uint64_t rows = prt_codebook_rows(&s->options), numbers = prt_dimension(&s->options);
+    out->vectors.rows = TENSORS_EXPECT(s->host, bake, PRT_CODEBOOK, TENSOR_F16, rows, numbers);
+    return out->vectors.rows && find_points(s, bake, false, &out->vectors);
+}
+
+static bool find_matrices(struct prt *s, const struct tensors *bake, struct content *out)
+{
     const uint64_t texels = light_map_rows(s->charts.side_texel_count);
-    const uint64_t rows = prt_codebook_rows(&s->options), vectors = prt_vectors(&s->options);
-    out->codebook =
-        TENSORS_EXPECT(s->host, bake, PRT_CODEBOOK, TENSOR_F16, rows, prt_dimension(&s->options));
-    if (!out->codebook) return false;
-    out->cluster = TENSORS_EXPECT(s->host, bake, PRT_CLUSTER, TENSOR_U16, texels);
-    if (!out->cluster || !check_clusters(s, out)) return false;
-    if (!TENSORS_EXPECT(s->host, bake, PRT_ERROR, TENSOR_F32, 2)) return false;
-    if (vectors == 0) return true;
-    out->weight = TENSORS_EXPECT(s->host, bake, PRT_WEIGHT, TENSOR_F16, texels, vectors);
-    return out->weight != NULL;
+    const uint64_t rows = prt_codebook_rows(&s->options), numbers = prt_dimension(&s->options);
+    if (!prt_is_glossy(&s->options)) return true;
+    out->texels.roughness = TENSORS_EXPECT(s->host, bake, PRT_ROUGHNESS, TENSOR_F32, texels);
+    if (!out->texels.roughness) return false;
+    if (rows == 0) {
+        out->matrix =
+            TENSORS_EXPECT(s->host, bake, PRT_MATRIX, TENSOR_F16, texels, PRT_OUTGOING, numbers);
+        return out->matrix != NULL;
+    }
+    out->matrices.rows =
+        TENSORS_EXPECT(s->host, bake, PRT_GLOSSY_CODEBOOK, TENSOR_F16, rows, PRT_OUTGOING, numbers);
+    return out->matrices.rows && find_points(s, bake, true, &out->matrices);
 }
 
 static bool find_tensors(struct prt *s, const struct tensors *bake, struct content *out)
@@ -74,46 +102,75 @@ static bool find_tensors(struct prt *s, const struct tensors *bake, struct conte
     const bool ok = s->options.compression == PRT_NONE ? find_vectors(s, bake, out)
                                                        : find_codebook(s, bake, out);
     return ok && light_map_find_texels(&out->texels, s->host, &s->charts, bake) &&
+           find_matrices(s, bake, out) &&
            (s->options.transfer != PRT_INTERREFLECTED || add_emitted_bounces(s, bake, out));
+}
+
+// Halves of a table: number k of row `row` of `rows`.
+static uint16_t *entry_of(uint16_t *table, size_t rows, size_t row, size_t k)
+{
+    const size_t halves = PRT_ROW_HALVES;
+    return &table[halves * (k / halves * rows + row) + k % halves];
 }
 
 // Number k of a transfer vector, or of a row of the codebook.
 static uint16_t value_of(const struct prt *s, const struct content *c, size_t row, size_t k)
 {
     const size_t texels = s->charts.side_texel_count;
-    if (c->codebook) return c->codebook[row * prt_dimension(&s->options) + k];
+    if (c->vectors.rows) return c->vectors.rows[row * prt_dimension(&s->options) + k];
     if (!c->bounce) return c->direct[k * texels + row];
     const size_t at = k / 4 * texels + row;
     return k % 4 == 0 ? c->direct[at] : c->bounce[3 * at + k % 4 - 1];
 }
 
-static bool upload_transfer(struct prt *s, const struct content *c)
+static size_t row_count(const struct prt *s)
 {
-    const size_t rows = c->codebook ? prt_codebook_rows(&s->options) : s->charts.side_texel_count;
-    const size_t count = prt_row_entries(&s->options) * rows, halves = PRT_ROW_HALVES;
-    uint16_t *table = host_alloc(s->host, light_map_table_room(count), halves * sizeof *table);
-    for (size_t k = 0; table && k < prt_dimension(&s->options); k++)
-        for (size_t row = 0; row < rows; row++)
-            table[halves * (k / halves * rows + row) + k % halves] = value_of(s, c, row, k);
-    return light_map_table_upload(s->host, s->gpu, "transfer", GPU_RG32U, table, count,
-                                  &s->tables.transfer);
+    const size_t rows = prt_codebook_rows(&s->options);
+    return rows > 0 ? rows : s->charts.side_texel_count;
 }
 
-static bool upload_clusters(struct prt *s, const struct content *c)
+static bool upload_transfer(struct prt *s, const struct content *c)
+{
+    const size_t rows = row_count(s), count = prt_row_entries(&s->options) * rows;
+    uint16_t *table = host_alloc(s->host, light_map_table_room(count), 4 * sizeof *table);
+    for (size_t k = 0; table && k < prt_dimension(&s->options); k++)
+        for (size_t row = 0; row < rows; row++)
+            *entry_of(table, rows, row, k) = value_of(s, c, row, k);
+    return light_map_table_upload(s->host, s->gpu, "transfer", GPU_RG32U, table, count,
+                                  &s->tables.vectors.transfer);
+}
+
+static bool upload_matrices(struct prt *s, const struct content *c)
+{
+    const size_t matrices = row_count(s), rows = PRT_OUTGOING * matrices;
+    const size_t numbers = prt_dimension(&s->options), count = prt_row_entries(&s->options) * rows;
+    const uint16_t *from = c->matrices.rows ? c->matrices.rows : c->matrix;
+    if (!from) return true;
+    uint16_t *table = host_alloc(s->host, light_map_table_room(count), 4 * sizeof *table);
+    for (size_t i = 0; table && i < matrices; i++)
+        for (size_t out = 0; out < PRT_OUTGOING; out++)
+            for (size_t k = 0; k < numbers; k++)
+                *entry_of(table, rows, out * matrices + i, k) =
+                    from[(i * PRT_OUTGOING + out) * numbers + k];
+    return light_map_table_upload(s->host, s->gpu, "matrices", GPU_RG32U, table, count,
+                                  &s->tables.matrices.transfer);
+}
+
+static bool upload_clusters(struct prt *s, const struct compressed *c, struct prt_tables *out)
 {
     const size_t texels = s->charts.side_texel_count, vectors = prt_vectors(&s->options);
-    const size_t count = prt_weight_entries(&s->options) * texels, halves = PRT_ROW_HALVES;
-    if (!c->codebook) return true;
+    const size_t count = prt_weight_entries(&s->options) * texels;
+    if (!c->rows) return true;
     uint32_t *clusters = host_alloc(s->host, light_map_table_room(texels), sizeof *clusters);
-    uint16_t *weights = host_alloc(s->host, light_map_table_room(count), halves * sizeof *weights);
+    uint16_t *weights = host_alloc(s->host, light_map_table_room(count), 4 * sizeof *weights);
     for (size_t i = 0; clusters && i < texels; i++) clusters[i] = c->cluster[i];
     for (size_t i = 0; weights && i < texels; i++)
         for (size_t k = 0; k < vectors; k++)
-            weights[halves * (k / halves * texels + i) + k % halves] = c->weight[i * vectors + k];
+            *entry_of(weights, texels, i, k) = c->weight[i * vectors + k];
     const bool ok = light_map_table_upload(s->host, s->gpu, "clusters", GPU_R32U, clusters, texels,
-                                           &s->tables.clusters);
+                                           &out->clusters);
     return light_map_table_upload(s->host, s->gpu, "weights", GPU_RG32U, weights, count,
-                                  &s->tables.weights) &&
+                                  &out->weights) &&
            ok;
 }
 
@@ -121,7 +178,9 @@ static bool upload_all(struct prt *s, struct content *c, const struct tensors *b
 {
     if (s->charts.side_texel_count == 0) return true;
     c->shown = light_map_shown(&c->texels, s->host);
-    return c->shown && upload_transfer(s, c) && upload_clusters(s, c) &&
+    return c->shown && upload_transfer(s, c) && upload_matrices(s, c) &&
+           upload_clusters(s, &c->vectors, &s->tables.vectors) &&
+           upload_clusters(s, &c->matrices, &s->tables.matrices) &&
            light_map_upload_texels(&c->texels, s->host, s->gpu, &s->tables.texels) &&
            light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c->shown, bake);
 }

@@ -20,7 +20,8 @@ static struct {
 static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     test.state = state;
-    prt_record_update(state, cmd, view, test.light);
+    test.state->light = *test.light;
+    prt_record_update(state, cmd, view);
 }
 
 struct gpu_side {

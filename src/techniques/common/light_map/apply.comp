@@ -1,5 +1,5 @@
 // Irradiance of each pixel from the light map; SPECULAR: also the radiance that the specular lobe
-// reflects. Alpha is 0 where the map has no light.
+// reflects, MIRRORED: as texels reflect it. Alpha is 0 where the map has no light.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -39,6 +39,9 @@ layout(set = 0, binding = 10) uniform sampler2D material;
 layout(set = 0, binding = 11) uniform sampler2D dielectric; // FRAME_DIELECTRIC if HAS_DIELECTRIC
 layout(set = 0, binding = 12, rgba16f) uniform writeonly image2D specular;
 #endif
+#if MIRRORED
+layout(set = 0, binding = 14) uniform sampler2DArray mirrored;
+#endif
 
 // One division, where normalize has three on software drivers.
 vec3 unit(vec3 v)
@@ -47,14 +50,19 @@ vec3 unit(vec3 v)
 }
 
 #if SPECULAR
-vec3 reflected(ivec2 pixel, light_map_surface s, light_map_light light)
+vec3 reflected(ivec2 pixel, light_map_surface s, light_map_light light, vec3 place)
 {
     vec4 lobe = BRDF_DEFAULT_DIELECTRIC;
     if (HAS_DIELECTRIC) lobe = texelFetch(dielectric, pixel, 0);
     brdf_material m =
         brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
     vec3 n = s.normal, to_viewer = unit(s.camera - s.position);
+#if MIRRORED
+    vec2 uv = place.xy * vec2(push.per_width, push.per_height);
+    vec3 radiance = place.z < 0.0 ? vec3(0.0) : textureLod(mirrored, vec3(uv, place.z), 0.0).rgb;
+#else
     vec3 radiance = light_map_radiance(light, n, to_viewer, brdf_alpha(m.roughness));
+#endif
     return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
            clamp(radiance, vec3(0.0), vec3(HALF_MAX));
 }
@@ -80,7 +88,7 @@ void main()
         mapped = place.z >= 0.0;
         if (mapped) light = light_map_lookup(light_map, per_size, place, s.normal);
 #if SPECULAR
-        radiance = reflected(pixel, s, light);
+        radiance = reflected(pixel, s, light, place);
 #endif
     }
     imageStore(irradiance, pixel, vec4(light.irradiance, mapped ? 1.0 : 0.0));

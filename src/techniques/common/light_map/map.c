@@ -24,8 +24,21 @@ void light_map_init(struct light_map *out, struct host *host, struct gpu *gpu,
 
 #define MEMBER(thing) offsetof(struct light_map, thing)
 
-static void list_pipelines(const struct light_map *map, size_t base, bool specular,
-                           struct gpu_objects *out)
+static const struct gpu_shader *apply_shader(enum light_map_specular specular)
+{
+    switch (specular) {
+    case LIGHT_MAP_DIFFUSE:
+        return &shader_common_light_map_apply_diffuse_comp;
+    case LIGHT_MAP_SPECULAR:
+        return &shader_common_light_map_apply_specular_comp;
+    case LIGHT_MAP_MIRRORED:
+        break;
+    }
+    return &shader_common_light_map_apply_mirrored_comp;
+}
+
+static void list_pipelines(const struct light_map *map, size_t base,
+                           enum light_map_specular specular, struct gpu_objects *out)
 {
     const struct gpu_constant constants[LIGHT_MAP_CONSTANTS] = {
         { LIGHT_MAP_APPLY_WIDTH, map->apply_width },
@@ -36,8 +49,7 @@ static void list_pipelines(const struct light_map *map, size_t base, bool specul
         { LIGHT_MAP_HAS_MOVES, 0 }
     };
     const uint32_t still = 7u | 1u << 5, moved = 7u;
-    const struct gpu_shader *apply = specular ? &shader_common_light_map_apply_specular_comp
-                                              : &shader_common_light_map_apply_diffuse_comp;
+    const struct gpu_shader *apply = apply_shader(specular);
     memcpy(out->constants, constants, sizeof constants);
 #define PIPELINE(thing) #thing, MEMBER(thing)
     GPU_ADD(out, base,
@@ -49,14 +61,17 @@ static void list_pipelines(const struct light_map *map, size_t base, bool specul
             { GPU_PIPELINE, PIPELINE(apply[1][1]), .shader = apply, .consts = moved | 1u << 4 });
 }
 
-void light_map_list(const struct light_map *map, size_t base, bool specular,
+void light_map_list(const struct light_map *map, size_t base, enum light_map_specular specular,
                     struct gpu_objects *out)
 {
     GPU_ADD(out, base, { GPU_SAMPLER, "light_map", .member = MEMBER(linear) });
     if (!map->charts || map->charts->side_texel_count == 0) return;
-    const struct gpu_image_desc image = light_map_image(map->charts, "light_map");
+    const struct gpu_image_desc image = light_map_image(map->charts, "light_map", LIGHT_MAP_LAYERS);
+    const struct gpu_image_desc mirrored = light_map_image(map->charts, "mirrored", 1);
     GPU_ADD(out, base, { GPU_IMAGE, "light_map", MEMBER(images[0]), .image = image },
             { GPU_IMAGE, "light_map", MEMBER(images[1]), .image = image });
+    if (specular == LIGHT_MAP_MIRRORED)
+        GPU_ADD(out, base, { GPU_IMAGE, "mirrored", MEMBER(mirrored), .image = mirrored });
     list_pipelines(map, base, specular, out);
     // Created by light_map_upload.
     GPU_ADD(out, base, { GPU_IMAGE, .member = MEMBER(owners) },
@@ -171,38 +186,77 @@ uint64_t light_map_bytes(uint64_t texels)
 
 // ---- passes
 
+// The light of texels, and the image that shows it.
+struct shown {
+    gpu_image light, image;
+    uint32_t layers; // of a side
+};
+
+static void record_show(const struct light_map *map, struct gpu_cmd *cmd, struct shown s,
+                        uint32_t first, uint32_t count)
+{
+    const struct light_map_show_push push = { first, count, map->charts->side_texel_count,
+                                              s.layers };
+    gpu_dispatch(cmd, map->show,
+                 GPU_BIND({ .name = "light_map_owners", .image = map->owners },
+                          { .name = "texel_light", .image = s.light },
+                          { .name = "light_map", .image = s.image }),
+                 &push, sizeof push, gpu_groups(count, LIGHT_MAP_LOCAL), 1, 1);
+}
+
+static void record_seams(const struct light_map *map, struct gpu_cmd *cmd, struct shown s,
+                         uint32_t first, uint32_t count)
+{
+    const struct light_map_seams_push push = { first,
+                                               count,
+                                               map->seam_count,
+                                               CHART_SEAM_ENTRIES / LIGHT_MAP_PAIR,
+                                               map->charts->side_texel_count,
+                                               s.layers };
+    gpu_dispatch(cmd, map->seams,
+                 GPU_BIND({ .name = "light_map_seam_places", .image = map->seam_places },
+                          { .name = "light_map_seam_rows", .image = map->seam_rows },
+                          { .name = "texel_light", .image = s.light },
+                          { .name = "light_map", .image = s.image }),
+                 &push, sizeof push, gpu_groups(count, LIGHT_MAP_LOCAL), 1, 1);
+}
+
+static struct shown newest(const struct light_map *map, gpu_image light)
+{
+    return (struct shown){ light, map->images[1 - map->shown], LIGHT_MAP_LAYERS };
+}
+
 void light_map_record_show(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
                            uint32_t first, uint32_t count)
 {
-    const struct light_map_show_push push = { first, count, map->charts->side_texel_count };
-    gpu_dispatch(cmd, map->show,
-                 GPU_BIND({ .name = "light_map_owners", .image = map->owners },
-                          { .name = "texel_light", .image = light },
-                          { .name = "light_map", .image = map->images[1 - map->shown] }),
-                 &push, sizeof push, gpu_groups(count, LIGHT_MAP_LOCAL), 1, 1);
+    record_show(map, cmd, newest(map, light), first, count);
 }
 
 void light_map_record_seams(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
                             uint32_t first, uint32_t count)
 {
-    const struct light_map_seams_push push = { first, count, map->seam_count,
-                                               CHART_SEAM_ENTRIES / LIGHT_MAP_PAIR,
-                                               map->charts->side_texel_count };
-    gpu_dispatch(cmd, map->seams,
-                 GPU_BIND({ .name = "light_map_seam_places", .image = map->seam_places },
-                          { .name = "light_map_seam_rows", .image = map->seam_rows },
-                          { .name = "texel_light", .image = light },
-                          { .name = "light_map", .image = map->images[1 - map->shown] }),
-                 &push, sizeof push, gpu_groups(count, LIGHT_MAP_LOCAL), 1, 1);
+    record_seams(map, cmd, newest(map, light), first, count);
+}
+
+static void record_whole(const struct light_map *map, struct gpu_cmd *cmd, struct shown s,
+                         bool seams)
+{
+    record_show(map, cmd, s, 0, map->owner_count);
+    if (seams && map->seam_count > 0) record_seams(map, cmd, s, 0, map->seam_count);
 }
 
 void light_map_record_all(struct light_map *map, struct gpu_cmd *cmd, gpu_image light, bool seams)
 {
     gpu_scope_begin(cmd, "light_map");
-    light_map_record_show(map, cmd, light, 0, map->owner_count);
-    if (seams && map->seam_count > 0) light_map_record_seams(map, cmd, light, 0, map->seam_count);
+    record_whole(map, cmd, newest(map, light), seams);
     map->shown = 1 - map->shown;
     gpu_scope_end(cmd);
+}
+
+void light_map_record_mirrored(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
+                               bool seams)
+{
+    record_whole(map, cmd, (struct shown){ light, map->mirrored, 1 }, seams);
 }
 
 void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
@@ -219,6 +273,7 @@ void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
         GPU_BIND(FRAME_SURFACE_BINDINGS(view), { .name = "id", .image = layers[FRAME_ID] },
                  LIGHT_MAP_SURFACE_BINDINGS(&map->surfaces, cmd),
                  { .name = "light_map", .image = map->images[map->shown], .sampler = map->linear },
+                 { .name = "mirrored", .image = map->mirrored, .sampler = map->linear },
                  { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
                  { .name = "specular", .image = layers[FRAME_SPECULAR] }),
         &push, sizeof push, gpu_groups(view->width, map->apply_width),

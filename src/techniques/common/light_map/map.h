@@ -18,10 +18,18 @@ struct light_map {
     uint32_t owner_count, seam_count; // of places
     gpu_image images[2];              // a map appears whole: one is shown, the other is written
     int shown;                        // of the images
+    gpu_image mirrored;               // with LIGHT_MAP_MIRRORED, of the newest view
     gpu_sampler linear;
     gpu_pipeline show, seams;
     gpu_pipeline apply[2][2];           // [with moves][whether there is FRAME_DIELECTRIC]
     uint32_t apply_width, apply_height; // of their workgroups
+};
+
+// How pixels get specular light.
+enum light_map_specular {
+    LIGHT_MAP_DIFFUSE,  // none
+    LIGHT_MAP_SPECULAR, // of the map's light
+    LIGHT_MAP_MIRRORED, // that of texels, light_map_record_mirrored
 };
 
 // charts: may be empty yet; made before the other functions are called.
@@ -30,7 +38,7 @@ void light_map_init(struct light_map *out, struct host *host, struct gpu *gpu,
 // Adds the objects of a map at this offset of the state, none of an empty scene but the sampler.
 // The constants 0 … LIGHT_MAP_CONSTANTS − 1 of the table are the map's.
 enum { LIGHT_MAP_CONSTANTS = 6 };
-void light_map_list(const struct light_map *map, size_t base, bool specular,
+void light_map_list(const struct light_map *map, size_t base, enum light_map_specular specular,
                     struct gpu_objects *out);
 // Tables of the charts and of the seams of a bake, which is untrusted. instances: of the scene.
 // shown: [side_texel_count] whose light each texel shows (charts_fill).
@@ -47,6 +55,10 @@ void light_map_record_seams(const struct light_map *map, struct gpu_cmd *cmd, gp
                             uint32_t first, uint32_t count);
 // The whole map in a scope, with or without closed seams; it is shown from now on.
 void light_map_record_all(struct light_map *map, struct gpu_cmd *cmd, gpu_image light, bool seams);
+// The radiance that the specular lobes of texels reflect towards a view. light: [texel], four
+// halves each.
+void light_map_record_mirrored(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
+                               bool seams);
 // Irradiance and specular light of a view's pixels, from the map that is shown. Needs FRAME_ID.
 void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
                             const struct frame_view *view);

@@ -13,7 +13,7 @@
 
 // Parts of a texel in the table of texels: entry part · texels + texel.
 #define TEXEL_POSITION    0 // world, m; w: area, m²; 0: the texel is inside geometry
-#define TEXEL_NORMAL      1 // unit, of its side
+#define TEXEL_NORMAL      1 // unit, of its side; w: roughness, if it is needed
 #define TEXEL_SHADING     2 // mean shading normal, of length 1 or less
 #define TEXEL_REFLECTANCE 3 // by colour
 #define TEXEL_SKY_LIGHT   4 // irradiance along the normal, vector irradiance: radiance 1
@@ -44,13 +44,14 @@ struct light_map_paint_push {
     uint32_t count;
 };
 
-// Passes over rows `first` … `first` + `count` − 1. texels: of the light.
+// Passes over rows `first` … `first` + `count` − 1. texels: of the light. layers: of a side, of the
+// light and of the image that they write.
 struct light_map_show_push {
-    uint32_t first, count, texels;
+    uint32_t first, count, texels, layers;
 };
 
 struct light_map_seams_push {
-    uint32_t first, count, places, pairs, texels; // pairs: of a row
+    uint32_t first, count, places, pairs, texels, layers; // pairs: of a row
 };
 
 struct light_map_apply_push {
@@ -68,8 +69,8 @@ struct light_map_apply_push {
 _Static_assert(sizeof(struct light_map_sources) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_painted) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_paint_push) == 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct light_map_show_push) == 12, "layout is shared with GLSL");
-_Static_assert(sizeof(struct light_map_seams_push) == 20, "layout is shared with GLSL");
+_Static_assert(sizeof(struct light_map_show_push) == 16, "layout is shared with GLSL");
+_Static_assert(sizeof(struct light_map_seams_push) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_apply_push) == 24, "layout is shared with GLSL");
 #endif
 

@@ -28,13 +28,13 @@ void main()
         uvec4 pair = imageLoad(light_map_seam_rows, light_map_at(k * push.places + i));
         vec2 weight = uintBitsToFloat(pair.yw);
         if (weight.x == 0.0) break;
-        for (int c = 0; c < 3; c++) {
+        for (int c = 0; c < int(push.layers); c++) {
             light[c] += weight.x * texel_light_of(pair.x, push.texels, c);
             light[c] += weight.y * texel_light_of(pair.z, push.texels, c);
         }
     }
     uvec3 at = light_map_place(texelFetch(light_map_seam_places, light_map_at(i), 0).x);
-    for (int c = 0; c < 3; c++)
-        imageStore(light_map, ivec3(at.xy, LIGHT_MAP_LAYERS * at.z + c),
+    for (int c = 0; c < int(push.layers); c++)
+        imageStore(light_map, ivec3(at.xy, int(push.layers) * int(at.z) + c),
                    clamp(light[c], -HALF_MAX, HALF_MAX));
 }

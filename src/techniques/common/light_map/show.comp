@@ -22,7 +22,7 @@ void main()
     uint i = push.first + gl_GlobalInvocationID.x;
     uvec2 owner = texelFetch(light_map_owners, light_map_at(i), 0).xy;
     uvec3 at = light_map_place(owner.x);
-    for (int c = 0; c < 3; c++)
-        imageStore(light_map, ivec3(at.xy, LIGHT_MAP_LAYERS * at.z + c),
-                   texel_light_of(owner.y, push.texels, c));
+    for (uint c = 0; c < push.layers; c++)
+        imageStore(light_map, ivec3(at.xy, push.layers * at.z + c),
+                   texel_light_of(owner.y, push.texels, int(c)));
 }

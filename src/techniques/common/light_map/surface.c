@@ -18,14 +18,15 @@ static vec3s axis_of(const struct chart_triangle *t, int axis, float *offset)
     return gradient;
 }
 
-struct gpu_image_desc light_map_image(const struct charts *charts, const char *name)
+struct gpu_image_desc light_map_image(const struct charts *charts, const char *name,
+                                      uint32_t layers)
 {
     return (struct gpu_image_desc){ .name = name,
                                     .dimension = GPU_2D_ARRAY,
                                     .format = GPU_RGBA16F,
                                     .width = charts->width,
                                     .height = charts->height,
-                                    .depth = LIGHT_MAP_LAYERS * charts_sides(charts),
+                                    .depth = layers * charts_sides(charts),
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
 }
 

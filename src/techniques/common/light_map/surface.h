@@ -31,8 +31,9 @@ static inline uint32_t light_map_place_word(const struct charts *charts, size_t 
                       line % charts->height << LIGHT_MAP_PLACE_BITS | place % charts->width);
 }
 
-// Of half floats, which shaders write and sample.
-struct gpu_image_desc light_map_image(const struct charts *charts, const char *name);
+// Of half floats, which shaders write and sample. layers: of a side.
+struct gpu_image_desc light_map_image(const struct charts *charts, const char *name,
+                                      uint32_t layers);
 // Writes `count` triangles of the scene. chart_triangle: [count] in charts->triangles, CHART_NONE:
 // not in the map.
 void light_map_fill_triangles(const struct charts *charts, const uint32_t *chart_triangle,

@@ -49,7 +49,8 @@ static void fill_texel(const struct light_map_texels *t, uint32_t i, vec4s *part
     const float *point = t->point + 4 * (size_t)i, *reflectance = t->reflectance + 4 * (size_t)i;
     parts[TEXEL_POSITION * count + i] =
         vec4_of(vec3_of(point[0], point[1], point[2]), light_map_texel_area(t, i));
-    parts[TEXEL_NORMAL * count + i] = vec4_of(chart_texel_normal(t->charts, i), 0.0f);
+    parts[TEXEL_NORMAL * count + i] =
+        vec4_of(chart_texel_normal(t->charts, i), t->roughness ? t->roughness[i] : 0.0f);
     parts[TEXEL_SHADING * count + i] = vec4_of(mean_shading(t, i), 0.0f);
     parts[TEXEL_REFLECTANCE * count + i] =
         vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), 0.0f);

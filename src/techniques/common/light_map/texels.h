@@ -15,6 +15,7 @@ struct light_map_texels {
     // [texels][3] mean shading normals, which receive first-order light. NULL: the surface's
     // normal, times the mean cosine.
     const float *shading;
+    const float *roughness; // [texels] of the material; NULL: not needed
 };
 bool light_map_find_texels(struct light_map_texels *out, struct host *host,
                            const struct charts *charts, const struct tensors *bake);

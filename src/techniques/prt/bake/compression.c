@@ -9,61 +9,73 @@
 enum { OUT_CODEBOOK, OUT_CLUSTER, OUT_ERROR, OUT_WEIGHT, OUT_COUNT };
 enum { MOST_VECTORS = 32 }; // of the option
 
-struct vectors {
-    const uint16_t *direct, *bounce; // NULL: without bounces
+// Transfer vectors, or matrices.
+struct points {
+    const uint16_t *direct, *bounce; // of vectors; NULL: without bounces
+    const uint16_t *matrix;          // NULL: vectors
     size_t texels, dim;
-    uint32_t *texel;          // [points] those that are not inside geometry
-    float *at;                // [points][dim]
-    struct prt_points points; // of `at`
+    uint32_t *texel;       // [count] those that are not inside geometry
+    float *at;             // [count][dim]
+    struct prt_points all; // of `at`
 };
 
-static void fill_point(const struct vectors *v, size_t texel, float *out)
+static void fill_point(const struct points *p, size_t texel, float *out)
 {
-    for (size_t k = 0; k < v->dim; k++) {
-        const size_t at = (v->bounce ? k / 4 : k) * v->texels + texel;
-        const bool direct = !v->bounce || k % 4 == 0;
-        out[k] = float_from_half(direct ? v->direct[at] : v->bounce[3 * at + k % 4 - 1]);
+    for (size_t k = 0; k < p->dim; k++) {
+        const size_t at = (p->bounce ? k / 4 : k) * p->texels + texel;
+        const bool direct = !p->bounce || k % 4 == 0;
+        out[k] = float_from_half(p->matrix ? p->matrix[texel * p->dim + k]
+                                 : direct  ? p->direct[at]
+                                           : p->bounce[3 * at + k % 4 - 1]);
     }
 }
 
-static bool find_tensors(struct vectors *v, const struct bake_task *task, const float **point)
+static bool find_vectors(struct points *p, const struct bake_task *task)
 {
     const struct prt_scene *scene = task->job;
     const struct tensor *direct = bake_task_input(task, PRT_DIRECT);
-    const struct tensor *points = bake_task_input(task, LIGHT_MAP_POINT);
-    *v = (struct vectors){ 0 };
-    if (!direct || !points) return false;
-    *point = points->data;
-    v->direct = direct->data;
-    v->texels = direct->shape[1];
-    v->dim = prt_dimension(&scene->options);
+    if (!direct) return false;
+    p->direct = direct->data;
+    p->dim = prt_dimension(&scene->options);
     if (scene->options.transfer != PRT_INTERREFLECTED) return true;
     const struct tensor *bounce = bake_task_input(task, PRT_BOUNCE);
-    v->bounce = bounce ? bounce->data : NULL;
+    p->bounce = bounce ? bounce->data : NULL;
     return bounce != NULL;
 }
 
-static bool vectors_init(struct vectors *v, const struct bake_task *task)
+static bool find_matrices(struct points *p, const struct bake_task *task)
 {
     const struct prt_scene *scene = task->job;
-    const float *point = NULL;
-    if (!find_tensors(v, task, &point)) return false;
-    v->texel = host_alloc(task->host, v->texels, sizeof *v->texel);
-    v->at = host_alloc(task->host, v->texels, v->dim * sizeof *v->at);
-    if (!v->texel || !v->at) return false;
-    v->points = (struct prt_points){ v->at, 0, v->dim };
+    const struct tensor *matrix = bake_task_input(task, PRT_MATRIX);
+    p->matrix = matrix ? matrix->data : NULL;
+    p->dim = PRT_OUTGOING * prt_dimension(&scene->options);
+    return matrix != NULL;
+}
+
+static bool points_init(struct points *p, const struct bake_task *task)
+{
+    const struct prt_scene *scene = task->job;
+    const struct tensor *tensor = bake_task_input(task, LIGHT_MAP_POINT);
+    const bool *matrices = task->argument;
+    *p = (struct points){ .texels = scene->charts.side_texel_count };
+    if (!tensor || !(*matrices ? find_matrices(p, task) : find_vectors(p, task))) return false;
+    const float *point = tensor->data;
+    p->texel = host_alloc(task->host, p->texels, sizeof *p->texel);
+    p->at = host_alloc(task->host, p->texels, p->dim * sizeof *p->at);
+    if (!p->texel || !p->at) return false;
+    p->all = (struct prt_points){ p->at, 0, p->dim };
     for (uint32_t i = 0; i < scene->charts.side_texel_count; i++) {
         if (!(point[4 * (size_t)i + 3] > 0.0f)) continue;
-        v->texel[v->points.count] = i;
-        fill_point(v, i, v->at + v->points.count++ * v->dim);
+        p->texel[p->all.count] = i;
+        fill_point(p, i, p->at + p->all.count++ * p->dim);
     }
     return true;
 }
 
-static void vectors_finish(struct vectors *v, struct host *host)
+static void points_finish(struct points *p, struct host *host)
 {
-    host_free(host, v->texel);
-    host_free(host, v->at);
+    host_free(host, p->texel);
+    host_free(host, p->at);
 }
 
 static float rounded(float value)
@@ -95,24 +107,24 @@ static double square_error(const struct prt_codebook *book, uint32_t cluster, co
     return sum;
 }
 
-static void write_texels(const struct bake_task *task, const struct vectors *v,
+static void write_texels(const struct bake_task *task, const struct points *p,
                          const struct prt_codebook *book)
 {
     float weights[MOST_VECTORS], *error = bake_row(task, OUT_ERROR, 0);
     double sum = 0.0;
-    for (size_t i = 0; i < v->points.count; i++) {
-        const float *point = v->at + i * v->dim;
+    for (size_t i = 0; i < p->all.count; i++) {
+        const float *point = p->at + i * p->dim;
         const uint32_t cluster = book->cluster[i];
-        *(uint16_t *)bake_row(task, OUT_CLUSTER, v->texel[i]) = (uint16_t)cluster;
+        *(uint16_t *)bake_row(task, OUT_CLUSTER, p->texel[i]) = (uint16_t)cluster;
         prt_weigh(book, cluster, point, weights);
         for (size_t k = 0; k < book->vectors; k++) {
-            ((uint16_t *)bake_row(task, OUT_WEIGHT, v->texel[i]))[k] = half_from_float(weights[k]);
+            ((uint16_t *)bake_row(task, OUT_WEIGHT, p->texel[i]))[k] = half_from_float(weights[k]);
             weights[k] = rounded(weights[k]);
         }
         sum += square_error(book, cluster, weights, point);
     }
     error[0] = (float)sum;
-    error[1] = (float)prt_variance(&v->points);
+    error[1] = (float)prt_variance(&p->all);
 }
 
 static bool stop(void *user)
@@ -129,38 +141,59 @@ static bool run(const struct bake_task *task)
                                          .seed = task->bake_seed,
                                          .stop = stop,
                                          .user = &task };
-    struct vectors v;
+    struct points points;
     struct prt_codebook book = { 0 };
-    const bool ok = vectors_init(&v, task) && prt_compress(task->host, &v.points, &how, &book);
+    const bool ok =
+        points_init(&points, task) && prt_compress(task->host, &points.all, &how, &book);
     if (ok) {
         write_codebook(task, &book);
-        write_texels(task, &v, &book);
+        write_texels(task, &points, &book);
     }
     prt_codebook_finish(&book);
-    vectors_finish(&v, task->host);
+    points_finish(&points, task->host);
     return ok;
+}
+
+static bool add_stage(struct bake_plan *plan, const struct prt_scene *scene, const char *name,
+                      const struct bake_output out[OUT_COUNT], const bool *matrices)
+{
+    enum { ROUNDS = 10 }; // of each kind, about
+    const uint64_t texels = out[OUT_CLUSTER].shape[0], rows = out[OUT_CODEBOOK].shape[0];
+    const uint64_t dim =
+        prt_dimension(&scene->options) * (*matrices ? (uint64_t)PRT_OUTGOING : UINT64_C(1));
+    return bake_plan_add(
+        plan, &(struct bake_stage){ .name = name,
+                                    .wave = prt_compression_wave(&scene->options),
+                                    .task_count = 1,
+                                    .run = run,
+                                    .argument = matrices,
+                                    .outputs = out,
+                                    .output_count =
+                                        prt_vectors(&scene->options) > 0 ? OUT_COUNT : OUT_WEIGHT,
+                                    .flops = 2.0 * ROUNDS * (double)(texels * dim * (rows + dim)),
+                                    .scratch_bytes = (size_t)(texels * (2 * dim + 3) * 4) });
 }
 
 bool prt_add_compression(struct bake_plan *plan, const struct prt_scene *scene)
 {
-    enum { ROUNDS = 10 }; // of each kind, about
+    static const bool VECTORS = false, MATRICES = true;
     const uint64_t texels = light_map_rows(scene->charts.side_texel_count);
     const uint64_t dim = prt_dimension(&scene->options), rows = prt_codebook_rows(&scene->options);
     const uint64_t vectors = prt_vectors(&scene->options);
-    const struct bake_output out[OUT_COUNT] = {
+    const struct bake_output of_vectors[OUT_COUNT] = {
         { PRT_CODEBOOK, TENSOR_F16, 2, { rows, dim }, BAKE_ROWS, BAKE_SAVED },
         { PRT_CLUSTER, TENSOR_U16, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
         { PRT_ERROR, TENSOR_F32, 1, { 2 }, BAKE_ROWS, BAKE_SAVED },
         { PRT_WEIGHT, TENSOR_F16, 2, { texels, vectors }, BAKE_ROWS, BAKE_SAVED },
     };
+    const struct bake_output of_matrices[OUT_COUNT] = {
+        { PRT_GLOSSY_CODEBOOK, TENSOR_F16, 3, { rows, PRT_OUTGOING, dim }, BAKE_ROWS, BAKE_SAVED },
+        { PRT_GLOSSY_CLUSTER, TENSOR_U16, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
+        { PRT_GLOSSY_ERROR, TENSOR_F32, 1, { 2 }, BAKE_ROWS, BAKE_SAVED },
+        { PRT_GLOSSY_WEIGHT, TENSOR_F16, 2, { texels, vectors }, BAKE_ROWS, BAKE_SAVED },
+    };
     if (rows == 0) return true;
-    return bake_plan_add(
-        plan, &(struct bake_stage){ .name = "compression",
-                                    .wave = PRT_COMPRESSION_WAVE,
-                                    .task_count = 1,
-                                    .run = run,
-                                    .outputs = out,
-                                    .output_count = vectors > 0 ? OUT_COUNT : OUT_WEIGHT,
-                                    .flops = 2.0 * ROUNDS * (double)(texels * dim * (rows + dim)),
-                                    .scratch_bytes = (size_t)(texels * (2 * dim + 3) * 4) });
+    return add_stage(plan, scene, "compression", of_vectors, &VECTORS) &&
+           (!scene->options.glossy ||
+            add_stage(plan, scene, "compression of matrices", of_matrices, &MATRICES));
 }

@@ -1,7 +1,9 @@
 // Data that all tasks of a bake share.
 #pragma once
 
+#include "bake/plan.h"
 #include "scene/statics.h"
+#include "techniques/prt/bake/lobes.h"
 #include "techniques/prt/prt_tensors.h"
 #include "trace/texels/close.h"
 #include "trace/texels/texels.h"
@@ -15,6 +17,7 @@ struct prt_scene {
     struct scene_statics statics;
     struct trace_scene *trace;
     struct seam_closing closing;
+    struct prt_lobes lobes; // with `glossy`
 };
 
 // Tensors that live during the bake alone.
@@ -35,6 +38,18 @@ bool prt_add_texels(struct bake_plan *plan, const struct prt_scene *scene);
 // ---- transfer.c: transfer vectors with bounces, by coefficient
 bool prt_add_transfer(struct bake_plan *plan, const struct prt_scene *scene);
 
-// ---- compression.c: of those vectors, if there is one
-enum { PRT_COMPRESSION_WAVE = 2 };
+// ---- matrices.c: transfer matrices, with `glossy`
+enum { PRT_MATRICES_WAVE = 2 };
+bool prt_add_matrices(struct bake_plan *plan, const struct prt_scene *scene);
+
+// ---- compression.c: of vectors and matrices, if there is one
+static inline int prt_compression_wave(const struct prt_options *options)
+{
+    return options->glossy ? PRT_MATRICES_WAVE + 1 : PRT_MATRICES_WAVE;
+}
+// How long a tensor stays that is compressed.
+static inline int prt_keep(const struct prt_options *options)
+{
+    return prt_clusters(options) > 0 ? prt_compression_wave(options) : BAKE_SAVED;
+}
 bool prt_add_compression(struct bake_plan *plan, const struct prt_scene *scene);

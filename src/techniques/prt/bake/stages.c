@@ -1,5 +1,5 @@
 // The stages of a bake, in the order of their waves: texels · transfer, emitters, seams ·
-// compression.
+// matrices · compression.
 #include "techniques/prt/bake/scene.h"
 
 #include "bake/plan.h"
@@ -11,6 +11,9 @@ static bool prepare(void *argument, struct host *host)
     if (!scene_statics_init(&scene->statics, host, scene->pose)) return false;
     scene->host = host;
     scene->trace = trace_scene_create(host, &scene->statics.pose);
+    if (scene->options.glossy &&
+        !prt_lobes_init(&scene->lobes, host, prt_glossy_rays(&scene->options)))
+        return false;
     return scene->trace && seam_closing_init(&scene->closing, host, &scene->charts, scene->trace);
 }
 
@@ -18,6 +21,7 @@ static void finish(void *argument)
 {
     struct prt_scene *scene = argument;
     seam_closing_finish(&scene->closing);
+    prt_lobes_finish(&scene->lobes);
     trace_scene_destroy(scene->trace);
     scene_statics_finish(&scene->statics);
     scene->trace = NULL;
@@ -60,7 +64,8 @@ static bool add_stages(struct bake_plan *plan, struct prt_scene *scene,
     bake_plan_set_light_map(
         plan, (struct bake_light_map){ charts->count, charts->texels_per_m, plan_at });
     return prt_add_texels(plan, scene) && prt_add_transfer(plan, scene) &&
-           light_map_add_seams(plan, &scene->closing, charts) && prt_add_compression(plan, scene);
+           light_map_add_seams(plan, &scene->closing, charts) && prt_add_matrices(plan, scene) &&
+           prt_add_compression(plan, scene);
 }
 
 bool prt_bake(struct bake_plan *plan, const struct technique_bake *how)

@@ -67,7 +67,7 @@ static bool add_coefficients(struct bake_plan *plan, const struct prt_scene *sce
     const uint64_t texels = light_map_rows(scene->charts.side_texel_count);
     const uint64_t coefficients = prt_coefficients(&scene->options);
     const bool bounces = has_bounces(scene);
-    const int keep = prt_clusters(&scene->options) > 0 ? PRT_COMPRESSION_WAVE : BAKE_SAVED;
+    const int keep = prt_keep(&scene->options);
     const struct bake_output out[] = {
         { PRT_DIRECT, TENSOR_F16, 2, { coefficients, texels }, BAKE_ROWS, keep },
         { PRT_BOUNCE, TENSOR_F16, 3, { coefficients, texels, 3 }, BAKE_ROWS, keep },

@@ -116,6 +116,21 @@ static void move_means(struct prt_codebook *book, const float *by)
             book->rows[c * (1 + book->vectors) * book->dim + d] += by[d];
 }
 
+static bool compress_reduced(const struct prt_points *centred, const struct prt_compression *how,
+                             struct host *host, struct prt_codebook *out, float *error)
+{
+    struct prt_reduction reduction = { 0 };
+    bool ok = prt_reduce(host, centred, how, &reduction);
+    const struct matrix_f32 *less = &reduction.points;
+    const struct prt_points reduced = { less->at, less->rows, less->columns };
+    const struct prt_points *points = less->at ? &reduced : centred;
+    ok = ok && codebook_init(out, host, points, how->clusters, 0) &&
+         compress(points, how, out, error);
+    if (ok && less->at) ok = prt_expand(&reduction, out);
+    prt_reduction_finish(&reduction);
+    return ok;
+}
+
 // Distances are differences of squares: small around the mean of all points.
 bool prt_compress(struct host *host, const struct prt_points *points,
                   const struct prt_compression *how, struct prt_codebook *out)
@@ -125,11 +140,12 @@ bool prt_compress(struct host *host, const struct prt_points *points,
     float *moved = host_alloc(host, points->count, dim * sizeof *moved);
     float *error = host_alloc(host, points->count, sizeof *error);
     const struct prt_points centred = { moved, points->count, dim };
-    bool ok = codebook_init(out, host, points, how->clusters, 0) && mean && moved && error;
+    bool ok = mean && moved && error;
+    if (ok && points->count == 0) ok = codebook_init(out, host, points, how->clusters, 0);
     if (ok && points->count > 0) {
         find_mean(points, mean);
         for (size_t i = 0; i < points->count * dim; i++) moved[i] = points->at[i] - mean[i % dim];
-        ok = compress(&centred, how, out, error);
+        ok = compress_reduced(&centred, how, host, out, error);
         if (ok) move_means(out, mean);
     }
     host_free(host, mean);

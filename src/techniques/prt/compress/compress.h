@@ -7,7 +7,7 @@
 // Without vectors this is vector quantisation, with one cluster principal component analysis.
 #pragma once
 
-#include "core/host.h"
+#include "core/linalg.h"
 
 #include <stdint.h>
 
@@ -35,7 +35,8 @@ struct prt_codebook {
 
 // Clusters by vector quantisation: seeds by their squared distances (Arthur & Vassilvitskii 2007,
 // "k-means++"), then Lloyd's rounds. With vectors, rounds follow in which points move to the
-// subspace nearest to them. Deterministic. False: no memory, or stopped (FAIL_CANCELLED).
+// subspace nearest to them. Points of many numbers are clustered in the space of their 128 largest
+// principal vectors. Deterministic. False: no memory, or stopped (FAIL_CANCELLED).
 bool prt_compress(struct host *host, const struct prt_points *points,
                   const struct prt_compression *how, struct prt_codebook *out);
 void prt_codebook_finish(struct prt_codebook *codebook);
@@ -51,7 +52,20 @@ void prt_weigh(const struct prt_codebook *codebook, uint32_t cluster, const floa
 // Σ |x − mean|² of the points.
 double prt_variance(const struct prt_points *points);
 
-// ---- for compress.c: lloyd.c, seeds.c
+// ---- for compress.c: lloyd.c, seeds.c, reduce.c
+
+// Points around 0 in fewer numbers, with orthonormal columns of `basis`; none, where they have few
+// already. prt_reduction_finish accepts zero.
+struct prt_reduction {
+    struct host *host;
+    struct matrix_f32 basis;  // [dim][numbers]
+    struct matrix_f32 points; // [count][numbers]
+};
+bool prt_reduce(struct host *host, const struct prt_points *points,
+                const struct prt_compression *how, struct prt_reduction *out);
+// The codebook of reduced points becomes one of whole points.
+bool prt_expand(const struct prt_reduction *reduction, struct prt_codebook *codebook);
+void prt_reduction_finish(struct prt_reduction *reduction);
 
 // The nearest subspace of each point and the squared distances to them, [count].
 bool prt_assign(const struct prt_points *points, const struct prt_compression *how,

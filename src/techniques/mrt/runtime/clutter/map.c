@@ -118,7 +118,8 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
     const struct mrt_clutter_atlas_input *from = &input->clutter->map;
     struct mrt_runtime_clutter_map *map = &runtime->clutter.map;
     if (from->count == 0) return true;
-    const struct gpu_image_desc image = light_map_image(&from->clutter->charts, "clutter_map");
+    const struct gpu_image_desc image =
+        light_map_image(&from->clutter->charts, "clutter_map", LIGHT_MAP_LAYERS);
     const size_t tiles = tiles_of(from),
                  instances = (size_t)from->clutter->walls.scene.instance_count;
     runtime->objects.constants[MRT_CONSTANT_ROW_BACKS] =
