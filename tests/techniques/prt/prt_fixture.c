@@ -154,13 +154,21 @@ bool prt_is_open(const struct prt_baked *baked, uint32_t texel)
     return point[4 * (size_t)texel + 3] > 0;
 }
 
-// Number `at` of the vector of a texel: that of its cluster's mean and vectors.
-static float decoded(const struct prt_baked *baked, uint32_t texel, size_t at)
+// Names of the tensors of compressed vectors, or matrices.
+struct names {
+    const char *rows, *cluster, *weight;
+};
+static const struct names VECTORS = { PRT_CODEBOOK, PRT_CLUSTER, PRT_WEIGHT };
+static const struct names MATRICES = { PRT_GLOSSY_CODEBOOK, PRT_GLOSSY_CLUSTER, PRT_GLOSSY_WEIGHT };
+
+// Number `at` of the vector or matrix of a texel: that of its cluster's mean and vectors.
+static float decoded(const struct prt_baked *baked, struct names names, uint32_t texel, size_t at)
 {
-    const struct tensor *rows = tensors_find(baked->tensors, PRT_CODEBOOK);
-    const struct tensor *weight = tensors_find(baked->tensors, PRT_WEIGHT);
-    const uint16_t *cluster = tensors_find(baked->tensors, PRT_CLUSTER)->data;
-    const size_t vectors = weight ? weight->shape[1] : 0, dim = rows->shape[1];
+    const struct tensor *rows = tensors_find(baked->tensors, names.rows);
+    const struct tensor *weight = tensors_find(baked->tensors, names.weight);
+    const uint16_t *cluster = tensors_find(baked->tensors, names.cluster)->data;
+    const size_t vectors = weight ? weight->shape[1] : 0;
+    const size_t dim = rows->shape[1] * (rows->rank > 2 ? rows->shape[2] : 1);
     const uint16_t *row = (const uint16_t *)rows->data + cluster[texel] * (1 + vectors) * dim + at;
     double sum = (double)float_from_half(row[0]);
     for (size_t k = 0; k < vectors; k++)
@@ -185,8 +193,9 @@ vec4s prt_coefficient(const struct prt_baked *baked, uint32_t texel, size_t k)
     bool bounces;
     count_coefficients(baked, &bounces);
     if (!direct) {
-        vec4s out = { { decoded(baked, texel, bounces ? 4 * k : k), 0, 0, 0 } };
-        for (size_t c = 1; bounces && c < 4; c++) out.raw[c] = decoded(baked, texel, 4 * k + c);
+        vec4s out = { { decoded(baked, VECTORS, texel, bounces ? 4 * k : k), 0, 0, 0 } };
+        for (size_t c = 1; bounces && c < 4; c++)
+            out.raw[c] = decoded(baked, VECTORS, texel, 4 * k + c);
         return out;
     }
     const size_t at = k * direct->shape[1] + texel;
@@ -208,6 +217,35 @@ void prt_irradiance(const struct prt_baked *baked, uint32_t texel, const struct 
             sum[c] += (double)t.x * (double)light->direct[k].raw[c] +
                       (double)t.raw[1 + c] * (double)light->bounced[k].raw[c];
     }
+    for (int c = 0; c < 3; c++) out[c] = (float)sum[c];
+}
+
+// Number k of row `out` of the matrix of a texel.
+static float matrix_entry(const struct prt_baked *baked, uint32_t texel, size_t out, size_t k,
+                          size_t numbers)
+{
+    const struct tensor *matrix = tensors_find(baked->tensors, PRT_MATRIX);
+    if (!matrix) return decoded(baked, MATRICES, texel, out * numbers + k);
+    const uint16_t *of = matrix->data;
+    return float_from_half(of[((size_t)texel * PRT_OUTGOING + out) * numbers + k]);
+}
+
+void prt_reflected(const struct prt_baked *baked, uint32_t texel, const struct prt_light *light,
+                   vec3s to_viewer, float out[3])
+{
+    float y[PRT_OUTGOING];
+    double sum[3] = { 0 };
+    bool bounces;
+    const size_t count = count_coefficients(baked, &bounces), planes = bounces ? 4 : 1;
+    sh_eval(PRT_OUTGOING_BANDS, to_viewer, y);
+    for (size_t row = 0; row < PRT_OUTGOING; row++)
+        for (size_t k = 0; k < planes * count; k++) {
+            const double m = (double)(matrix_entry(baked, texel, row, k, planes * count) * y[row]);
+            const vec4s *from =
+                k % planes == 0 ? &light->direct[k / planes] : &light->bounced[k / planes];
+            for (size_t c = 0; c < 3; c++)
+                if (k % planes == 0 || k % planes == 1 + c) sum[c] += m * (double)from->raw[c];
+        }
     for (int c = 0; c < 3; c++) out[c] = (float)sum[c];
 }
 

@@ -54,6 +54,9 @@ vec4s prt_coefficient(const struct prt_baked *baked, uint32_t texel, size_t k);
 // E = Σ T_k L_k, by colour.
 void prt_irradiance(const struct prt_baked *baked, uint32_t texel, const struct prt_light *light,
                     float out[3]);
+// With `glossy`: the radiance that a texel reflects, over the albedo of its lobe.
+void prt_reflected(const struct prt_baked *baked, uint32_t texel, const struct prt_light *light,
+                   vec3s to_viewer, float out[3]);
 // Distant light of radiance 1 from all directions; of random coefficients in [−1, 1].
 void prt_uniform_light(struct prt_light *out);
 void prt_random_light(uint32_t seed, struct prt_light *out);

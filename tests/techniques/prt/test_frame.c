@@ -110,6 +110,36 @@ static double compare_texels(struct prt_fixture *f, const struct prt_baked *bake
     return worst / most;
 }
 
+// Largest difference of the radiance that texels reflect towards the camera, over the largest.
+static double compare_reflected(struct prt_fixture *f, const struct prt_baked *baked,
+                                const struct prt_light *light)
+{
+    const uint32_t texels = f->charts.side_texel_count;
+    const size_t room = light_map_table_room(texels);
+    const float *point = tensors_find(baked->tensors, LIGHT_MAP_POINT)->data;
+    double worst = 0, most = 0;
+    uint32_t *words = calloc(2 * room, sizeof *words);
+    assert_non_null(words);
+    CHECK(gpu_image_download(f->s.gpu, test.state->tables.texel_radiance, 0, 0, words,
+                             2 * room * sizeof *words));
+    for (uint32_t i = 0; i < texels; i++) {
+        const float *at = point + 4 * (size_t)i;
+        const vec3s way = glms_vec3_sub(f->s.input.camera.eye, vec3_of(at[0], at[1], at[2]));
+        float expected[3];
+        if (!prt_is_open(baked, i)) continue;
+        prt_reflected(baked, i, light, glms_vec3_normalize(way), expected);
+        const vec4s got = texel_light(words, texels, i, 0);
+        for (int c = 0; c < 3; c++) {
+            const double e = (double)fmaxf(expected[c], 0.0f);
+            most = fmax(most, e);
+            worst = fmax(worst, fabs((double)got.raw[c] - e));
+        }
+    }
+    free(words);
+    CHECK(most > 0.1);
+    return worst / most;
+}
+
 // Half floats of a texel.
 TEST_GPU(light_of_texels_is_the_sum_of_their_transfer_vectors)
 {
@@ -139,6 +169,30 @@ TEST_GPU(light_of_texels_is_the_sum_of_their_transfer_vectors)
         const double worst = compare_texels(&f, &baked, &light, 1);
         print_message("%s: %.2g off\n", MORE[i], worst);
         CHECK(worst <= 0x1p-11 + 2e-6);
+        close_stack(&g);
+        prt_baked_finish(&baked);
+        prt_fixture_close(&f);
+    }
+}
+
+TEST_GPU(reflections_of_texels_are_the_products_of_their_matrices)
+{
+    static const char *const MORE[] = { "coefficients=4", "coefficients=25", "transfer=shadowed",
+                                        "compression=cpca,clusters=9,vectors=6",
+                                        "compression=vq,clusters=50,transfer=shadowed" };
+    for (size_t i = 0; i < sizeof MORE / sizeof *MORE; i++) {
+        struct prt_fixture f;
+        struct prt_light light;
+        struct gpu_side g;
+        make_scene(&f);
+        prt_fixture_open(&f, "texels=512,rays=64,glossy=true,emitters=false");
+        struct prt_baked baked = prt_fixture_bake(&f, MORE[i], 0);
+        prt_random_light((uint32_t)i, &light);
+        open_stack(&g, &f, &baked, gpu, MORE[i], &light);
+        fixture_render(&f.s);
+        const double worst = compare_reflected(&f, &baked, &light);
+        print_message("%s: %.2g off\n", MORE[i], worst);
+        CHECK(worst <= 0x1p-11 + 2e-5);
         close_stack(&g);
         prt_baked_finish(&baked);
         prt_fixture_close(&f);
