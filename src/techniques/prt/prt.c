@@ -113,20 +113,34 @@ static void list(const struct prt *s, struct gpu_objects *out)
     list_tables(TABLE(matrices), PRT_OUTGOING * rows, out);
 }
 
-static bool bake_report(struct report *report, struct bake *bake, const struct technique_bake *how)
+// Bytes of vectors, or of matrices, before and after compression, and its squared error over their
+// variance.
+static void report_compression(struct report *report, const struct technique_bake *how,
+                               const struct tensor *cluster, const struct tensor *error,
+                               const char *const names[3], double numbers)
 {
     const struct prt_options *o = how->options;
-    const struct tensor *cluster = tensors_find(bake_tensors(bake), PRT_CLUSTER);
-    const struct tensor *error = tensors_find(bake_tensors(bake), PRT_ERROR);
-    const double texel = 2.0 * prt_dimension(o);
-    if (!cluster || !error) return true;
-    const double texels = (double)cluster->shape[0], vectors = (double)prt_vectors(o);
+    if (!cluster || !error) return;
+    const double points = (double)cluster->shape[0], vectors = (double)prt_vectors(o);
     const float *squares = error->data;
-    report_number(report, "vector_bytes", texel * texels);
-    report_number(report, "compressed_bytes",
-                  (2.0 + 2.0 * vectors) * texels + texel * (double)prt_codebook_rows(o));
-    report_number(report, "squared_error",
+    report_number(report, names[0], 2.0 * numbers * points);
+    report_number(report, names[1],
+                  (2.0 + 2.0 * vectors) * points + 2.0 * numbers * (double)prt_codebook_rows(o));
+    report_number(report, names[2],
                   squares[1] > 0.0f ? (double)squares[0] / (double)squares[1] : 0.0);
+}
+
+static bool bake_report(struct report *report, struct bake *bake, const struct technique_bake *how)
+{
+    static const char *const VECTORS[3] = { "vector_bytes", "compressed_bytes", "squared_error" };
+    static const char *const MATRICES[3] = { "matrix_bytes", "compressed_matrix_bytes",
+                                             "matrix_squared_error" };
+    const struct tensors *tensors = bake_tensors(bake);
+    const double numbers = prt_dimension(how->options);
+    report_compression(report, how, tensors_find(tensors, PRT_CLUSTER),
+                       tensors_find(tensors, PRT_ERROR), VECTORS, numbers);
+    report_compression(report, how, tensors_find(tensors, PRT_GLOSSY_CLUSTER),
+                       tensors_find(tensors, PRT_GLOSSY_ERROR), MATRICES, PRT_OUTGOING * numbers);
     return true;
 }
 
@@ -208,18 +222,26 @@ static uint32_t more_needs(const void *options)
     return o->specular ? FRAME_WRITES_SPECULAR : 0;
 }
 
+// Of vectors, or of matrices with as many rows.
+static uint64_t tables_bytes(const struct prt_options *o, uint64_t rows_of_one)
+{
+    const uint64_t texels = (uint64_t)o->texels, rows = rows_of_one * prt_codebook_rows(o);
+    if (rows == 0) return light_map_table_bytes(prt_row_entries(o) * rows_of_one * texels, 8);
+    return light_map_table_bytes(prt_row_entries(o) * rows, 8) + light_map_table_bytes(texels, 4) +
+           light_map_table_bytes(prt_weight_entries(o) * texels, 8) +
+           light_map_table_bytes(rows, 16);
+}
+
 static uint64_t memory_estimate(const void *options)
 {
     const struct prt_options *o = options;
-    const uint64_t texels = (uint64_t)o->texels, rows = prt_codebook_rows(o);
-    const uint64_t of_texels = rows > 0
-                                   ? light_map_table_bytes(texels, 4) +
-                                         light_map_table_bytes(prt_weight_entries(o) * texels, 8) +
-                                         light_map_table_bytes(rows, 16)
-                                   : 0;
-    return light_map_table_bytes(TEXEL_PARTS * texels, 16) + of_texels +
-           light_map_table_bytes(prt_row_entries(o) * (rows > 0 ? rows : texels), 8) +
-           light_map_table_bytes(3 * texels, 8) + light_map_bytes(texels);
+    const uint64_t texels = (uint64_t)o->texels;
+    uint64_t bytes = light_map_table_bytes(TEXEL_PARTS * texels, 16) + tables_bytes(o, 1) +
+                     light_map_table_bytes(3 * texels, 8) + light_map_bytes(texels);
+    if (prt_is_glossy(o))
+        bytes += tables_bytes(o, PRT_OUTGOING) + light_map_table_bytes(texels, 8) +
+                 light_map_bytes(texels) / (2 * LIGHT_MAP_LAYERS);
+    return bytes;
 }
 
 const struct technique technique_prt = {
@@ -230,7 +252,7 @@ const struct technique technique_prt = {
     .role = ROLE_SOURCE,
     .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID,
-    .bake_version = 1,
+    .bake_version = 2,
     .options = OPTION_TABLE(struct prt_options, option_rows, NULL),
     .presets = presets,
     .state_size = sizeof(struct prt),

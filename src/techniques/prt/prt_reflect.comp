@@ -1,10 +1,11 @@
 // The radiance that the specular lobe of each texel reflects towards the camera: Σ y_k(ω) (M L)_k,
-// with the texel's transfer matrix M and distant light L (Sloan, Kautz & Snyder 2002; Hong 2015,
-// section 2.5.1.4), and that of emissive surfaces, of first order.
+// in the frame of its normal, with the texel's transfer matrix M and distant light L (Sloan, Kautz
+// & Snyder 2002; Hong 2015, section 2.5.1.4), and that of emissive surfaces, of first order.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#include "core/basis.glsl"
 #include "core/half.glsl"
 #include "core/math.glsl"
 #include "core/sh.glsl"
@@ -78,7 +79,7 @@ void main()
     vec4 normal = texel_part(i, TEXEL_NORMAL);
     vec3 to_viewer = normalize(push.camera - texel_part(i, TEXEL_POSITION).xyz);
     float basis[PRT_OUTGOING];
-    sh25_eval(to_viewer, basis);
+    sh25_eval(to_viewer * basis_of(texel_part(i, TEXEL_SHADING).xyz), basis);
     // Sums of few bands ring below 0.
     vec3 radiance = max(texel_reflected(i, basis), vec3(0.0)) +
                     max(emitted(i, normal.xyz, to_viewer, normal.w), vec3(0.0));

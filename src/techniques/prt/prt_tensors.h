@@ -14,6 +14,7 @@
 
 // With `glossy`:
 #define PRT_MATRIX    "glossy/matrix"    // F16 [texels][PRT_OUTGOING][dimension]
+#define PRT_NORMAL    "glossy/normal"    // F32 [texels][3]
 #define PRT_ROUGHNESS "glossy/roughness" // F32 [texels]
 
 // In place of the vectors with compression:

@@ -85,7 +85,8 @@ static bool find_matrices(struct prt *s, const struct tensors *bake, struct cont
     const uint64_t rows = prt_codebook_rows(&s->options), numbers = prt_dimension(&s->options);
     if (!prt_is_glossy(&s->options)) return true;
     out->texels.roughness = TENSORS_EXPECT(s->host, bake, PRT_ROUGHNESS, TENSOR_F32, texels);
-    if (!out->texels.roughness) return false;
+    out->texels.shading = TENSORS_EXPECT(s->host, bake, PRT_NORMAL, TENSOR_F32, texels, 3);
+    if (!out->texels.roughness || !out->texels.shading) return false;
     if (rows == 0) {
         out->matrix =
             TENSORS_EXPECT(s->host, bake, PRT_MATRIX, TENSOR_F16, texels, PRT_OUTGOING, numbers);

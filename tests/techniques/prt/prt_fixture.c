@@ -230,6 +230,16 @@ static float matrix_entry(const struct prt_baked *baked, uint32_t texel, size_t 
     return float_from_half(of[((size_t)texel * PRT_OUTGOING + out) * numbers + k]);
 }
 
+static vec3s to_frame_of(const struct prt_baked *baked, uint32_t texel, vec3s direction)
+{
+    const float *at = (const float *)tensors_find(baked->tensors, PRT_NORMAL)->data + 3 * texel;
+    const vec3s normal = vec3_of(at[0], at[1], at[2]);
+    vec3s tangent, bitangent;
+    basis_of(normal, &tangent, &bitangent);
+    return vec3_of(glms_vec3_dot(direction, tangent), glms_vec3_dot(direction, bitangent),
+                   glms_vec3_dot(direction, normal));
+}
+
 void prt_reflected(const struct prt_baked *baked, uint32_t texel, const struct prt_light *light,
                    vec3s to_viewer, float out[3])
 {
@@ -237,7 +247,7 @@ void prt_reflected(const struct prt_baked *baked, uint32_t texel, const struct p
     double sum[3] = { 0 };
     bool bounces;
     const size_t count = count_coefficients(baked, &bounces), planes = bounces ? 4 : 1;
-    sh_eval(PRT_OUTGOING_BANDS, to_viewer, y);
+    sh_eval(PRT_OUTGOING_BANDS, to_frame_of(baked, texel, to_viewer), y);
     for (size_t row = 0; row < PRT_OUTGOING; row++)
         for (size_t k = 0; k < planes * count; k++) {
             const double m = (double)(matrix_entry(baked, texel, row, k, planes * count) * y[row]);

@@ -13,6 +13,7 @@ enum { MOST_VECTORS = 32 }; // of the option
 struct points {
     const uint16_t *direct, *bounce; // of vectors; NULL: without bounces
     const uint16_t *matrix;          // NULL: vectors
+    const struct prt_lobes *lobes;   // of matrices, whose distances are those of their functions
     size_t texels, dim;
     uint32_t *texel;       // [count] those that are not inside geometry
     float *at;             // [count][dim]
@@ -28,6 +29,7 @@ static void fill_point(const struct points *p, size_t texel, float *out)
                                  : direct  ? p->direct[at]
                                            : p->bounce[3 * at + k % 4 - 1]);
     }
+    if (p->matrix) prt_lobes_transform(p->lobes->root, out, p->dim / PRT_OUTGOING);
 }
 
 static bool find_vectors(struct points *p, const struct bake_task *task)
@@ -48,6 +50,7 @@ static bool find_matrices(struct points *p, const struct bake_task *task)
     const struct prt_scene *scene = task->job;
     const struct tensor *matrix = bake_task_input(task, PRT_MATRIX);
     p->matrix = matrix ? matrix->data : NULL;
+    p->lobes = &scene->lobes;
     p->dim = PRT_OUTGOING * prt_dimension(&scene->options);
     return matrix != NULL;
 }
@@ -83,14 +86,20 @@ static float rounded(float value)
     return float_from_half(half_from_float(value));
 }
 
-// Rows become halves; weights are those of the rounded rows.
-static void write_codebook(const struct bake_task *task, struct prt_codebook *book)
+// Rows become halves, of matrices those of functions; weights are those of the rounded rows.
+static void write_codebook(const struct bake_task *task, const struct points *p,
+                           struct prt_codebook *book)
 {
-    const size_t count = book->clusters * (1 + book->vectors) * book->dim;
+    const size_t rows = book->clusters * (1 + book->vectors), width = book->dim / PRT_OUTGOING;
     uint16_t *out = bake_row(task, OUT_CODEBOOK, 0);
-    for (size_t i = 0; i < count; i++) {
-        out[i] = half_from_float(book->rows[i]);
-        book->rows[i] = rounded(book->rows[i]);
+    for (size_t r = 0; r < rows; r++, out += book->dim) {
+        float *row = book->rows + r * book->dim;
+        if (p->matrix) prt_lobes_transform(p->lobes->inverse_root, row, width);
+        for (size_t d = 0; d < book->dim; d++) {
+            out[d] = half_from_float(row[d]);
+            row[d] = rounded(row[d]);
+        }
+        if (p->matrix) prt_lobes_transform(p->lobes->root, row, width);
     }
 }
 
@@ -146,7 +155,7 @@ static bool run(const struct bake_task *task)
     const bool ok =
         points_init(&points, task) && prt_compress(task->host, &points.all, &how, &book);
     if (ok) {
-        write_codebook(task, &book);
+        write_codebook(task, &points, &book);
         write_texels(task, &points, &book);
     }
     prt_codebook_finish(&book);

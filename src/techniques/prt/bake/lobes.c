@@ -5,6 +5,8 @@
 #include "core/sh.h"
 #include "trace/bsdf.h"
 
+#include <math.h>
+
 enum { OUTGOING_DIRECTIONS = 512 };
 
 static const vec3s UP = { { 0.0f, 0.0f, 1.0f } };
@@ -26,24 +28,40 @@ static void add_products(const float *y, struct matrix_f64 *gram)
 }
 
 // Functions that are almost 0 on the hemisphere have almost no weight.
-static void invert(const struct linalg_eigen *eigen, struct matrix_f64 *out)
+static double eigenvalue(const struct linalg_eigen *eigen, size_t i)
 {
     static const double RIDGE = 1e-4;
-    const double least = RIDGE * eigen->values[0];
+    return fmax(eigen->values[i], 0.0) + RIDGE * eigen->values[0];
+}
+
+// An entry of the power of a symmetric matrix.
+static double power_entry(const struct linalg_eigen *eigen, double exponent, size_t k, size_t j)
+{
+    double sum = 0.0;
+    for (size_t e = 0; e < PRT_OUTGOING; e++)
+        sum += eigen->vectors.at[k * eigen->vectors.stride + e] *
+               eigen->vectors.at[j * eigen->vectors.stride + e] *
+               pow(eigenvalue(eigen, e), exponent);
+    return sum;
+}
+
+// Sums over the hemisphere, of solid angle 2π, are 2π times the means of the quadrature.
+static void fill_powers(const struct linalg_eigen *eigen, struct prt_lobes *lobes,
+                        struct matrix_f64 *inverse)
+{
+    const double area = sqrt(2.0 * GLM_PI);
     for (size_t k = 0; k < PRT_OUTGOING; k++)
         for (size_t j = 0; j < PRT_OUTGOING; j++) {
-            double sum = 0.0;
-            for (size_t e = 0; e < PRT_OUTGOING; e++)
-                sum += eigen->vectors.at[k * eigen->vectors.stride + e] *
-                       eigen->vectors.at[j * eigen->vectors.stride + e] /
-                       (eigen->values[e] + least);
-            out->at[k * out->stride + j] = sum;
+            inverse->at[k * inverse->stride + j] = power_entry(eigen, -1.0, k, j);
+            lobes->root[k][j] = (float)(power_entry(eigen, 0.5, k, j) * area);
+            lobes->inverse_root[k][j] = (float)(power_entry(eigen, -0.5, k, j) / area);
         }
 }
 
 // dual: [PRT_OUTGOING][OUTGOING_DIRECTIONS], weights of the quadrature included.
-static bool find_dual(struct host *host, struct matrix_f64 *dual)
+static bool find_dual(struct prt_lobes *lobes, struct matrix_f64 *dual)
 {
+    struct host *host = lobes->host;
     struct matrix_f64 gram = { 0 }, basis = { 0 }, inverse = { 0 };
     struct linalg_eigen eigen = { 0 };
     bool ok = matrix_f64_init(host, &gram, PRT_OUTGOING, PRT_OUTGOING) &&
@@ -58,7 +76,7 @@ static bool find_dual(struct host *host, struct matrix_f64 *dual)
             basis.at[k * basis.stride + i] = (double)y[k] / OUTGOING_DIRECTIONS;
     }
     ok = ok && linalg_symmetric_eigen(host, "products of outgoing functions", &gram, &eigen);
-    if (ok) invert(&eigen, &inverse);
+    if (ok) fill_powers(&eigen, lobes, &inverse);
     ok = ok &&
          matrix_f64_multiply(host, 1, &inverse, NOT_TRANSPOSED, &basis, NOT_TRANSPOSED, 0, dual);
     linalg_eigen_finish(host, &eigen);
@@ -104,7 +122,7 @@ static bool fill_rows(struct prt_lobes *lobes, const struct matrix_f64 *dual, in
 static bool find_rows(struct prt_lobes *lobes)
 {
     struct matrix_f64 dual = { 0 }, weights = { 0 }, rows = { 0 };
-    bool ok = find_dual(lobes->host, &dual) &&
+    bool ok = find_dual(lobes, &dual) &&
               matrix_f64_init(lobes->host, &weights, OUTGOING_DIRECTIONS, lobes->rays) &&
               matrix_f64_init(lobes->host, &rows, PRT_OUTGOING, lobes->rays);
     for (int i = 0; ok && i < PRT_LOBES; i++) ok = fill_rows(lobes, &dual, i, &weights, &rows);
@@ -142,4 +160,17 @@ void prt_lobes_at(const struct prt_lobes *lobes, float roughness, float *out)
     const size_t below = clamped < PRT_LOBES - 1 ? (size_t)clamped : PRT_LOBES - 2;
     const float above = clamped - (float)below, *low = lobes->rows + below * count;
     for (size_t i = 0; i < count; i++) out[i] = low[i] + above * (low[count + i] - low[i]);
+}
+
+void prt_lobes_transform(const float by[PRT_OUTGOING][PRT_OUTGOING], float *matrix, size_t width)
+{
+    for (size_t i = 0; i < width; i++) {
+        float column[PRT_OUTGOING];
+        for (size_t k = 0; k < PRT_OUTGOING; k++) column[k] = matrix[k * width + i];
+        for (size_t k = 0; k < PRT_OUTGOING; k++) {
+            double sum = 0.0;
+            for (size_t j = 0; j < PRT_OUTGOING; j++) sum += (double)(by[k][j] * column[j]);
+            matrix[k * width + i] = (float)sum;
+        }
+    }
 }

@@ -19,8 +19,11 @@ enum { PRT_LOBES = 8 }; // roughnesses, in equal steps
 // Of the first lobe: narrower ones have more detail than 5 bands of light.
 #define PRT_LEAST_ROUGHNESS 0.3f
 
+//
+// With the matrix G of products ⟨y_k, y_j⟩, coefficients √G m have the norm of M.
 struct prt_lobes {
     struct host *host;
+    float root[PRT_OUTGOING][PRT_OUTGOING], inverse_root[PRT_OUTGOING][PRT_OUTGOING]; // of G
     size_t rays;
     vec3s *direction; // [rays] over the hemisphere, of equal solid angles
     float *rows;      // [PRT_LOBES][PRT_OUTGOING][rays]
@@ -31,3 +34,5 @@ bool prt_lobes_init(struct prt_lobes *out, struct host *host, size_t rays);
 void prt_lobes_finish(struct prt_lobes *lobes);
 // [PRT_OUTGOING][rays] of a roughness, 0…1.
 void prt_lobes_at(const struct prt_lobes *lobes, float roughness, float *out);
+// Multiplies the rows of a matrix, [PRT_OUTGOING][width], from the left.
+void prt_lobes_transform(const float by[PRT_OUTGOING][PRT_OUTGOING], float *matrix, size_t width);

@@ -1,7 +1,7 @@
 // The stage of the third wave, with `glossy`: transfer matrices (Sloan, Kautz & Snyder 2002; Hong
 // 2015, section 2.5.1.4). Row k of a texel's matrix is a transfer vector: coefficient k of the
-// radiance that its specular lobe reflects, by the coefficients of distant light, both in the frame
-// of the world.
+// radiance that its specular lobe reflects, in the frame of its normal (basis_of), by the
+// coefficients of distant light in the world.
 #include "techniques/prt/bake/lobes.h"
 #include "techniques/prt/bake/scene.h"
 
@@ -15,7 +15,7 @@
 #include <string.h>
 
 enum { TEXELS_PER_TASK = 64 };
-enum { OUT_MATRIX, OUT_ROUGHNESS, OUT_COUNT };
+enum { OUT_MATRIX, OUT_NORMAL, OUT_ROUGHNESS, OUT_COUNT };
 
 // What bounces: tensors of earlier waves. NULL: no bounces.
 struct sent {
@@ -97,9 +97,17 @@ static void work_finish(struct work *w)
 
 struct frame {
     vec3s position, geometric; // offset against self-intersection; unit
-    mat3s to_world;            // of the mean shading normal, +z
+    vec3s normal;              // mean shading normal, unit
+    float turn;                // of the rays about it, by which texels differ
+    mat3s to_world;            // of the rays
     float roughness;
 };
+
+static mat3s turned_about_z(float angle)
+{
+    const float c = cosf(angle), s = sinf(angle);
+    return (mat3s){ .col = { { { c, s, 0 } }, { { -s, c, 0 } }, { { 0, 0, 1 } } } };
+}
 
 static struct frame frame_of(const struct work *w, uint32_t texel)
 {
@@ -117,14 +125,10 @@ static struct frame frame_of(const struct work *w, uint32_t texel)
     basis_of(normal, &tangent, &bitangent);
     out.position = glms_vec3_muladds(out.geometric, reach, vec3_of(point[0], point[1], point[2]));
     out.roughness = surface.material.roughness;
-    // The rays of each texel are turned about its normal.
-    const float turn =
-        2.0f * GLM_PIf * rng_unit((uint32_t)(rng_mix(w->task->bake_seed + texel) >> 32));
-    const float c = cosf(turn), s = sinf(turn);
-    out.to_world.col[0] = glms_vec3_add(glms_vec3_scale(tangent, c), glms_vec3_scale(bitangent, s));
-    out.to_world.col[1] =
-        glms_vec3_add(glms_vec3_scale(tangent, -s), glms_vec3_scale(bitangent, c));
-    out.to_world.col[2] = normal;
+    out.normal = normal;
+    out.turn = 2.0f * GLM_PIf * rng_unit((uint32_t)(rng_mix(w->task->bake_seed + texel) >> 32));
+    const mat3s frame = { .col = { tangent, bitangent, normal } };
+    out.to_world = glms_mat3_mul(frame, turned_about_z(out.turn));
     return out;
 }
 
@@ -184,14 +188,15 @@ static void reflect(const struct work *w, float *matrix)
     }
 }
 
-// Columns of the visible sky, a row of functions of the texel's frame, and rows of outgoing ones.
+// Columns of the visible sky, from the frame of the rays to the world, and rows, to the frame of
+// the normal.
 static void rotate(const struct work *w, const struct frame *frame, float *matrix)
 {
     const size_t width = w->coefficients * w->planes;
     struct sh_rotation light, outgoing;
     float in[SH_MAX_COUNT], out[SH_MAX_COUNT];
     sh_rotation_init(&light, prt_bands(&w->scene->options), frame->to_world);
-    sh_rotation_init(&outgoing, PRT_OUTGOING_BANDS, frame->to_world);
+    sh_rotation_init(&outgoing, PRT_OUTGOING_BANDS, turned_about_z(frame->turn));
     for (size_t k = 0; k < PRT_OUTGOING; k++) {
         float *row = matrix + k * width;
         for (size_t i = 0; i < w->coefficients; i++) in[i] = row[i * w->planes];
@@ -217,6 +222,7 @@ static void make_matrix(const struct work *w, uint32_t texel, uint64_t row)
     reflect(w, matrix);
     rotate(w, &frame, matrix);
     for (size_t i = 0; i < count; i++) out[i] = half_from_float(matrix[i]);
+    memcpy(bake_row(w->task, OUT_NORMAL, row), frame.normal.raw, sizeof frame.normal.raw);
     *(float *)bake_row(w->task, OUT_ROUGHNESS, row) = frame.roughness;
 }
 
@@ -245,6 +251,7 @@ bool prt_add_matrices(struct bake_plan *plan, const struct prt_scene *scene)
     const int keep = prt_keep(&scene->options);
     const struct bake_output out[OUT_COUNT] = {
         { PRT_MATRIX, TENSOR_F16, 3, { texels, PRT_OUTGOING, numbers }, BAKE_ROWS, keep },
+        { PRT_NORMAL, TENSOR_F32, 2, { texels, 3 }, BAKE_ROWS, BAKE_SAVED },
         { PRT_ROUGHNESS, TENSOR_F32, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
     };
     if (!scene->options.glossy) return true;
