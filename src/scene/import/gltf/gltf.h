@@ -101,6 +101,13 @@ float *gltf_floats_of(struct gltf *gltf, int accessor, int width);
 // Unsigned integers (indices, joints) in the scene's arena, not cached. NULL on failure.
 uint32_t *gltf_integers_of(struct gltf *gltf, int accessor, int width);
 
+// --- gltf_image.c
+struct import_files;
+struct image_source;
+// The encoded bytes of an image, from a buffer, a data URI (*owned, to be freed) or a file.
+bool gltf_find_image(struct gltf *gltf, size_t i, struct import_files *files,
+                     struct image_source *out, void **owned);
+
 // --- parts of the scene, in this order
 bool gltf_load_materials(struct gltf *gltf); // with their images
 // The scene material of primitives without a material; -1 on failure.
@@ -109,3 +116,10 @@ bool gltf_load_meshes(struct gltf *gltf);
 bool gltf_load_nodes(struct gltf *gltf); // nodes, instances, lights, cameras
 bool gltf_load_skins(struct gltf *gltf);
 bool gltf_load_animations(struct gltf *gltf);
+bool gltf_load_environment(struct gltf *gltf);
+
+// The cube map of an image-based light (gltf_cube.c) as a map of the environment. NULL: it is not
+// usable, and noted, or *ok is false.
+struct environment_map;
+const struct environment_map *gltf_cube_map(struct gltf *gltf, struct gltf_object light,
+                                            versors world_from_cube, bool *ok);

@@ -9,7 +9,7 @@ static const char *const KNOWN_EXTENSIONS[] = {
     "KHR_lights_punctual",   "KHR_materials_emissive_strength",
     "KHR_texture_transform", "KHR_materials_unlit",
     "KHR_materials_ior",     "KHR_materials_specular",
-    "KHR_mesh_quantization",
+    "KHR_mesh_quantization", "EXT_lights_image_based",
 };
 
 // Extensions that are ignored without a note: compressed copies (a primitive without uncompressed

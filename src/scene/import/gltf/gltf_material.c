@@ -1,4 +1,5 @@
-// Materials, textures, samplers and images of a glTF file (glTF 2.0, sections 3.8 and 3.9).
+// Materials, textures and samplers of a glTF file, and the images that they use (glTF 2.0,
+// sections 3.8 and 3.9).
 #include "scene/import/gltf/gltf.h"
 
 #include "scene/import/import_files.h"
@@ -149,58 +150,6 @@ struct used_images {
     int count;
 };
 
-static bool has_extension(const char *name, const char *wanted)
-{
-    char extension[16] = "";
-    if (name) file_extension(name, extension);
-    return strcmp(extension, wanted) == 0;
-}
-
-// The image file of a uri. Files of other formats often name images that are not there.
-static bool find_image_file(struct gltf *gltf, const char *uri, struct import_files *files,
-                            struct image_source *source)
-{
-    struct import *import = gltf->import;
-    char *path =
-        import->converted ? import_resolve_quietly(import, uri, true) : import_resolve(import, uri);
-    const struct import_text name = import_printable(source->name);
-    if (!path && import->converted)
-        import_note(import, "image %s (not in the file's folder)", name.s);
-    if (!path) return import->converted;
-    const struct import_file *file = import_files_read(files, path);
-    if (!file) return false;
-    if (file->missing) import_note(import, "image %s (no such file)", name.s);
-    source->data = file->bytes.data;
-    source->size = file->bytes.size;
-    return true;
-}
-
-// The encoded bytes of an image, from a buffer, a data URI or a file.
-static bool find_image(struct gltf *gltf, size_t i, struct used_images *used)
-{
-    struct import *import = gltf->import;
-    struct image_source *source = &used->sources[used->count];
-    struct gltf_object object = gltf_element(gltf, gltf->images, "image", i);
-    const char *uri = gltf_string(object, "uri"), *name = gltf_string(object, "name");
-    int view_index = gltf_index(object, "bufferView", gltf->views);
-    bool is_data = uri && strncmp(uri, "data:", 5) == 0;
-    source->jpeg_and_png_only = !import->converted;
-    source->is_tga = import->converted && has_extension(name, "tga");
-    source->name = import_name(import, !name && !is_data ? uri : name, "image", i);
-    if (gltf->failed || !source->name) return false;
-    if (view_index >= 0) {
-        struct gltf_view view;
-        if (!gltf_view(gltf, view_index, &view)) return false;
-        source->data = view.data;
-        source->size = view.size;
-        return true;
-    }
-    if (!uri) return gltf_wrong(object, "has neither uri nor bufferView");
-    if (!is_data) return find_image_file(gltf, uri, &used->files, source);
-    source->data = used->owned[used->count] = gltf_data_uri(object, uri, &source->size);
-    return source->data != NULL;
-}
-
 static void finish_used_images(struct host *host, struct used_images *used)
 {
     for (int i = 0; used->owned && i < used->count; i++) host_free(host, used->owned[i]);
@@ -224,7 +173,8 @@ static bool load_used_images(struct gltf *gltf)
     for (size_t i = 0; ok && i < count; i++) {
         if (gltf->image_of[i] < 0) continue;
         gltf->image_of[i] = used.count;
-        ok = find_image(gltf, i, &used);
+        ok = gltf_find_image(gltf, i, &used.files, &used.sources[used.count],
+                             &used.owned[used.count]);
         used.count++;
     }
     ok = ok && import_images(import, used.sources, used.count, used.index);
