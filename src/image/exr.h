@@ -22,6 +22,11 @@ bool exr_write(struct host *host, const char *path, const struct exr_layer *laye
 // The same in 16-bit floats, the nearest ones.
 bool exr_write_half(struct host *host, const char *path, const struct exr_layer *layers,
                     int layer_count, const struct exr_attribute *attributes, int attribute_count);
+// A layer "color" of floats as the bytes of a file, owned by the caller (host_free).
+bool exr_encode(struct host *host, const struct image *image, uint8_t **out, size_t *size);
+// Its counterpart, of a file in memory; `name` is for messages. Untrusted input.
+bool exr_decode(struct host *host, const char *name, const void *bytes, size_t size,
+                size_t max_pixels, struct image *out);
 // Reads one layer (NULL: "color") over the file's data window. The error for a missing layer lists
 // those present. Vectors (X.X X.Y X.Z) and depths (X.Z) of other programs are layers too. Untrusted
 // input.

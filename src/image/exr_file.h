@@ -18,7 +18,8 @@ struct exr_file {
     struct host *host;
     const char *path;
     exr_context_t context;
-    struct file_bytes bytes;   // reading
+    struct file_bytes bytes;   // reading, or written to memory
+    size_t capacity;           // of bytes, writing
     struct file_writer writer; // writing
     char message[256];         // the first error that the library reported
 };

@@ -151,24 +151,30 @@ static bool check_kind(struct exr_file *file)
     return true;
 }
 
-// On failure the caller still calls exr_file_finish.
-static bool exr_file_open(struct exr_file *file, struct host *host, const char *path)
+// The file has its bytes.
+static bool start_reading(struct exr_file *file)
 {
-    *file = (struct exr_file){ .host = host, .path = path };
     static const uint8_t magic[4] = { 0x76, 0x2f, 0x31, 0x01 };
-    if (!file_read(host, path, 0, &file->bytes)) return false;
     if (file->bytes.size < sizeof magic || memcmp(file->bytes.data, magic, sizeof magic) != 0)
-        return host_fail(host, FAIL_FORMAT, "cannot read %s: not an OpenEXR file", path);
+        return host_fail(file->host, FAIL_FORMAT, "cannot read %s: not an OpenEXR file",
+                         file->path);
     exr_context_initializer_t init = exr_initializer(file);
     init.read_fn = read_bytes;
     init.size_fn = count_bytes;
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION; // a truncated file is an error
-    exr_result_t code = exr_start_read(&file->context, path, &init);
+    exr_result_t code = exr_start_read(&file->context, file->path, &init);
     if (code != EXR_ERR_SUCCESS) {
         file->context = NULL; // already released by the library
         return exr_fail_reading(file, code);
     }
     return check_kind(file);
+}
+
+// On failure the caller still calls exr_file_finish.
+static bool exr_file_open(struct exr_file *file, struct host *host, const char *path)
+{
+    *file = (struct exr_file){ .host = host, .path = path };
+    return file_read(host, path, 0, &file->bytes) && start_reading(file);
 }
 
 static bool get_channels(struct exr_file *file, const exr_attr_chlist_t **out)
@@ -320,36 +326,58 @@ static bool read_chunks(struct exr_file *file, int first_y, const struct layer_c
     return good;
 }
 
-bool exr_read(struct host *host, const char *path, const char *layer, struct image *out)
+static bool read_layer(struct exr_file *file, const char *layer, struct image *out)
 {
-    *out = (struct image){ 0 };
-    struct exr_file file;
     struct layer_channels channels;
     exr_attr_box2i_t window;
-    int width;
-    if (!exr_file_open(&file, host, path)) goto fail;
-    if (!get_window(&file, &window)) goto fail;
-    width = window.max.x - window.min.x + 1;
-    if (!choose_layer(&file, layer ? layer : "color", width, &channels)) goto fail;
-    if (!image_init(out, host, width, window.max.y - window.min.y + 1, channels.count)) goto fail;
-    if (!read_chunks(&file, window.min.y, &channels, out)) goto fail;
-    exr_file_finish(&file);
-    return true;
-fail:
-    image_finish(out, host);
-    exr_file_finish(&file);
+    if (!get_window(file, &window)) return false;
+    const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
+    if (choose_layer(file, layer ? layer : "color", width, &channels) &&
+        image_init(out, file->host, width, height, channels.count) &&
+        read_chunks(file, window.min.y, &channels, out))
+        return true;
+    image_finish(out, file->host);
     return false;
+}
+
+bool exr_read(struct host *host, const char *path, const char *layer, struct image *out)
+{
+    struct exr_file file;
+    *out = (struct image){ 0 };
+    const bool ok = exr_file_open(&file, host, path) && read_layer(&file, layer, out);
+    exr_file_finish(&file);
+    return ok;
+}
+
+static bool read_size(struct exr_file *file, int *width, int *height)
+{
+    exr_attr_box2i_t window;
+    if (!get_window(file, &window)) return false;
+    *width = window.max.x - window.min.x + 1;
+    *height = window.max.y - window.min.y + 1;
+    return true;
 }
 
 bool exr_read_size(struct host *host, const char *path, int *width, int *height)
 {
     struct exr_file file;
-    exr_attr_box2i_t window;
-    const bool ok = exr_file_open(&file, host, path) && get_window(&file, &window);
-    if (ok) {
-        *width = window.max.x - window.min.x + 1;
-        *height = window.max.y - window.min.y + 1;
-    }
+    const bool ok = exr_file_open(&file, host, path) && read_size(&file, width, height);
+    exr_file_finish(&file);
+    return ok;
+}
+
+bool exr_decode(struct host *host, const char *name, const void *bytes, size_t size,
+                size_t max_pixels, struct image *out)
+{
+    struct exr_file file = { .host = host, .path = name };
+    int width, height;
+    *out = (struct image){ 0 };
+    bool ok = file_bytes_copy(host, bytes, size, &file.bytes) && start_reading(&file) &&
+              read_size(&file, &width, &height);
+    if (ok && (size_t)width * (size_t)height > max_pixels)
+        ok = host_fail(host, FAIL_MEMORY, "cannot read %s: %dx%d pixels are more than %zu", name,
+                       width, height, max_pixels);
+    ok = ok && read_layer(&file, NULL, out);
     exr_file_finish(&file);
     return ok;
 }

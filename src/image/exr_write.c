@@ -21,6 +21,26 @@ static int64_t write_bytes(exr_const_context_t context, void *user, const void *
     return -1;
 }
 
+// To memory, which grows by doubling.
+static int64_t append_bytes(exr_const_context_t context, void *user, const void *buffer,
+                            uint64_t bytes, uint64_t offset, exr_stream_error_func_ptr_t error)
+{
+    struct exr_file *file = user;
+    const size_t end = (size_t)(offset + bytes);
+    if (end > file->capacity) {
+        const size_t capacity = 2 * end;
+        uint8_t *larger = host_realloc(file->host, file->bytes.data, capacity, 1);
+        if (!larger && error) error(context, EXR_ERR_OUT_OF_MEMORY, "out of memory");
+        if (!larger) return -1;
+        memset(larger + file->capacity, 0, capacity - file->capacity);
+        file->bytes.data = larger;
+        file->capacity = capacity;
+    }
+    memcpy(file->bytes.data + offset, buffer, bytes);
+    if (end > file->bytes.size) file->bytes.size = end;
+    return (int64_t)bytes;
+}
+
 // One channel of the file and the source of its values.
 struct written_channel {
     char name[EXR_NAME_MAX + 3];
@@ -223,6 +243,19 @@ static exr_result_t write_chunks(exr_context_t context, const struct channel_lis
     return code;
 }
 
+static bool write_file(struct exr_file *file, exr_context_initializer_t *init,
+                       const struct channel_list *channels, const struct exr_attribute *attributes,
+                       int attribute_count)
+{
+    init->zip_level = EXR_ZIP_LEVEL;
+    exr_result_t code = exr_start_write(&file->context, file->path, EXR_WRITE_FILE_DIRECTLY, init);
+    if (code == EXR_ERR_SUCCESS)
+        code = write_header(file->context, channels, attributes, attribute_count);
+    if (code == EXR_ERR_SUCCESS) code = write_chunks(file->context, channels);
+    if (code == EXR_ERR_SUCCESS) code = exr_finish(&file->context); // writes the table of chunks
+    return code == EXR_ERR_SUCCESS || exr_fail_writing(file, code);
+}
+
 static bool write_as(exr_pixel_type_t type, struct host *host, const char *path,
                      const struct exr_layer *layers, int layer_count,
                      const struct exr_attribute *attributes, int attribute_count)
@@ -231,27 +264,33 @@ static bool write_as(exr_pixel_type_t type, struct host *host, const char *path,
     struct channel_list channels = { .type = type };
     exr_context_initializer_t init = exr_initializer(&file);
     init.write_fn = write_bytes;
-    init.zip_level = EXR_ZIP_LEVEL;
-    exr_result_t code;
-    if (!check_layers(&file, layers, layer_count, attributes, attribute_count)) goto fail;
-    if (!list_channels(&file, layers, layer_count, &channels)) goto fail;
-    if (!file_begin(&file.writer, host, path)) goto fail;
-    code = exr_start_write(&file.context, path, EXR_WRITE_FILE_DIRECTLY, &init);
-    if (code == EXR_ERR_SUCCESS)
-        code = write_header(file.context, &channels, attributes, attribute_count);
-    if (code == EXR_ERR_SUCCESS) code = write_chunks(file.context, &channels);
-    if (code == EXR_ERR_SUCCESS) code = exr_finish(&file.context); // writes the table of chunks
-    if (code != EXR_ERR_SUCCESS) {
-        exr_fail_writing(&file, code);
-        goto fail;
-    }
-    host_free(host, channels.items);
-    return file_commit(&file.writer);
-fail:
+    const bool ok = check_layers(&file, layers, layer_count, attributes, attribute_count) &&
+                    list_channels(&file, layers, layer_count, &channels) &&
+                    file_begin(&file.writer, host, path) &&
+                    write_file(&file, &init, &channels, attributes, attribute_count);
     exr_file_finish(&file);
     host_free(host, channels.items);
+    if (ok) return file_commit(&file.writer);
     file_abort(&file.writer);
     return false;
+}
+
+bool exr_encode(struct host *host, const struct image *image, uint8_t **out, size_t *size)
+{
+    const struct exr_layer layer = { "color", image };
+    struct exr_file file = { .host = host, .path = "an image" };
+    struct channel_list channels = { .type = EXR_PIXEL_FLOAT };
+    exr_context_initializer_t init = exr_initializer(&file);
+    init.write_fn = append_bytes;
+    const bool ok = check_layers(&file, &layer, 1, NULL, 0) &&
+                    list_channels(&file, &layer, 1, &channels) &&
+                    write_file(&file, &init, &channels, NULL, 0);
+    host_free(host, channels.items);
+    *out = ok ? file.bytes.data : NULL;
+    *size = ok ? file.bytes.size : 0;
+    if (ok) file.bytes = (struct file_bytes){ 0 };
+    exr_file_finish(&file);
+    return ok;
 }
 
 bool exr_write(struct host *host, const char *path, const struct exr_layer *layers, int layer_count,

@@ -65,6 +65,28 @@ static void write_layers(const char *path, struct image images[5])
 }
 
 // Every finite half, a value between two halves, and values beyond the largest.
+TEST(files_in_memory_are_those_of_the_disk)
+{
+    struct image image, back;
+    struct file_bytes file;
+    uint8_t *bytes;
+    size_t size;
+    noise_image(&image, 37, 45, 3);
+    CHECK(write_one(test_path("disk.exr"), "color", &image));
+    CHECK(file_read(test_host(), test_path("disk.exr"), 0, &file));
+    CHECK(exr_encode(test_host(), &image, &bytes, &size));
+    CHECK(size == file.size && memcmp(bytes, file.data, size) == 0);
+    CHECK(exr_decode(test_host(), "memory", bytes, size, 37 * 45, &back));
+    CHECK(same_image(&image, &back));
+    image_finish(&back, test_host());
+    CHECK(!exr_decode(test_host(), "memory", bytes, size, 37 * 45 - 1, &back) && !back.pixels);
+    CHECK(!exr_decode(test_host(), "memory", bytes, size / 2, 37 * 45, &back) && !back.pixels);
+    CHECK(!exr_decode(test_host(), "memory", bytes, 0, 37 * 45, &back) && !back.pixels);
+    host_free(test_host(), bytes);
+    file_bytes_finish(test_host(), &file);
+    image_finish(&image, test_host());
+}
+
 TEST(half_floats_survive_exactly_and_others_are_rounded)
 {
     struct image image, back;
