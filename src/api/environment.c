@@ -111,13 +111,6 @@ enum ag_result ag_environment_get_info(const struct ag_environment *environment,
     return AG_OK;
 }
 
-// The largest value of the image and the sun.
-static vec3s strongest(const struct environment_map *map)
-{
-    const float most = fmaxf(map->peak, glms_vec3_max(map->sun.illuminance_lux));
-    return vec3_of(most, most, most);
-}
-
 void ag_environment_use_default(struct ag_environment_use *use)
 {
     if (use) *use = (struct ag_environment_use){ .strength = 1.0f };
@@ -137,8 +130,8 @@ enum ag_result ag_scene_set_environment(struct ag_scene *scene,
     AG_REQUIRE(scene->context, use->strength >= 0.0f && use->strength <= STRONGEST,
                "strength %g is not within 0 to %g", (double)use->strength, (double)STRONGEST);
     AG_REQUIRE(scene->context,
-               !environment ||
-                   limits_light(glms_vec3_scale(strongest(environment->map), use->strength)),
+               !environment || environment_map_strongest(environment->map) * use->strength <=
+                                   SCENE_MAX_RADIANCE,
                "strength %g makes it brighter than %g cd/m² or lux", (double)use->strength,
                (double)SCENE_MAX_RADIANCE);
     AG_REQUIRE(scene->context, isfinite(use->rotation), "rotation is not finite");

@@ -26,13 +26,22 @@ bool environment_is_black(const struct environment *environment)
     return !(mean.x > 0.0f || mean.y > 0.0f || mean.z > 0.0f);
 }
 
-uint64_t environment_key(const struct environment *environment)
+static uint64_t add_map(const struct environment *environment, uint64_t key)
 {
     const float turn[] = { environment->strength, environment->rotation_rad };
-    uint64_t key = hash_bytes(environment->sky.raw, sizeof environment->sky.raw, 0);
-    if (!environment->map) return key;
     key = hash_bytes(turn, sizeof turn, key);
     return hash_bytes(&environment->map->key, sizeof environment->map->key, key);
+}
+
+uint64_t environment_key(const struct environment *environment)
+{
+    const uint64_t key = hash_bytes(environment->sky.raw, sizeof environment->sky.raw, 0);
+    return environment->map ? add_map(environment, key) : key;
+}
+
+uint64_t environment_map_use_key(const struct environment *environment)
+{
+    return environment->map ? add_map(environment, 0) : 0;
 }
 
 static mat3s world_from_map(const struct environment *environment)

@@ -31,6 +31,9 @@ bool environment_is_black(const struct environment *environment); // its sun apa
 // Hash of the light from all directions.
 uint64_t environment_key(const struct environment *environment);
 
+// The same without the uniform sky; 0: there is no map.
+uint64_t environment_map_use_key(const struct environment *environment);
+
 // Coefficients of the radiance by colour, cd/m² (core/sh.h). bands: at most SH_MAX_BANDS.
 void environment_sh(const struct environment *environment, int bands, float out[3][SH_MAX_COUNT]);
 

@@ -242,6 +242,21 @@ struct environment_map *environment_map_create(struct host *host, const char *na
     return map ? end(map, find_light(map, equirectangular)) : NULL;
 }
 
+struct environment_map *environment_map_restore(struct host *host, const char *name,
+                                                const struct image *radiance,
+                                                const struct environment_sun *sun)
+{
+    struct environment_map *map = begin(host, name);
+    if (!map) return NULL;
+    map->sun = *sun;
+    return end(map, copy_clean(map, radiance, &map->radiance));
+}
+
+float environment_map_strongest(const struct environment_map *map)
+{
+    return fmaxf(map->peak, glms_vec3_max(map->sun.illuminance_lux));
+}
+
 static bool draw_sky(struct environment_map *map, const struct sun_sky_model *model)
 {
     enum { WIDTH = 1024, HEIGHT = WIDTH / 2 };

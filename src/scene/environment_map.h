@@ -32,6 +32,11 @@ struct environment_map *environment_map_load(struct host *host, const char *path
 // with a warning.
 struct environment_map *environment_map_create(struct host *host, const char *name,
                                                const struct image *equirectangular);
+// The same from the image and the sun of another map, which are kept as they are. The image is at
+// most ENVIRONMENT_MAX_WIDTH wide.
+struct environment_map *environment_map_restore(struct host *host, const char *name,
+                                                const struct image *radiance,
+                                                const struct environment_sun *sun);
 // A clear sky with its sun.
 struct environment_map *environment_map_of_sky(struct host *host, const struct sun_sky *sky);
 void environment_map_retain(const struct environment_map *map);  // accepts NULL
@@ -40,6 +45,9 @@ void environment_map_release(const struct environment_map *map); // accepts NULL
 // the same map where there is no other use, else a copy. NULL, and nothing has changed: no memory.
 const struct environment_map *environment_map_move(const struct environment_map *map,
                                                    struct host *host);
+
+// The largest value of the image and the sun.
+float environment_map_strongest(const struct environment_map *map);
 
 // Interpolated linearly; direction: unit, in the map's space.
 vec3s environment_map_radiance(const struct environment_map *map, vec3s direction);

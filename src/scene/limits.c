@@ -1,6 +1,7 @@
 // Refuses scenes beyond what 32-bit floats can trace.
 #include "scene/limits.h"
 
+#include "scene/environment_map.h"
 #include "scene/scene_check.h"
 
 #include <math.h>
@@ -105,9 +106,17 @@ bool limits_pose(const struct scene_pose *pose)
            geometry_is_near(pose);
 }
 
+static bool environment_is_dim(const struct environment *environment)
+{
+    if (!environment->map) return true;
+    return environment->strength * environment_map_strongest(environment->map) <=
+           SCENE_MAX_RADIANCE;
+}
+
 bool limits_scene(const struct scene *scene)
 {
     if (!limits_light(scene->environment.sky)) return too_bright(scene, "the", "sky");
+    if (!environment_is_dim(&scene->environment)) return too_bright(scene, "the", "environment");
     for (int i = 0; i < scene->material_count; i++) {
         const struct material *material = &scene->materials[i];
         if (limits_light(material->emissive)) continue;

@@ -207,7 +207,8 @@ struct scene {
     struct animation *animations;
     int animation_count;
     struct environment environment;
-    uint64_t content_hash; // of the file's bytes or of the built-in's name
+    uint64_t file_environment; // environment_map_use_key of the environment that the file has
+    uint64_t content_hash;     // of the file's bytes or of the built-in's name
     // A warning has said that unwraps are broken: light maps are planned several times. Shared with
     // copies of this struct.
     atomic_bool *warned_of_unwraps;

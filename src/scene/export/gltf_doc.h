@@ -28,8 +28,8 @@ struct gltf_doc {
 bool gltf_doc_init(struct gltf_doc *doc, struct host *host);
 void gltf_doc_finish(struct gltf_doc *doc);
 
-// The file that the scene was loaded from, with the lights, instances and sky that the scene has
-// beyond it, if it is glTF and otherwise unchanged. *same: it is.
+// The file that the scene was loaded from, with the lights, instances, sky and environment that the
+// scene has beyond it, if it is glTF and otherwise unchanged. *same: it is.
 bool gltf_doc_of_file(struct gltf_doc *doc, struct host *host, const struct scene *scene,
                       bool *same);
 // The scene itself. Removed instances have the place of node SIZE_MAX.

@@ -1,10 +1,9 @@
-// Additions of a scene to its file: lights, instances, the sky. Lights of the file that the
-// scene has no more, or has switched off, stay as they are and are listed in doc->off_lights.
+// Additions of a scene to its file: lights, instances, the sky, the environment. Lights of the file
+// that the scene has no more, or has switched off, stay as they are and are listed in
+// doc->off_lights.
 #include "scene/export/gltf_scene.h"
 
 #include "scene/import/gltf/gltf.h"
-
-#include <string.h>
 
 static const char LIGHTS[] = "KHR_lights_punctual";
 
@@ -69,6 +68,18 @@ static void add_sky(const struct added *a)
                  gltf_doc_floats(sky.raw, 3));
 }
 
+// ---- the environment
+
+// A file that has the scene's environment stays as it is.
+static void add_environment(const struct added *a)
+{
+    const struct environment *environment = &a->scene->environment;
+    if (environment_map_use_key(environment) == a->scene->file_environment) return;
+    json_t *scene = default_scene(a);
+    gltf_doc_remove_environment(a->doc, scene);
+    gltf_doc_environment(a->doc, scene, environment);
+}
+
 // ---- lights
 
 static bool is_of_file(const struct added *a, const struct light *light)
@@ -76,11 +87,14 @@ static bool is_of_file(const struct added *a, const struct light *light)
     return light->node < a->file_nodes;
 }
 
-// The light of a node in the file, by its index there; -1: none.
+// The light of a node in the file, by its index there; -1: none, or the sun of an environment.
 static int light_at(const struct added *a, size_t node)
 {
-    return gltf_index(gltf_extension(gltf_element(a->gltf, a->gltf->nodes, "node", node), LIGHTS),
-                      "light", a->gltf->lights);
+    const int light =
+        gltf_index(gltf_extension(gltf_element(a->gltf, a->gltf->nodes, "node", node), LIGHTS),
+                   "light", a->gltf->lights);
+    const json_t *json = light < 0 ? NULL : json_array_get(a->gltf->lights, (size_t)light);
+    return gltf_is_environment_sun(json) ? -1 : light;
 }
 
 // Nodes with the same light, not all of which emit: those that do not get a copy of it.
@@ -103,7 +117,8 @@ static void find_off_lights(const struct added *a, bool *emits)
         const struct light *light = &a->scene->lights[i];
         if (is_of_file(a, light) && !light->off) emits[light->node] = true;
     }
-    memset(off, true, json_array_size(a->gltf->lights) * sizeof *off);
+    for (size_t i = 0; i < json_array_size(a->gltf->lights); i++)
+        off[i] = !gltf_is_environment_sun(json_array_get(a->gltf->lights, i));
     for (size_t i = 0; i < (size_t)a->file_nodes; i++) {
         const int light = light_at(a, i);
         if (light >= 0 && emits[a->gltf->scene_node[i]]) off[light] = false;
@@ -210,5 +225,6 @@ bool gltf_doc_add_rest(struct gltf_doc *doc, struct gltf *gltf, const struct sce
     };
     if (!add_lights(&a) || !add_instances(&a)) return false;
     add_sky(&a);
+    add_environment(&a);
     return true;
 }

@@ -20,6 +20,10 @@ json_t *gltf_doc_node(struct gltf_doc *doc, const struct node *node);
 void gltf_doc_mobility(struct gltf_doc *doc, json_t *node, const struct instance *instance);
 // Defines the light and refers to it at a node without one.
 void gltf_doc_light(struct gltf_doc *doc, json_t *node, const struct light *light);
+// The environment's map and its sun, in a scene of the document that has none.
+void gltf_doc_environment(struct gltf_doc *doc, json_t *scene,
+                          const struct environment *environment);
+void gltf_doc_remove_environment(struct gltf_doc *doc, json_t *scene);
 // Appends an index to a member, an array, created where absent.
 void gltf_doc_append(struct gltf_doc *doc, json_t *object, const char *key, size_t value);
 // The primitive of a mesh; borrowed. Meshes that are used twice share its accessors.
@@ -31,5 +35,6 @@ void gltf_doc_finish_primitives(struct scene_export *out);
 struct gltf;
 // Whether gltf_doc_add_rest can write all of it. file_nodes: nodes of the file.
 bool gltf_doc_can_add(const struct gltf_doc *doc, const struct scene *scene, size_t file_nodes);
-// Lights, instances and the sky; finds off_lights. Needs places for all instances of the scene.
+// Lights, instances, the sky and the environment; finds off_lights. Needs places for all instances
+// of the scene.
 bool gltf_doc_add_rest(struct gltf_doc *doc, struct gltf *gltf, const struct scene *scene);

@@ -7,6 +7,11 @@
 
 #include <jansson.h>
 
+// An environment in the extras of the default scene, and the mark of the light that is its sun:
+// readers that do not know the former have the latter.
+#define GLTF_ENVIRONMENT     "afterglow_environment"
+#define GLTF_ENVIRONMENT_SUN "afterglow_environment_sun"
+
 struct gltf_buffer {
     const uint8_t *data;
     size_t size;
@@ -117,6 +122,10 @@ bool gltf_load_nodes(struct gltf *gltf); // nodes, instances, lights, cameras
 bool gltf_load_skins(struct gltf *gltf);
 bool gltf_load_animations(struct gltf *gltf);
 bool gltf_load_environment(struct gltf *gltf);
+// Whether the light is the sun of an environment in extras.
+bool gltf_is_environment_sun(const json_t *light);
+// The environment in the extras of a scene, which has it (gltf_environment_extras.c).
+bool gltf_load_environment_extras(struct gltf_object scene);
 
 // The cube map of an image-based light (gltf_cube.c) as a map of the environment. NULL: it is not
 // usable, and noted, or *ok is false.

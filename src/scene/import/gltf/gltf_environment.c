@@ -1,4 +1,5 @@
-// Light from outside of the scene: a uniform sky and EXT_lights_image_based.
+// Light from outside of the scene: a uniform sky, EXT_lights_image_based and the environments that
+// the exporter writes.
 #include "scene/import/gltf/gltf.h"
 
 #include <math.h>
@@ -70,5 +71,10 @@ bool gltf_load_environment(struct gltf *gltf)
     if (gltf->failed || json_array_size(scenes) == 0) return !gltf->failed;
     const struct gltf_object scene =
         gltf_element(gltf, scenes, "scene", chosen < 0 ? 0 : (size_t)chosen);
-    return load_sky(scene) && load_image_based(scene) && !gltf->failed;
+    const bool ok = load_sky(scene) && (gltf_has(gltf_child(scene, "extras"), GLTF_ENVIRONMENT)
+                                            ? gltf_load_environment_extras(scene)
+                                            : load_image_based(scene));
+    struct scene *out = gltf->import->scene;
+    out->file_environment = environment_map_use_key(&out->environment);
+    return ok && !gltf->failed;
 }

@@ -133,6 +133,7 @@ static bool load_light(struct gltf *gltf, size_t i)
     int index = gltf_index(gltf_extension(node, "KHR_lights_punctual"), "light", gltf->lights);
     if (index < 0) return !gltf->failed;
     struct gltf_object object = gltf_element(gltf, gltf->lights, "light", (size_t)index);
+    if (gltf_is_environment_sun(object.json)) return !gltf->failed;
     const char *type = gltf_string(object, "type");
     struct light *light = &scene->lights[scene->light_count];
     *light = (struct light){ .node = (int)gltf->scene_node[i], .off = is_left_out(object.json) };
