@@ -73,16 +73,12 @@ static void list_pipelines(const struct radiosity *s, struct gpu_objects *out)
 
 static void list_probes(const struct radiosity *s, struct gpu_objects *out)
 {
-    const struct gpu_shader *apply = s->options.specular
-                                         ? &shader_radiosity_probes_apply_specular_comp
-                                         : &shader_radiosity_probes_apply_diffuse_comp;
     const struct gpu_image_desc volume =
         probe_volume_desc(NULL, s->probes.volume.grid, FRAME_PROBE_SLABS + 1);
     GPU_ADD(
         out, 0, { GPU_IMAGE, "probe_volume", PROBES(volume.image), .image = volume },
-        { GPU_SAMPLER, "probe_depth", .member = PROBES(linear) },
-        { GPU_PIPELINE, "probes", PROBES(gather), .shader = &shader_radiosity_probes_gather_comp },
-        { GPU_PIPELINE, "apply", PROBES(apply), .shader = apply });
+        { GPU_PIPELINE, "probes", PROBES(gather), .shader = &shader_radiosity_probes_gather_comp });
+    probe_apply_list(PROBES(apply), s->options.specular, out);
 }
 
 // What radiosity_upload and radiosity_probes_upload create.
@@ -159,7 +155,7 @@ static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     if (mapped) light_map_record_apply(&s->light_map, cmd, view);
     if (mapped && !s->followed.any_lit) return;
     gather_probes(s, cmd, view);
-    radiosity_probes_record_apply(&s->probes, cmd, view, mapped);
+    probe_apply_record(&s->probes.apply, &s->probes.volume, cmd, view, mapped);
 }
 
 static gpu_image light_map(void *state)

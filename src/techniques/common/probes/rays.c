@@ -88,6 +88,12 @@ struct probe_sphere probe_sphere_of(int rays)
     return (struct probe_sphere){ s.side, 4.0f * GLM_PIf / sum };
 }
 
+float probe_solid_angle(const struct probe_sphere *sphere, vec3s direction)
+{
+    const float across = 2.0f / (float)sphere->side, norm = glms_vec3_norm_one(direction);
+    return sphere->scale * norm * norm * norm * across * across;
+}
+
 // Sums over the rays of a square, by their offset from its middle in squares.
 struct moments {
     float sum, square, along[2];

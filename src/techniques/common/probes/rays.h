@@ -35,6 +35,9 @@ struct probe_sphere {
 };
 struct probe_sphere probe_sphere_of(int rays);
 
+// Solid angle of the square around a direction, sr.
+float probe_solid_angle(const struct probe_sphere *sphere, vec3s direction);
+
 // The depths of a probe: common/probes/lookup.glsl. Halves.
 void probe_trace_depths(const struct probe_sphere *sphere, const struct probe_tracer *tracer,
                         vec3s from, float spacing_m, uint16_t depth[PROBE_DEPTHS][2]);

@@ -1,6 +1,7 @@
 // Probes at run time: what moves has their light, and they may be published.
 #pragma once
 
+#include "techniques/common/probes/apply.h"
 #include "techniques/radiosity/probes/grid.h"
 #include "techniques/technique.h"
 
@@ -8,8 +9,8 @@ struct radiosity_probes {
     struct probe_volume volume;
     uint32_t count, entries;   // entries: of a row
     gpu_buffer table, factors; // of probes
-    gpu_pipeline gather, apply;
-    gpu_sampler linear;
+    gpu_pipeline gather;
+    struct probe_apply apply;
     bool fresh; // the volume has the light of the newest update
 };
 
@@ -17,7 +18,3 @@ struct radiosity_probes {
 void radiosity_probes_record_gather(struct radiosity_probes *probes, struct gpu_cmd *cmd,
                                     const struct frame_view *view, gpu_image radiosity,
                                     bool emitters);
-
-// Pixels that the light map has not lit; mapped false: all.
-void radiosity_probes_record_apply(const struct radiosity_probes *probes, struct gpu_cmd *cmd,
-                                   const struct frame_view *view, bool mapped);

@@ -20,17 +20,9 @@ struct radiosity_probe_gather_push {
     float emitters;           // 1: emissive surfaces are sources, 0: they are not
 };
 
-struct radiosity_probe_apply_push {
-    AG_STRUCT(frame_probes) grid;
-    // Columns of the image in which the light map lit pixels whose alpha is not 0: all or none.
-    int32_t map_columns;
-    uint32_t has_dielectric;
-};
-
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct radiosity_gpu_probe) == 160, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_probe_gather_push) == 44, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_probe_apply_push) == 40, "layout is shared with GLSL");
 #endif
 
 #endif

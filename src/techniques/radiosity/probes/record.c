@@ -20,23 +20,3 @@ void radiosity_probes_record_gather(struct radiosity_probes *p, struct gpu_cmd *
     gpu_scope_end(cmd);
     p->fresh = true;
 }
-
-void radiosity_probes_record_apply(const struct radiosity_probes *p, struct gpu_cmd *cmd,
-                                   const struct frame_view *view, bool mapped)
-{
-    const gpu_image *layers = view->layers;
-    const struct radiosity_probe_apply_push push = { p->volume.grid,
-                                                     mapped ? (int32_t)view->width : 0,
-                                                     layers[FRAME_DIELECTRIC].id != 0 };
-    gpu_scope_begin(cmd, "apply_probes");
-    gpu_dispatch(
-        cmd, p->apply,
-        GPU_BIND(FRAME_SURFACE_BINDINGS(view),
-                 { .name = "volume", .image = p->volume.image, .sampler = p->linear },
-                 { .name = "probe_depths", .image = p->volume.depth, .sampler = p->linear },
-                 { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
-                 { .name = "specular", .image = layers[FRAME_SPECULAR] }),
-        &push, sizeof push, gpu_groups(view->width, RADIOSITY_LOCAL_2D),
-        gpu_groups(view->height, RADIOSITY_LOCAL_2D), 1);
-    gpu_scope_end(cmd);
-}

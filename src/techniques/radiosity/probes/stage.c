@@ -92,17 +92,14 @@ static float trace_ray(void *user, const struct probe_ray *from, bool *inside)
 
 static void sample_emitters(const struct job *job)
 {
-    const float across = 2.0f / (float)job->sphere.side;
     for (uint32_t k = 0; k < job->light_samples; k++) {
         struct emitter_sample s;
         if (!texel_sample_emitter(job->scene->trace, job->out->position, NULL, k,
                                   job->light_samples, job->seed, &s))
             continue;
-        const vec3s d = s.to_light;
-        const float norm = glms_vec3_norm_one(d);
-        const float solid_angle = job->sphere.scale * norm * norm * norm * across * across;
-        add_emission(job->out, d, s.radiance,
-                     1.0f / solid_angle + (float)job->light_samples * s.pdf);
+        add_emission(job->out, s.to_light, s.radiance,
+                     1.0f / probe_solid_angle(&job->sphere, s.to_light) +
+                         (float)job->light_samples * s.pdf);
     }
 }
 

@@ -14,14 +14,13 @@
 #include "frame/probes.glsl"
 #include "techniques/common/probes/lookup.glsl"
 #include "techniques/common/light_map/lobe.glsl"
-#include "techniques/radiosity/radiosity_shared.h"
-#include "techniques/radiosity/probes/probes_shared.h"
+#include "techniques/common/probes/apply_shared.h"
 
-layout(local_size_x = RADIOSITY_LOCAL_2D, local_size_y = RADIOSITY_LOCAL_2D) in;
+layout(local_size_x = PROBE_APPLY_LOCAL, local_size_y = PROBE_APPLY_LOCAL) in;
 
 layout(push_constant, scalar) uniform push_block
 {
-    radiosity_probe_apply_push push;
+    probe_apply_push push;
 };
 layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2) uniform sampler2D normal;

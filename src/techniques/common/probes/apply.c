@@ -1,0 +1,36 @@
+#include "techniques/common/probes/apply.h"
+
+#include "frame/frame.h"
+#include "techniques/common/probes/apply_shared.h"
+
+#include "technique_shaders.h"
+
+#include <stddef.h>
+
+void probe_apply_list(size_t base, bool specular, struct gpu_objects *out)
+{
+    const struct gpu_shader *shader = specular ? &shader_common_probes_apply_specular_comp
+                                               : &shader_common_probes_apply_diffuse_comp;
+    GPU_ADD(out, base,
+            { GPU_SAMPLER, "probe_depth", .member = offsetof(struct probe_apply, linear) },
+            { GPU_PIPELINE, "apply", offsetof(struct probe_apply, pipeline), .shader = shader });
+}
+
+void probe_apply_record(const struct probe_apply *apply, const struct probe_volume *volume,
+                        struct gpu_cmd *cmd, const struct frame_view *view, bool mapped)
+{
+    const gpu_image *layers = view->layers;
+    const struct probe_apply_push push = { volume->grid, mapped ? (int32_t)view->width : 0,
+                                           layers[FRAME_DIELECTRIC].id != 0 };
+    gpu_scope_begin(cmd, "apply_probes");
+    gpu_dispatch(
+        cmd, apply->pipeline,
+        GPU_BIND(FRAME_SURFACE_BINDINGS(view),
+                 { .name = "volume", .image = volume->image, .sampler = apply->linear },
+                 { .name = "probe_depths", .image = volume->depth, .sampler = apply->linear },
+                 { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
+                 { .name = "specular", .image = layers[FRAME_SPECULAR] }),
+        &push, sizeof push, gpu_groups(view->width, PROBE_APPLY_LOCAL),
+        gpu_groups(view->height, PROBE_APPLY_LOCAL), 1);
+    gpu_scope_end(cmd);
+}
