@@ -41,6 +41,11 @@ static bool create(void *state, const struct technique_create *how)
     return ok;
 }
 
+static const struct technique_debug_view views[] = {
+    { PROBES_VIEW, PROBES_VIEW_HELP, NULL },
+    { NULL, NULL, NULL },
+};
+
 static enum light_map_specular specular_of(const struct prt_options *o)
 {
     if (!o->specular) return LIGHT_MAP_DIFFUSE;
@@ -98,8 +103,10 @@ static void list(const struct prt *s, struct gpu_objects *out)
     const uint32_t rows = prt_codebook_rows(&s->options);
     gpu_objects_clear(out);
     light_map_list(&s->light_map, offsetof(struct prt, light_map), specular_of(&s->options), out);
-    if (texels == 0) return;
     list_constants(&s->options, out->constants + LIGHT_MAP_CONSTANTS);
+    prt_probes_list(&s->probes, offsetof(struct prt, probes), &s->options,
+                    3u << LIGHT_MAP_CONSTANTS, out);
+    if (texels == 0) return;
     list_pipelines(s, out);
     GPU_ADD(out, 0,
             { GPU_IMAGE, "texel_light", TABLE(texel_light),
@@ -185,18 +192,33 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
 {
     struct prt *s = state;
     kept_update(&s->kept, view, view->light_hash);
-    if (s->charts.side_texel_count == 0 || (view->keep && s->kept.same)) return;
-    prt_project(&s->options, view, &s->light);
-    prt_record_update(s, cmd, view);
+    if (!(view->keep && s->kept.same)) {
+        prt_project(&s->options, view, &s->light);
+        s->probes.fresh = false;
+        if (s->charts.side_texel_count > 0) prt_record_update(s, cmd, view);
+    }
+    if (s->options.probes) prt_record_probes(s, cmd, view);
 }
 
+// Probes have no light before a view needs it.
 static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct prt *s = state;
-    if (!view->layers[FRAME_ID].id || s->charts.side_texel_count == 0) return;
-    if (prt_is_glossy(&s->options) && view->layers[FRAME_SPECULAR].id)
+    const bool mapped = view->layers[FRAME_ID].id && s->charts.side_texel_count > 0;
+    if (mapped && prt_is_glossy(&s->options) && view->layers[FRAME_SPECULAR].id)
         prt_record_reflect(s, cmd, view);
-    light_map_record_apply(&s->light_map, cmd, view);
+    if (mapped) light_map_record_apply(&s->light_map, cmd, view);
+    if (mapped && !s->followed.any_lit) return;
+    prt_record_probes(s, cmd, view);
+    probe_apply_record(&s->probes.apply, &s->probes.volume, cmd, view, mapped);
+}
+
+static bool probes(void *state, struct probe_volume *out)
+{
+    const struct prt *s = state;
+    if (!s->options.probes) return false;
+    *out = s->probes.volume;
+    return true;
 }
 
 static gpu_image light_map(void *state)
@@ -232,6 +254,14 @@ static uint64_t tables_bytes(const struct prt_options *o, uint64_t rows_of_one)
            light_map_table_bytes(rows, 16);
 }
 
+static uint64_t probes_bytes(const struct prt_options *o)
+{
+    const uint64_t probes = prt_probes_most(o), rows = prt_probe_rows(o);
+    return light_map_table_bytes(prt_row_entries(o) * rows * probes, 8) +
+           light_map_table_bytes((1 + rows) * probes, 16) +
+           light_map_table_bytes(rows * probes, 8) + probes * PROBE_VOLUME_BYTES;
+}
+
 static uint64_t memory_estimate(const void *options)
 {
     const struct prt_options *o = options;
@@ -241,7 +271,7 @@ static uint64_t memory_estimate(const void *options)
     if (prt_is_glossy(o))
         bytes += tables_bytes(o, PRT_OUTGOING) + light_map_table_bytes(texels, 8) +
                  light_map_bytes(texels) / (2 * LIGHT_MAP_LAYERS);
-    return bytes;
+    return bytes + probes_bytes(o);
 }
 
 const struct technique technique_prt = {
@@ -250,11 +280,13 @@ const struct technique technique_prt = {
     .paper = "Sloan, Kautz & Snyder 2002, Precomputed Radiance Transfer for Real-Time Rendering "
              "in Dynamic, Low-Frequency Lighting Environments",
     .role = ROLE_SOURCE,
-    .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION,
+    .capabilities =
+        CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION | PUBLISHES_PROBES,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID,
     .bake_version = 2,
     .options = OPTION_TABLE(struct prt_options, option_rows, NULL),
     .presets = presets,
+    .debug_views = views,
     .state_size = sizeof(struct prt),
     .more_needs = more_needs,
     .bake = prt_bake,
@@ -267,6 +299,7 @@ const struct technique technique_prt = {
     .record = record,
     .charts = prt_charts,
     .light_map = light_map,
+    .probes = probes,
     .destroy = destroy,
     .memory_estimate = memory_estimate,
 };

@@ -34,6 +34,18 @@ static inline uint32_t prt_dimension(const struct prt_options *options)
 {
     return prt_coefficients(options) * (options->transfer == PRT_INTERREFLECTED ? 4 : 1);
 }
+// Coefficients of the radiance that arrives at a probe.
+static inline uint32_t prt_probe_rows(const struct prt_options *options)
+{
+    enum { OF_IRRADIANCE = 9, OF_REFLECTIONS = 25 };
+    return options->glossy ? OF_REFLECTIONS : OF_IRRADIANCE;
+}
+// At most so many probes, about, without probe_spacing.
+static inline uint64_t prt_probes_most(const struct prt_options *options)
+{
+    enum { TEXELS_PER_PROBE = 32 };
+    return (uint64_t)options->texels / TEXELS_PER_PROBE;
+}
 // The codebook of compressed vectors; 0 clusters: there is none.
 static inline uint32_t prt_clusters(const struct prt_options *options)
 {

@@ -50,6 +50,11 @@ static void record_light(struct prt *s, struct gpu_cmd *cmd, const struct frame_
     gpu_scope_end(cmd);
 }
 
+void prt_record_probes(struct prt *s, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    prt_probes_record_gather(&s->probes, cmd, &s->light, emitters(s, view));
+}
+
 void prt_record_update(struct prt *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     record_rows(s, cmd);

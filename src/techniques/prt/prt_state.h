@@ -5,6 +5,7 @@
 #include "techniques/common/light_map/follow.h"
 #include "techniques/common/light_map/map.h"
 #include "techniques/common/light_map/texels.h"
+#include "techniques/prt/probes/probes.h"
 #include "techniques/prt/project.h"
 #include "techniques/prt/prt_tensors.h"
 
@@ -21,6 +22,7 @@ struct prt {
     struct gpu *gpu;
     struct charts charts; // without texels: an empty scene
     struct light_map light_map;
+    struct prt_probes probes;
     struct {
         gpu_image texels;           // of the bake
         gpu_image texel_light;      // of the newest light
@@ -48,6 +50,12 @@ static inline uint32_t prt_weight_entries(const struct prt_options *options)
     return (prt_vectors(options) + PRT_ROW_HALVES - 1) / PRT_ROW_HALVES;
 }
 
+// Half k of row `row` of `rows` in a table of transfer vectors.
+static inline uint16_t *prt_table_half(uint16_t *table, size_t rows, size_t row, size_t k)
+{
+    const size_t halves = PRT_ROW_HALVES;
+    return &table[halves * (k / halves * rows + row) + k % halves];
+}
 // Reflections by matrices.
 static inline bool prt_is_glossy(const struct prt_options *options)
 {
@@ -63,5 +71,7 @@ bool prt_upload(struct prt *state, const struct tensors *bake);
 
 // The light map under the newest light and emissive surfaces.
 void prt_record_update(struct prt *state, struct gpu_cmd *cmd, const struct frame_view *view);
+// The probes under the same, unless they have it.
+void prt_record_probes(struct prt *state, struct gpu_cmd *cmd, const struct frame_view *view);
 // The radiance that texels reflect towards a view, by the newest light.
 void prt_record_reflect(struct prt *state, struct gpu_cmd *cmd, const struct frame_view *view);

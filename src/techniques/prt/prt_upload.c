@@ -107,13 +107,6 @@ static bool find_tensors(struct prt *s, const struct tensors *bake, struct conte
            (s->options.transfer != PRT_INTERREFLECTED || add_emitted_bounces(s, bake, out));
 }
 
-// Halves of a table: number k of row `row` of `rows`.
-static uint16_t *entry_of(uint16_t *table, size_t rows, size_t row, size_t k)
-{
-    const size_t halves = PRT_ROW_HALVES;
-    return &table[halves * (k / halves * rows + row) + k % halves];
-}
-
 // Number k of a transfer vector, or of a row of the codebook.
 static uint16_t value_of(const struct prt *s, const struct content *c, size_t row, size_t k)
 {
@@ -136,7 +129,7 @@ static bool upload_transfer(struct prt *s, const struct content *c)
     uint16_t *table = host_alloc(s->host, light_map_table_room(count), 4 * sizeof *table);
     for (size_t k = 0; table && k < prt_dimension(&s->options); k++)
         for (size_t row = 0; row < rows; row++)
-            *entry_of(table, rows, row, k) = value_of(s, c, row, k);
+            *prt_table_half(table, rows, row, k) = value_of(s, c, row, k);
     return light_map_table_upload(s->host, s->gpu, "transfer", GPU_RG32U, table, count,
                                   &s->tables.vectors.transfer);
 }
@@ -151,7 +144,7 @@ static bool upload_matrices(struct prt *s, const struct content *c)
     for (size_t i = 0; table && i < matrices; i++)
         for (size_t out = 0; out < PRT_OUTGOING; out++)
             for (size_t k = 0; k < numbers; k++)
-                *entry_of(table, rows, out * matrices + i, k) =
+                *prt_table_half(table, rows, out * matrices + i, k) =
                     from[(i * PRT_OUTGOING + out) * numbers + k];
     return light_map_table_upload(s->host, s->gpu, "matrices", GPU_RG32U, table, count,
                                   &s->tables.matrices.transfer);
@@ -167,7 +160,7 @@ static bool upload_clusters(struct prt *s, const struct compressed *c, struct pr
     for (size_t i = 0; clusters && i < texels; i++) clusters[i] = c->cluster[i];
     for (size_t i = 0; weights && i < texels; i++)
         for (size_t k = 0; k < vectors; k++)
-            *entry_of(weights, texels, i, k) = c->weight[i * vectors + k];
+            *prt_table_half(weights, texels, i, k) = c->weight[i * vectors + k];
     const bool ok = light_map_table_upload(s->host, s->gpu, "clusters", GPU_R32U, clusters, texels,
                                            &out->clusters);
     return light_map_table_upload(s->host, s->gpu, "weights", GPU_RG32U, weights, count,
@@ -189,7 +182,8 @@ static bool upload_all(struct prt *s, struct content *c, const struct tensors *b
 bool prt_upload(struct prt *s, const struct tensors *bake)
 {
     struct content c;
-    const bool ok = find_tensors(s, bake, &c) && upload_all(s, &c, bake);
+    const bool ok = find_tensors(s, bake, &c) && upload_all(s, &c, bake) &&
+                    prt_probes_upload(&s->probes, s->host, s->gpu, &s->charts, &s->options, bake);
     host_free(s->host, c.shown);
     host_free(s->host, c.emitted);
     return ok;

@@ -3,6 +3,7 @@ target_link_libraries(ag_test_prt_bake PUBLIC ag_test_frame_fixture ag_technique
 ag_test(techniques/prt/bake USES techniques LIBRARIES ag_test_prt_bake)
 ag_test(techniques/prt/transfer USES techniques LIBRARIES ag_test_prt_bake ag_test_techniques)
 ag_test(techniques/prt/glossy USES techniques LIBRARIES ag_test_prt_bake ag_test_techniques)
+ag_test(techniques/prt/probes USES techniques LIBRARIES ag_test_prt_bake ag_test_light_trial ag_test_techniques)
 ag_test(techniques/prt/damage USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)
 ag_test(techniques/prt/frame USES techniques LIBRARIES ag_test_prt_bake ag_test_techniques)
 ag_test(techniques/prt/compress USES techniques)

@@ -7,10 +7,22 @@
 
 #include <stddef.h>
 
-void probe_apply_list(size_t base, bool specular, struct gpu_objects *out)
+static const struct gpu_shader *shader_of(enum probe_specular specular)
 {
-    const struct gpu_shader *shader = specular ? &shader_common_probes_apply_specular_comp
-                                               : &shader_common_probes_apply_diffuse_comp;
+    switch (specular) {
+    case PROBE_APPLY_DIFFUSE:
+        return &shader_common_probes_apply_diffuse_comp;
+    case PROBE_APPLY_SPECULAR:
+        return &shader_common_probes_apply_specular_comp;
+    case PROBE_APPLY_RADIANCE:
+        break;
+    }
+    return &shader_common_probes_apply_radiance_comp;
+}
+
+void probe_apply_list(size_t base, enum probe_specular specular, struct gpu_objects *out)
+{
+    const struct gpu_shader *shader = shader_of(specular);
     GPU_ADD(out, base,
             { GPU_SAMPLER, "probe_depth", .member = offsetof(struct probe_apply, linear) },
             { GPU_PIPELINE, "apply", offsetof(struct probe_apply, pipeline), .shader = shader });
@@ -28,6 +40,7 @@ void probe_apply_record(const struct probe_apply *apply, const struct probe_volu
         GPU_BIND(FRAME_SURFACE_BINDINGS(view),
                  { .name = "volume", .image = volume->image, .sampler = apply->linear },
                  { .name = "probe_depths", .image = volume->depth, .sampler = apply->linear },
+                 { .name = "probe_radiance", .image = volume->radiance },
                  { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
                  { .name = "specular", .image = layers[FRAME_SPECULAR] }),
         &push, sizeof push, gpu_groups(view->width, PROBE_APPLY_LOCAL),

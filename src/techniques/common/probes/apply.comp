@@ -1,5 +1,6 @@
 // Irradiance of pixels that the light map does not have, from probes. SPECULAR: also the radiance
-// that the specular lobe reflects, E/π in its mean direction.
+// that the specular lobe reflects, E/π in its mean direction; RADIANCE: the mean of the probes'
+// radiance over directions of the lobe.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -13,7 +14,12 @@
 #include "frame/octahedral.glsl"
 #include "frame/probes.glsl"
 #include "techniques/common/probes/lookup.glsl"
+#if RADIANCE
+#include "core/basis.glsl"
+#include "techniques/common/light_map/table.glsl"
+#else
 #include "techniques/common/light_map/lobe.glsl"
+#endif
 #include "techniques/common/probes/apply_shared.h"
 
 layout(local_size_x = PROBE_APPLY_LOCAL, local_size_y = PROBE_APPLY_LOCAL) in;
@@ -27,6 +33,9 @@ layout(set = 0, binding = 2) uniform sampler2D normal;
 layout(set = 0, binding = 3) uniform sampler3D volume;
 layout(set = 0, binding = 4) uniform sampler2D probe_depths;
 layout(set = 0, binding = 5, rgba16f) uniform image2D irradiance; // of the light map
+#if RADIANCE
+layout(set = 0, binding = 6, rgba16f) uniform readonly image2D probe_radiance;
+#endif
 
 #if SPECULAR
 layout(set = 0, binding = 9) uniform sampler2D albedo;
@@ -40,6 +49,68 @@ vec3 light_at(vec3 position, vec3 n, vec3 direction)
     return probes_seen_irradiance(volume, probe_depths, push.grid, position, n, direction);
 }
 
+#if RADIANCE
+// Radiance that arrives at a point of a surface, by coefficient.
+void radiance_at(vec3 position, vec3 n, out vec3 radiance[25])
+{
+    vec3 at = (position - push.grid.first_m) / push.grid.spacing_m + PROBE_BIAS * n;
+    at = clamp(at, vec3(-0.5), vec3(push.grid.count_x, push.grid.count_y, push.grid.count_z) - 0.5);
+    uint probes = uint(push.grid.count_x * push.grid.count_y * push.grid.count_z);
+    float weights = 0.0;
+    for (int k = 0; k < 25; k++) radiance[k] = vec3(0.0);
+    for (int i = 0; i < 8; i++) {
+        probe_corner corner = probe_corner_of(volume, probe_depths, push.grid, at, i);
+        float weight = corner.linear * (corner.seen * probe_facing(n, corner.to) + PROBE_UNSEEN);
+        uint probe = uint((corner.cell.z * push.grid.count_y + corner.cell.y) * push.grid.count_x +
+                          corner.cell.x);
+        for (uint k = 0u; k < 25u; k++)
+            radiance[k] += weight * imageLoad(probe_radiance, light_map_at(k * probes + probe)).rgb;
+        weights += weight;
+    }
+    for (int k = 0; k < 25; k++) radiance[k] /= weights;
+}
+
+// A normal of the GGX distribution that is visible from a direction above +z, by a sample of the
+// unit square (Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps").
+vec3 visible_normal(vec3 to_viewer, float alpha, vec2 u)
+{
+    vec3 stretched = normalize(vec3(to_viewer.xy * alpha, to_viewer.z));
+    float z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z, phi = 2.0 * PI * u.x;
+    float r = sqrt(clamp(1.0 - z * z, 0.0, 1.0));
+    vec3 h = vec3(r * cos(phi), r * sin(phi), z) + stretched;
+    return normalize(vec3(h.xy * alpha, max(h.z, 1e-6)));
+}
+
+// Bands 0 to 4 are smooth: a few directions have their mean.
+vec3 mean_over_lobe(vec3 position, vec3 n, vec3 to_viewer, float alpha)
+{
+    const uint COUNT = 8u;
+    mat3 to_world = basis_of(n);
+    vec3 local = to_viewer * to_world, radiance[25], sum = vec3(0.0);
+    float count = 0.0;
+    local.z = max(local.z, 0.01);
+    radiance_at(position, n, radiance);
+    for (uint i = 0u; i < COUNT; i++) {
+        vec2 u = vec2((float(i) + 0.5) / float(COUNT),
+                      float(bitfieldReverse(i)) * 2.3283064e-10 + 0.0625);
+        vec3 to_light = reflect(-local, visible_normal(local, alpha, u));
+        if (to_light.z <= 0.0) continue;
+        float basis[25];
+        sh25_eval(to_world * to_light, basis);
+        for (int k = 0; k < 25; k++) sum += basis[k] * radiance[k];
+        count += 1.0;
+    }
+    return sum / max(count, 1.0);
+}
+#elif SPECULAR
+vec3 mean_over_lobe(vec3 position, vec3 n, vec3 to_viewer, float alpha)
+{
+    vec3 upwards = dot(to_viewer, n) * n;
+    vec3 mean = upwards + (upwards - to_viewer) * lobe_lean(alpha);
+    return INV_PI * light_at(position, n, normalize(mean + 1e-4 * n));
+}
+#endif
+
 #if SPECULAR
 vec3 reflected(ivec2 pixel, vec3 position, vec3 n)
 {
@@ -48,9 +119,7 @@ vec3 reflected(ivec2 pixel, vec3 position, vec3 n)
     brdf_material m =
         brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
     vec3 to_viewer = normalize(frame.camera_position - position);
-    vec3 upwards = dot(to_viewer, n) * n;
-    vec3 mean = upwards + (upwards - to_viewer) * lobe_lean(brdf_alpha(m.roughness));
-    vec3 radiance = INV_PI * light_at(position, n, normalize(mean + 1e-4 * n));
+    vec3 radiance = mean_over_lobe(position, n, to_viewer, brdf_alpha(m.roughness));
     return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
            clamp(radiance, vec3(0.0), vec3(HALF_MAX));
 }

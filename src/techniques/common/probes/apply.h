@@ -10,8 +10,15 @@ struct probe_apply {
     gpu_sampler linear;
 };
 
+// How pixels get specular light.
+enum probe_specular {
+    PROBE_APPLY_DIFFUSE,  // none
+    PROBE_APPLY_SPECULAR, // irradiance over π in the mean direction of the lobe
+    PROBE_APPLY_RADIANCE, // the mean of the volume's radiance over the lobe
+};
+
 // Adds its objects at this offset of the state.
-void probe_apply_list(size_t base, bool specular, struct gpu_objects *out);
-// mapped false: all pixels.
+void probe_apply_list(size_t base, enum probe_specular specular, struct gpu_objects *out);
+// mapped false: all pixels. The volume has radiance where the pass needs it.
 void probe_apply_record(const struct probe_apply *apply, const struct probe_volume *volume,
                         struct gpu_cmd *cmd, const struct frame_view *view, bool mapped);

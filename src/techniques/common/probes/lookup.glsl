@@ -65,6 +65,13 @@ probe_corner probe_corner_of(sampler3D volume, sampler2D depth, frame_probes gri
                         place.w * probe_visibility(depth, probe, to));
 }
 
+// Probes in front of the surface count more than those behind it. to: from the probe.
+float probe_facing(vec3 normal, vec3 to)
+{
+    float facing = 0.5 - 0.5 * dot(normal, to) / max(length(to), 1e-4);
+    return facing * facing + 0.2;
+}
+
 vec3 probe_irradiance(sampler3D volume, int slab, ivec3 cell, float basis[9])
 {
     vec4 values;
@@ -89,9 +96,8 @@ vec3 probes_seen_irradiance(sampler3D volume, sampler2D depth, frame_probes grid
     float weights = 0.0;
     for (int i = 0; i < 8; i++) {
         probe_corner corner = probe_corner_of(volume, depth, grid, at, i);
-        // Probes in front of the surface count more than those behind it.
-        float facing = 0.5 - 0.5 * dot(normal, corner.to) / max(length(corner.to), 1e-4);
-        float weight = corner.linear * (corner.seen * (facing * facing + 0.2) + PROBE_UNSEEN);
+        float weight =
+            corner.linear * (corner.seen * probe_facing(normal, corner.to) + PROBE_UNSEEN);
         sum += weight * probe_irradiance(volume, grid.slab, corner.cell, basis);
         weights += weight;
     }

@@ -14,6 +14,9 @@ struct probe_volume {
     // Not empty: what probes see, RG16F, and the image has the slab that common/probes/lookup.glsl
     // needs, by which no light passes through walls.
     gpu_image depth;
+    // Coefficients of the radiance that arrives at probes, bands 0 to 4: RGBA16F, a table
+    // (common/light_map/table.h) of [coefficient][probe]. May be empty.
+    gpu_image radiance;
 };
 
 // slabs: FRAME_PROBE_SLABS, or one more.

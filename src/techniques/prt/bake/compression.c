@@ -172,7 +172,7 @@ static bool add_stage(struct bake_plan *plan, const struct prt_scene *scene, con
         prt_dimension(&scene->options) * (*matrices ? (uint64_t)PRT_OUTGOING : UINT64_C(1));
     return bake_plan_add(
         plan, &(struct bake_stage){ .name = name,
-                                    .wave = prt_compression_wave(&scene->options),
+                                    .wave = PRT_COMPRESSION_WAVE,
                                     .task_count = 1,
                                     .run = run,
                                     .argument = matrices,

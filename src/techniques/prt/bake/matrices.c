@@ -3,12 +3,11 @@
 // radiance that its specular lobe reflects, in the frame of its normal (basis_of), by the
 // coefficients of distant light in the world.
 #include "techniques/prt/bake/lobes.h"
-#include "techniques/prt/bake/scene.h"
+#include "techniques/prt/bake/sent.h"
 
 #include "bake/plan.h"
 #include "core/half.h"
 #include "core/rng.h"
-#include "trace/texels/light.h"
 #include "trace/surface.h"
 
 #include <math.h>
@@ -17,21 +16,14 @@
 enum { TEXELS_PER_TASK = 64 };
 enum { OUT_MATRIX, OUT_NORMAL, OUT_ROUGHNESS, OUT_COUNT };
 
-// What bounces: tensors of earlier waves. NULL: no bounces.
-struct sent {
-    const float *albedo;
-    const uint16_t *direct, *bounce;
-    uint32_t *shown; // [texels] in whose place hidden ones send
-};
-
 struct work {
     const struct prt_scene *scene;
     const struct bake_task *task;
     size_t texels, coefficients, planes, rays;
     const float *point;
-    struct sent sent;
-    float *basis;    // [rays][coefficients] Y_i of the lobes' directions
-    float *rows;     // [PRT_OUTGOING][rays] of the texel's lobe
+    struct prt_sent sent; // with bounces
+    float *basis;         // [rays][coefficients] Y_i of the lobes' directions
+    float *rows;          // [PRT_OUTGOING][rays] of the texel's lobe
     float *radiance; // [rays][coefficients][planes] that arrives, in the frame of the texel; of
                      // bounces in that of the world
 };
@@ -42,25 +34,6 @@ static bool has_bounces(const struct prt_scene *scene)
 }
 
 // ---- memory
-
-static uint32_t *find_shown(const struct work *w)
-{
-    bool *hidden = host_alloc(w->task->host, w->texels, sizeof *hidden);
-    for (size_t i = 0; hidden && i < w->texels; i++) hidden[i] = !(w->point[4 * i + 3] > 0.0f);
-    uint32_t *shown = hidden ? charts_fill(&w->scene->charts, hidden) : NULL;
-    host_free(w->task->host, hidden);
-    return shown;
-}
-
-static bool find_sent(struct work *w)
-{
-    const struct tensor *albedo = bake_task_input(w->task, LIGHT_MAP_ALBEDO);
-    const struct tensor *direct = bake_task_input(w->task, PRT_DIRECT);
-    const struct tensor *bounce = bake_task_input(w->task, PRT_BOUNCE);
-    if (!albedo || !direct || !bounce) return false;
-    w->sent = (struct sent){ albedo->data, direct->data, bounce->data, find_shown(w) };
-    return w->sent.shown != NULL;
-}
 
 static bool work_init(struct work *w, const struct bake_task *task)
 {
@@ -82,12 +55,12 @@ static bool work_init(struct work *w, const struct bake_task *task)
     for (size_t s = 0; s < w->rays; s++)
         sh_eval(prt_bands(&scene->options), scene->lobes.direction[s],
                 w->basis + s * w->coefficients);
-    return !has_bounces(scene) || find_sent(w);
+    return !has_bounces(scene) || prt_sent_init(&w->sent, task);
 }
 
 static void work_finish(struct work *w)
 {
-    host_free(w->scene->charts.host, w->sent.shown);
+    prt_sent_finish(&w->sent);
     host_free(w->task->host, w->basis);
     host_free(w->task->host, w->rows);
     host_free(w->task->host, w->radiance);
@@ -132,22 +105,6 @@ static struct frame frame_of(const struct work *w, uint32_t texel)
     return out;
 }
 
-// A hit texel sends ρ T_i / π of distant light with the coefficient i; the factor of shading
-// normals is that of light from all directions (light_map_first_order_of_all).
-static void add_sent(const struct work *w, uint32_t texel, float *out)
-{
-    const uint32_t from = w->sent.shown[texel];
-    const float *albedo = w->sent.albedo + 4 * (size_t)from;
-    const float diffuse = (0.5f + 0.5f * albedo[3]) / GLM_PIf;
-    for (size_t i = 0; i < w->coefficients; i++) {
-        const size_t at = i * w->texels + from;
-        const float direct = float_from_half(w->sent.direct[at]);
-        for (size_t c = 0; c < 3; c++)
-            out[4 * i + 1 + c] =
-                diffuse * albedo[c] * (direct + float_from_half(w->sent.bounce[3 * at + c]));
-    }
-}
-
 // Radiance along ray s by coefficients: of the visible sky, or sent by a texel.
 static void trace(const struct work *w, const struct frame *frame, size_t s)
 {
@@ -166,12 +123,10 @@ static void trace(const struct work *w, const struct frame *frame, size_t s)
             out[i * w->planes] = w->basis[s * w->coefficients + i];
         return;
     }
+    if (!has_bounces(scene)) return;
     const struct texel_seen seen = texel_seen_at(scene->trace, &ray, &hit);
-    if (!has_bounces(scene) || seen.inside) return;
-    const uint32_t texel =
-        chart_texel_at(&scene->charts, scene->trace->meshes[hit.geometry].instance, hit.triangle,
-                       hit.u, hit.v, seen.back);
-    if (texel != CHART_NONE) add_sent(w, texel, out);
+    const uint32_t texel = prt_sent_texel(scene, &hit, &seen);
+    if (texel != CHART_NONE) prt_sent_radiance(&w->sent, texel, out);
 }
 
 // Σ_s rows[k][s] radiance[s].

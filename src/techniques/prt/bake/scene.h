@@ -6,6 +6,7 @@
 #include "techniques/prt/bake/lobes.h"
 #include "techniques/prt/prt_tensors.h"
 #include "trace/texels/close.h"
+#include "trace/texels/light.h"
 #include "trace/texels/texels.h"
 
 struct prt_scene {
@@ -38,18 +39,18 @@ bool prt_add_texels(struct bake_plan *plan, const struct prt_scene *scene);
 // ---- transfer.c: transfer vectors with bounces, by coefficient
 bool prt_add_transfer(struct bake_plan *plan, const struct prt_scene *scene);
 
-// ---- matrices.c: transfer matrices, with `glossy`
+// ---- matrices.c: transfer matrices of texels, with `glossy`
 enum { PRT_MATRICES_WAVE = 2 };
 bool prt_add_matrices(struct bake_plan *plan, const struct prt_scene *scene);
 
+// ---- probes.c: transfer matrices of points in free space
+bool prt_add_probes(struct bake_plan *plan, const struct prt_scene *scene);
+
 // ---- compression.c: of vectors and matrices, if there is one
-static inline int prt_compression_wave(const struct prt_options *options)
-{
-    return options->glossy ? PRT_MATRICES_WAVE + 1 : PRT_MATRICES_WAVE;
-}
+enum { PRT_COMPRESSION_WAVE = 3 };
 // How long a tensor stays that is compressed.
 static inline int prt_keep(const struct prt_options *options)
 {
-    return prt_clusters(options) > 0 ? prt_compression_wave(options) : BAKE_SAVED;
+    return prt_clusters(options) > 0 ? PRT_COMPRESSION_WAVE : BAKE_SAVED;
 }
 bool prt_add_compression(struct bake_plan *plan, const struct prt_scene *scene);

@@ -1,5 +1,5 @@
 // The stages of a bake, in the order of their waves: texels · transfer, emitters, seams ·
-// matrices · compression.
+// matrices, probes · compression.
 #include "techniques/prt/bake/scene.h"
 
 #include "bake/plan.h"
@@ -65,7 +65,7 @@ static bool add_stages(struct bake_plan *plan, struct prt_scene *scene,
         plan, (struct bake_light_map){ charts->count, charts->texels_per_m, plan_at });
     return prt_add_texels(plan, scene) && prt_add_transfer(plan, scene) &&
            light_map_add_seams(plan, &scene->closing, charts) && prt_add_matrices(plan, scene) &&
-           prt_add_compression(plan, scene);
+           prt_add_probes(plan, scene) && prt_add_compression(plan, scene);
 }
 
 bool prt_bake(struct bake_plan *plan, const struct technique_bake *how)
