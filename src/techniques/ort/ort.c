@@ -39,7 +39,7 @@ static bool create(void *state, const struct technique_create *how)
     s->gpu = how->gpu;
     // A processor has eight lanes, each of a row; a piece seldom ends inside of them.
     s->rows = gpu_info(s->gpu)->type == GPU_CPU ? 8 : ORT_LOCAL;
-    light_map_init(&s->light_map, s->host, s->gpu, &s->map.charts);
+    light_map_init(&s->light_map, s->host, s->gpu, &s->map.charts, has_specular(&s->options));
     light_map_paint_init(&s->paint, s->host, s->gpu, &s->map.charts);
     if (!how->pose) return true;
     struct scene_statics statics;
@@ -119,7 +119,7 @@ static void list(const struct ort *s, struct gpu_objects *out)
     gpu_objects_clear(out);
     list_tables(s, out);
     list_pipelines(s, out);
-    light_map_list(&s->light_map, offsetof(struct ort, light_map), has_specular(&s->options), out);
+    light_map_list(&s->light_map, offsetof(struct ort, light_map), out);
     list_uploads(out);
 }
 

@@ -152,12 +152,12 @@ bool ort_upload(struct ort *s, const struct tensors *bake)
     if (!find_tensors(s, bake, &c)) return false;
     if (s->map.texel_count == 0) return true;
     c.shown = light_map_shown(&c.texels, s->host);
-    const bool ok =
-        c.shown && find_levels(s, &c) && upload_steps(s, &c) && upload_maps(s, &c) &&
-        upload_places(s) &&
-        light_map_upload_texels(&c.texels, s->host, s->gpu, &s->tables.texels) &&
-        light_map_upload_sky(&c.texels, s->host, s->gpu, bake, &s->tables.sky) &&
-        light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c.shown, bake);
+    const bool ok = c.shown && find_levels(s, &c) && upload_steps(s, &c) && upload_maps(s, &c) &&
+                    upload_places(s) &&
+                    light_map_upload_texels(&c.texels, s->host, s->gpu, &s->tables.texels) &&
+                    light_map_upload_sky(&c.texels, s->host, s->gpu, bake, &s->tables.sky) &&
+                    light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c.shown,
+                                     c.texels.sky, bake);
     host_free(s->host, c.shown);
     host_free(s->host, c.level);
     host_free(s->host, c.scale);

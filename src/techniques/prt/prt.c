@@ -26,12 +26,18 @@ static const struct technique_preset presets[] = {
     { NULL, NULL },
 };
 
+static enum light_map_specular specular_of(const struct prt_options *o)
+{
+    if (!o->specular) return LIGHT_MAP_DIFFUSE;
+    return o->glossy ? LIGHT_MAP_REFLECTED : LIGHT_MAP_SPECULAR;
+}
+
 static bool create(void *state, const struct technique_create *how)
 {
     struct prt *s = state;
     s->host = how->host;
     s->gpu = how->gpu;
-    light_map_init(&s->light_map, s->host, s->gpu, &s->charts);
+    light_map_init(&s->light_map, s->host, s->gpu, &s->charts, specular_of(&s->options));
     if (!how->pose) return true;
     struct scene_statics statics;
     const bool ok = scene_statics_init(&statics, s->host, how->pose) &&
@@ -45,12 +51,6 @@ static const struct technique_debug_view views[] = {
     { PROBES_VIEW, PROBES_VIEW_HELP, NULL },
     { NULL, NULL, NULL },
 };
-
-static enum light_map_specular specular_of(const struct prt_options *o)
-{
-    if (!o->specular) return LIGHT_MAP_DIFFUSE;
-    return o->glossy ? LIGHT_MAP_MIRRORED : LIGHT_MAP_SPECULAR;
-}
 
 #define TABLE(thing)    offsetof(struct prt, tables.thing)
 #define PIPELINE(thing) #thing, offsetof(struct prt, pipelines.thing)
@@ -102,7 +102,7 @@ static void list(const struct prt *s, struct gpu_objects *out)
     const size_t texels = s->charts.side_texel_count;
     const uint32_t rows = prt_codebook_rows(&s->options);
     gpu_objects_clear(out);
-    light_map_list(&s->light_map, offsetof(struct prt, light_map), specular_of(&s->options), out);
+    light_map_list(&s->light_map, offsetof(struct prt, light_map), out);
     list_constants(&s->options, out->constants + LIGHT_MAP_CONSTANTS);
     prt_probes_list(&s->probes, offsetof(struct prt, probes), &s->options,
                     3u << LIGHT_MAP_CONSTANTS, out);

@@ -72,6 +72,6 @@ void prt_record_reflect(struct prt *s, struct gpu_cmd *cmd, const struct frame_v
                  GPU_BIND(TRANSFER_BINDINGS(s, &s->tables.matrices, cmd),
                           { .name = "texel_radiance", .image = s->tables.texel_radiance }),
                  &push, sizeof push, gpu_groups(texels, PRT_LOCAL), 1, 1);
-    light_map_record_mirrored(&s->light_map, cmd, s->tables.texel_radiance, s->options.seams);
+    light_map_record_reflected(&s->light_map, cmd, s->tables.texel_radiance, s->options.seams);
     gpu_scope_end(cmd);
 }

@@ -176,7 +176,8 @@ static bool upload_all(struct prt *s, struct content *c, const struct tensors *b
            upload_clusters(s, &c->vectors, &s->tables.vectors) &&
            upload_clusters(s, &c->matrices, &s->tables.matrices) &&
            light_map_upload_texels(&c->texels, s->host, s->gpu, &s->tables.texels) &&
-           light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c->shown, bake);
+           light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c->shown,
+                            c->texels.sky, bake);
 }
 
 bool prt_upload(struct prt *s, const struct tensors *bake)

@@ -30,7 +30,7 @@ static bool create(void *state, const struct technique_create *how)
     struct radiosity *s = state;
     s->host = how->host;
     s->gpu = how->gpu;
-    light_map_init(&s->light_map, s->host, s->gpu, &s->map.charts);
+    light_map_init(&s->light_map, s->host, s->gpu, &s->map.charts, s->options.specular);
     light_map_paint_init(&s->paint, s->host, s->gpu, &s->map.charts);
     if (!how->pose) return true;
     struct scene_statics statics;
@@ -98,7 +98,7 @@ static void list(const struct radiosity *s, struct gpu_objects *out)
     gpu_objects_clear(out);
     list_tables(s, out);
     list_pipelines(s, out);
-    light_map_list(&s->light_map, offsetof(struct radiosity, light_map), s->options.specular, out);
+    light_map_list(&s->light_map, offsetof(struct radiosity, light_map), out);
     list_probes(s, out);
     list_uploads(out);
 }

@@ -81,7 +81,7 @@ struct radiosity {
     struct kept kept;
 };
 
-// ---- radiosity_upload.c, radiosity_factors.c, probes/upload.c
+// ---- radiosity_upload.c, radiosity_factors.c, radiosity_neighbours.c, probes/upload.c
 
 // Tables of the light map and of a bake on the GPU.
 bool radiosity_upload(struct radiosity *state, const struct tensors *bake);
@@ -90,6 +90,17 @@ bool radiosity_upload_factors(struct radiosity *state, const uint32_t *source,
                               const uint16_t *factor, const uint32_t *cluster_source,
                               const uint16_t *cluster_factor);
 void radiosity_destroy_rows(struct radiosity *state, struct radiosity_rows *rows);
+
+// What a bake has of the surroundings of texels.
+struct radiosity_surroundings {
+    const struct light_map_texels *texels;
+    const float *inverse_distance; // [texels] harmonic mean of the distances of what each one sees
+    const uint32_t *shown;         // [texels] whose light each one shows
+};
+// The neighbours over which light is smoothed. sky: [texels][4], becomes that of the texels,
+// smoothed.
+bool radiosity_upload_neighbours(struct radiosity *state,
+                                 const struct radiosity_surroundings *surroundings, float *sky);
 
 // The grid of probes, and its tables. After radiosity_upload.
 bool radiosity_probes_upload(struct radiosity *state, const struct tensors *bake);

@@ -76,48 +76,6 @@ static bool check_sources(struct radiosity *s, const struct content *c)
                      nodes);
 }
 
-// ---- texels
-
-// With R the harmonic mean of the distances of what a texel sees, irradiance at distance d differs
-// by about d/R (Ward, Rubinstein & Clear 1988, "A Ray Tracing Solution for Diffuse
-// Interreflection"): weights fall to 0 where that is 1/4.
-static float weight_of(const struct content *c, uint32_t a, uint32_t b)
-{
-    const float *p = c->texels.point + 4 * (size_t)a, *q = c->texels.point + 4 * (size_t)b;
-    const float distance = hypotf(hypotf(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
-    const float per_m = fmaxf(c->inverse_distance[a], c->inverse_distance[b]);
-    return fmaxf(1.0f - 4.0f * distance * per_m, 0.0f);
-}
-
-static void fill_neighbours(const struct radiosity *s, const struct content *c, uint32_t i,
-                            struct chart_share *table)
-{
-    const struct charts *charts = &s->map.charts;
-    const struct chart_texel *t = chart_texel_of(charts, i);
-    const uint32_t width = charts->width, height = charts->height;
-    const uint32_t top = chart_is_back(charts, i) ? height : 0;
-    size_t count = 0;
-    for (uint32_t k = 0; k < 9; k++) {
-        if (k == 4) continue;                                      // itself
-        const uint32_t x = t->x + k % 3 - 1, y = t->y + k / 3 - 1; // below 0: beyond the size
-        if (x >= width || y >= height) continue;
-        const uint32_t texel = chart_texel_of_place(charts, (size_t)(top + y) * width + x);
-        if (texel == CHART_NONE || c->shown[texel] == i) continue;
-        const struct chart_share share = { c->shown[texel], weight_of(c, i, c->shown[texel]) };
-        if (share.weight > 0.0f) *light_map_share_at(table, s->map.texel_count, i, count++) = share;
-    }
-}
-
-static bool upload_neighbours(struct radiosity *s, const struct content *c)
-{
-    const size_t count = (size_t)s->map.texel_count * RADIOSITY_NEIGHBOURS / LIGHT_MAP_PAIR;
-    struct chart_share *table =
-        host_alloc(s->host, light_map_table_room(count), LIGHT_MAP_PAIR * sizeof *table);
-    for (uint32_t i = 0; table && i < s->map.texel_count; i++) fill_neighbours(s, c, i, table);
-    return light_map_table_upload(s->host, s->gpu, "neighbours", GPU_RGBA32U, table, count,
-                                  &s->tables.neighbours);
-}
-
 // ---- clusters
 
 // Mean reflectance, and area of texels that are not hidden.
@@ -249,14 +207,26 @@ static bool upload_clusters(struct radiosity *s, const struct content *c)
            ok && upload_members(s) && upload_groups(s);
 }
 
+// The light map shows the smoothed sky where it shows smoothed light.
+static bool upload_light_map(struct radiosity *s, const struct content *c,
+                             const struct tensors *bake)
+{
+    const struct radiosity_surroundings around = { &c->texels, c->inverse_distance, c->shown };
+    float *smoothed = host_alloc(s->host, s->map.texel_count, 4 * sizeof *smoothed);
+    const bool ok = smoothed && radiosity_upload_neighbours(s, &around, smoothed) &&
+                    light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c->shown,
+                                     s->options.smooth ? smoothed : c->texels.sky, bake);
+    host_free(s->host, smoothed);
+    return ok;
+}
+
 static bool upload_all(struct radiosity *s, const struct content *c, const struct tensors *bake)
 {
     return light_map_upload_texels(&c->texels, s->host, s->gpu, &s->tables.texels) &&
            light_map_upload_sky(&c->texels, s->host, s->gpu, bake, &s->tables.sky) &&
            radiosity_upload_factors(s, c->source, c->factor, c->cluster_source,
                                     c->cluster_factor) &&
-           upload_neighbours(s, c) && upload_clusters(s, c) &&
-           light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c->shown, bake) &&
+           upload_light_map(s, c, bake) && upload_clusters(s, c) &&
            radiosity_view_init(s, c->texels.point, c->shown);
 }
 

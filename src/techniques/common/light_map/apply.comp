@@ -1,5 +1,5 @@
 // Irradiance of each pixel from the light map; SPECULAR: also the radiance that the specular lobe
-// reflects, MIRRORED: as texels reflect it. Alpha is 0 where the map has no light.
+// reflects, REFLECTED: as texels reflect it. Alpha is 0 where the map has no light.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -18,6 +18,14 @@
 #include "techniques/common/light_map/lookup.glsl"
 #include "techniques/common/light_map/surface.glsl"
 #include "techniques/common/light_map/map_shared.h"
+#if SPECULAR && !REFLECTED
+layout(constant_id = LIGHT_MAP_APPLY_MIRRORS) const bool MIRRORS = false;
+#define ENVIRONMENT_MAP_BINDING       14
+#define ENVIRONMENT_HAS_MAP           MIRRORS
+#define LIGHT_MAP_VISIBLE_SKY_BINDING 15
+#include "frame/environment_map.glsl"
+#include "techniques/common/light_map/mirror.glsl"
+#endif
 
 // A processor's caches fetch the next lines of memory ahead: there, a workgroup is a row of pixels.
 layout(local_size_x_id = LIGHT_MAP_APPLY_WIDTH, local_size_y_id = LIGHT_MAP_APPLY_HEIGHT) in;
@@ -39,8 +47,8 @@ layout(set = 0, binding = 10) uniform sampler2D material;
 layout(set = 0, binding = 11) uniform sampler2D dielectric; // FRAME_DIELECTRIC if HAS_DIELECTRIC
 layout(set = 0, binding = 12, rgba16f) uniform writeonly image2D specular;
 #endif
-#if MIRRORED
-layout(set = 0, binding = 14) uniform sampler2DArray mirrored;
+#if REFLECTED
+layout(set = 0, binding = 16) uniform sampler2DArray reflected_map;
 #endif
 
 // One division, where normalize has three on software drivers.
@@ -50,6 +58,7 @@ vec3 unit(vec3 v)
 }
 
 #if SPECULAR
+// place: in texels; z: the side, or negative.
 vec3 reflected(ivec2 pixel, light_map_surface s, light_map_light light, vec3 place)
 {
     vec4 lobe = BRDF_DEFAULT_DIELECTRIC;
@@ -57,11 +66,17 @@ vec3 reflected(ivec2 pixel, light_map_surface s, light_map_light light, vec3 pla
     brdf_material m =
         brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
     vec3 n = s.normal, to_viewer = unit(s.camera - s.position);
-#if MIRRORED
+#if REFLECTED
     vec2 uv = place.xy * vec2(push.per_width, push.per_height);
-    vec3 radiance = place.z < 0.0 ? vec3(0.0) : textureLod(mirrored, vec3(uv, place.z), 0.0).rgb;
+    vec3 radiance =
+        place.z < 0.0 ? vec3(0.0) : textureLod(reflected_map, vec3(uv, place.z), 0.0).rgb;
 #else
-    vec3 radiance = light_map_radiance(light, n, to_viewer, brdf_alpha(m.roughness));
+    float alpha = brdf_alpha(m.roughness);
+    vec3 radiance = light_map_radiance(light, n, to_viewer, alpha);
+    if (MIRRORS && place.z >= 0.0) {
+        vec3 at = vec3(place.xy * vec2(push.per_width, push.per_height), place.z);
+        radiance += light_map_mirrored(at, n, to_viewer, m.roughness);
+    }
 #endif
     return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
            clamp(radiance, vec3(0.0), vec3(HALF_MAX));

@@ -5,7 +5,7 @@
 #ifndef AG_LIGHT_MAP_LOOKUP_GLSL
 #define AG_LIGHT_MAP_LOOKUP_GLSL
 
-#include "techniques/common/light_map/lobe.glsl"
+#include "frame/lobe.glsl"
 #include "techniques/common/light_map/surface_shared.h"
 
 // Irradiance and vector irradiance by colour.
@@ -29,12 +29,18 @@ light_map_light light_map_lookup(sampler2DArray light_map, vec2 per_size, vec3 p
     return light;
 }
 
+// Part along the surface of the mean direction of a specular lobe.
+vec3 light_map_lobe_along(vec3 n, vec3 to_viewer, float alpha)
+{
+    return (dot(to_viewer, n) * n - to_viewer) * lobe_lean(alpha);
+}
+
 // Radiance in the mean direction of a specular lobe, from what both say of the radiance over the
 // surface, L(ω) = E(n)/π + 3/(2π) V·t, with t the part of ω along the surface: its irradiance is
 // E(n) and its vector irradiance V along the surface, and uniform light is exact.
 vec3 light_map_radiance(light_map_light light, vec3 n, vec3 to_viewer, float alpha)
 {
-    vec3 along = (dot(to_viewer, n) * n - to_viewer) * lobe_lean(alpha);
+    vec3 along = light_map_lobe_along(n, to_viewer, alpha);
     return INV_PI * (light.irradiance + 1.5 * (along * light.vector));
 }
 

@@ -3,6 +3,7 @@
 #include "bake/tensors.h"
 #include "frame/frame.h"
 #include "techniques/common/light_map/tensors.h"
+#include "techniques/common/light_map/visible_sky.h"
 
 #include "technique_shaders.h"
 
@@ -10,7 +11,7 @@
 #include <string.h>
 
 void light_map_init(struct light_map *out, struct host *host, struct gpu *gpu,
-                    const struct charts *charts)
+                    const struct charts *charts, enum light_map_specular specular)
 {
     enum { LOCAL_2D = 8 };
     // Rows of pixels suit the caches of a processor, squares those of a GPU.
@@ -18,6 +19,7 @@ void light_map_init(struct light_map *out, struct host *host, struct gpu *gpu,
     *out = (struct light_map){ .host = host,
                                .gpu = gpu,
                                .charts = charts,
+                               .specular = specular,
                                .apply_width = rows ? 64 : LOCAL_2D,
                                .apply_height = rows ? 1 : LOCAL_2D };
 }
@@ -31,14 +33,13 @@ static const struct gpu_shader *apply_shader(enum light_map_specular specular)
         return &shader_common_light_map_apply_diffuse_comp;
     case LIGHT_MAP_SPECULAR:
         return &shader_common_light_map_apply_specular_comp;
-    case LIGHT_MAP_MIRRORED:
+    case LIGHT_MAP_REFLECTED:
         break;
     }
-    return &shader_common_light_map_apply_mirrored_comp;
+    return &shader_common_light_map_apply_reflected_comp;
 }
 
-static void list_pipelines(const struct light_map *map, size_t base,
-                           enum light_map_specular specular, struct gpu_objects *out)
+static void list_pipelines(const struct light_map *map, size_t base, struct gpu_objects *out)
 {
     const struct gpu_constant constants[LIGHT_MAP_CONSTANTS] = {
         { LIGHT_MAP_APPLY_WIDTH, map->apply_width },
@@ -46,10 +47,11 @@ static void list_pipelines(const struct light_map *map, size_t base,
         { LIGHT_MAP_HAS_BACKS, charts_sides(map->charts) == 2 },
         { LIGHT_MAP_APPLY_DIELECTRIC, 0 },
         { LIGHT_MAP_APPLY_DIELECTRIC, 1 },
-        { LIGHT_MAP_HAS_MOVES, 0 }
+        { LIGHT_MAP_HAS_MOVES, 0 },
+        { LIGHT_MAP_APPLY_MIRRORS, 1 }
     };
-    const uint32_t still = 7u | 1u << 5, moved = 7u;
-    const struct gpu_shader *apply = apply_shader(specular);
+    const uint32_t still = 7u | 1u << 5, moved = 7u, mirrors = 7u | 1u << 6;
+    const struct gpu_shader *apply = apply_shader(map->specular);
     memcpy(out->constants, constants, sizeof constants);
 #define PIPELINE(thing) #thing, MEMBER(thing)
     GPU_ADD(out, base,
@@ -59,24 +61,28 @@ static void list_pipelines(const struct light_map *map, size_t base,
             { GPU_PIPELINE, PIPELINE(apply[0][1]), .shader = apply, .consts = still | 1u << 4 },
             { GPU_PIPELINE, PIPELINE(apply[1][0]), .shader = apply, .consts = moved | 1u << 3 },
             { GPU_PIPELINE, PIPELINE(apply[1][1]), .shader = apply, .consts = moved | 1u << 4 });
+    if (map->specular != LIGHT_MAP_SPECULAR) return;
+    GPU_ADD(out, base,
+            { GPU_PIPELINE, PIPELINE(mirror[0]), .shader = apply, .consts = mirrors | 1u << 3 },
+            { GPU_PIPELINE, PIPELINE(mirror[1]), .shader = apply, .consts = mirrors | 1u << 4 });
 }
 
-void light_map_list(const struct light_map *map, size_t base, enum light_map_specular specular,
-                    struct gpu_objects *out)
+void light_map_list(const struct light_map *map, size_t base, struct gpu_objects *out)
 {
     GPU_ADD(out, base, { GPU_SAMPLER, "light_map", .member = MEMBER(linear) });
     if (!map->charts || map->charts->side_texel_count == 0) return;
     const struct gpu_image_desc image = light_map_image(map->charts, "light_map", LIGHT_MAP_LAYERS);
-    const struct gpu_image_desc mirrored = light_map_image(map->charts, "mirrored", 1);
+    const struct gpu_image_desc reflected = light_map_image(map->charts, "reflected", 1);
     GPU_ADD(out, base, { GPU_IMAGE, "light_map", MEMBER(images[0]), .image = image },
             { GPU_IMAGE, "light_map", MEMBER(images[1]), .image = image });
-    if (specular == LIGHT_MAP_MIRRORED)
-        GPU_ADD(out, base, { GPU_IMAGE, "mirrored", MEMBER(mirrored), .image = mirrored });
-    list_pipelines(map, base, specular, out);
+    if (map->specular == LIGHT_MAP_REFLECTED)
+        GPU_ADD(out, base, { GPU_IMAGE, "reflected", MEMBER(reflected), .image = reflected });
+    list_pipelines(map, base, out);
     // Created by light_map_upload.
     GPU_ADD(out, base, { GPU_IMAGE, .member = MEMBER(owners) },
             { GPU_IMAGE, .member = MEMBER(seam_places) },
             { GPU_IMAGE, .member = MEMBER(seam_rows) },
+            { GPU_IMAGE, .member = MEMBER(visible_sky) },
             { GPU_BUFFER, .member = MEMBER(surfaces.first) },
             { GPU_BUFFER, .member = MEMBER(surfaces.triangles) });
 }
@@ -118,14 +124,8 @@ static bool upload_triangles(struct light_map *map, uint32_t instances)
            ok;
 }
 
-// Rows of the places beside seams, which the charts have.
-struct rows {
-    const uint32_t *texel;
-    const float *weight;
-};
-
 static bool find_rows(const struct light_map *map, const struct tensors *bake, uint32_t places,
-                      struct rows *out)
+                      struct light_map_seam_rows *out)
 {
     const uint64_t shape[2] = { light_map_rows(places), CHART_SEAM_ENTRIES };
     out->texel = tensors_expect(map->host, bake, LIGHT_MAP_SEAM_TEXEL, TENSOR_U32, 2, shape);
@@ -138,7 +138,8 @@ static bool find_rows(const struct light_map *map, const struct tensors *bake, u
     return true;
 }
 
-static bool upload_rows(struct light_map *map, const struct rows *from, const uint32_t *shown)
+static bool upload_rows(struct light_map *map, const struct light_map_seam_rows *from,
+                        const uint32_t *shown)
 {
     const size_t places = map->seam_count, entries = CHART_SEAM_ENTRIES;
     const size_t count = places * entries / LIGHT_MAP_PAIR;
@@ -163,14 +164,17 @@ static bool upload_places(struct light_map *map, const struct chart_seams *seams
 }
 
 bool light_map_upload(struct light_map *map, uint32_t instances, const uint32_t *shown,
-                      const struct tensors *bake)
+                      const float *sky, const struct tensors *bake)
 {
     struct chart_seams seams;
-    struct rows rows;
+    struct light_map_seam_rows rows;
     if (!charts_seams_init(&seams, map->charts, CHART_SEAM_POINTS)) return false;
     const bool ok = find_rows(map, bake, seams.count, &rows) && upload_owners(map, shown) &&
                     upload_places(map, &seams) && upload_rows(map, &rows, shown) &&
-                    upload_triangles(map, instances);
+                    upload_triangles(map, instances) &&
+                    (map->specular == LIGHT_MAP_DIFFUSE ||
+                     light_map_upload_visible_sky(map->host, map->gpu, map->charts, &seams, &rows,
+                                                  shown, sky, &map->visible_sky));
     charts_seams_finish(&seams);
     return ok;
 }
@@ -181,7 +185,7 @@ uint64_t light_map_bytes(uint64_t texels)
     const uint64_t places = texels * 3 / 2;
     return texels * sizeof(struct light_map_triangle) + light_map_table_bytes(1, 16) +
            light_map_table_bytes(1, 4) + light_map_table_bytes(places, 8) +
-           2 * 8 * LIGHT_MAP_LAYERS * places;
+           8 * (2 * LIGHT_MAP_LAYERS + 1) * places;
 }
 
 // ---- passes
@@ -253,10 +257,19 @@ void light_map_record_all(struct light_map *map, struct gpu_cmd *cmd, gpu_image 
     gpu_scope_end(cmd);
 }
 
-void light_map_record_mirrored(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
-                               bool seams)
+void light_map_record_reflected(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
+                                bool seams)
 {
-    record_whole(map, cmd, (struct shown){ light, map->mirrored, 1 }, seams);
+    record_whole(map, cmd, (struct shown){ light, map->reflected, 1 }, seams);
+}
+
+// One variant for all scenes mirrors the environment: few have both its map and moved instances.
+static gpu_pipeline apply_of(const struct light_map *map, const struct frame_view *view)
+{
+    const bool dielectric = view->layers[FRAME_DIELECTRIC].id != 0;
+    if (map->specular == LIGHT_MAP_SPECULAR && view->constants->environment_scale > 0.0f)
+        return map->mirror[dielectric];
+    return map->apply[map->surfaces.moves != NULL][dielectric];
 }
 
 void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
@@ -269,11 +282,13 @@ void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
     };
     gpu_scope_begin(cmd, "apply");
     gpu_dispatch(
-        cmd, map->apply[map->surfaces.moves != NULL][layers[FRAME_DIELECTRIC].id != 0],
-        GPU_BIND(FRAME_SURFACE_BINDINGS(view), { .name = "id", .image = layers[FRAME_ID] },
+        cmd, apply_of(map, view),
+        GPU_BIND(FRAME_SURFACE_BINDINGS(view), view->environment_binding,
+                 { .name = "id", .image = layers[FRAME_ID] },
                  LIGHT_MAP_SURFACE_BINDINGS(&map->surfaces, cmd),
                  { .name = "light_map", .image = map->images[map->shown], .sampler = map->linear },
-                 { .name = "mirrored", .image = map->mirrored, .sampler = map->linear },
+                 { .name = "reflected_map", .image = map->reflected, .sampler = map->linear },
+                 { .name = "visible_sky", .image = map->visible_sky, .sampler = map->linear },
                  { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
                  { .name = "specular", .image = layers[FRAME_SPECULAR] }),
         &push, sizeof push, gpu_groups(view->width, map->apply_width),

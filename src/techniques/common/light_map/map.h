@@ -8,42 +8,45 @@
 struct frame_view;
 struct tensors;
 
+// How pixels get specular light.
+enum light_map_specular {
+    LIGHT_MAP_DIFFUSE,   // none
+    LIGHT_MAP_SPECULAR,  // of the map's light, and of the environment that it sees
+    LIGHT_MAP_REFLECTED, // that of texels, light_map_record_reflected
+};
+
 struct light_map {
     struct host *host;
     struct gpu *gpu;
     const struct charts *charts; // stay where they are
+    enum light_map_specular specular;
     struct light_map_surfaces surfaces;
     gpu_image owners;                 // places and the texels whose light they show
     gpu_image seam_places, seam_rows; // places beside seams and their sums
     uint32_t owner_count, seam_count; // of places
+    gpu_image visible_sky;            // if `specular` (visible_sky.h)
     gpu_image images[2];              // a map appears whole: one is shown, the other is written
     int shown;                        // of the images
-    gpu_image mirrored;               // with LIGHT_MAP_MIRRORED, of the newest view
+    gpu_image reflected;              // with LIGHT_MAP_REFLECTED, of the newest view
     gpu_sampler linear;
     gpu_pipeline show, seams;
     gpu_pipeline apply[2][2];           // [with moves][whether there is FRAME_DIELECTRIC]
+    gpu_pipeline mirror[2];             // of `apply` if `specular`, and with the environment's map
     uint32_t apply_width, apply_height; // of their workgroups
-};
-
-// How pixels get specular light.
-enum light_map_specular {
-    LIGHT_MAP_DIFFUSE,  // none
-    LIGHT_MAP_SPECULAR, // of the map's light
-    LIGHT_MAP_MIRRORED, // that of texels, light_map_record_mirrored
 };
 
 // charts: may be empty yet; made before the other functions are called.
 void light_map_init(struct light_map *out, struct host *host, struct gpu *gpu,
-                    const struct charts *charts);
+                    const struct charts *charts, enum light_map_specular specular);
 // Adds the objects of a map at this offset of the state, none of an empty scene but the sampler.
 // The constants 0 … LIGHT_MAP_CONSTANTS − 1 of the table are the map's.
-enum { LIGHT_MAP_CONSTANTS = 6 };
-void light_map_list(const struct light_map *map, size_t base, enum light_map_specular specular,
-                    struct gpu_objects *out);
+enum { LIGHT_MAP_CONSTANTS = 7 };
+void light_map_list(const struct light_map *map, size_t base, struct gpu_objects *out);
 // Tables of the charts and of the seams of a bake, which is untrusted. instances: of the scene.
-// shown: [side_texel_count] whose light each texel shows (charts_fill).
+// shown: [side_texel_count] whose light each texel shows (charts_fill). sky: [side_texel_count][4]
+// what a texel sees of the sky, as struct light_map_texels has it.
 bool light_map_upload(struct light_map *map, uint32_t instances, const uint32_t *shown,
-                      const struct tensors *bake);
+                      const float *sky, const struct tensors *bake);
 // Approximate bytes on the GPU of a map whose sides have so many texels.
 uint64_t light_map_bytes(uint64_t texels);
 
@@ -57,8 +60,8 @@ void light_map_record_seams(const struct light_map *map, struct gpu_cmd *cmd, gp
 void light_map_record_all(struct light_map *map, struct gpu_cmd *cmd, gpu_image light, bool seams);
 // The radiance that the specular lobes of texels reflect towards a view. light: [texel], four
 // halves each.
-void light_map_record_mirrored(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
-                               bool seams);
+void light_map_record_reflected(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
+                                bool seams);
 // Irradiance and specular light of a view's pixels, from the map that is shown. Needs FRAME_ID.
 void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
                             const struct frame_view *view);

@@ -60,10 +60,12 @@ struct light_map_apply_push {
     AG_STRUCT(light_map_instances) instances;
 };
 
-// Specialization constants: the size of a workgroup in pixels; whether there is FRAME_DIELECTRIC.
+// Specialization constants: the size of a workgroup in pixels; whether there is FRAME_DIELECTRIC;
+// whether the environment has a map.
 #define LIGHT_MAP_APPLY_WIDTH      0
 #define LIGHT_MAP_APPLY_HEIGHT     1
 #define LIGHT_MAP_APPLY_DIELECTRIC 2
+#define LIGHT_MAP_APPLY_MIRRORS    3
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct light_map_sources) == 12, "layout is shared with GLSL");

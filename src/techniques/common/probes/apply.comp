@@ -18,7 +18,7 @@
 #include "core/basis.glsl"
 #include "techniques/common/light_map/table.glsl"
 #else
-#include "techniques/common/light_map/lobe.glsl"
+#include "frame/lobe.glsl"
 #endif
 #include "techniques/common/probes/apply_shared.h"
 

@@ -1,16 +1,8 @@
 // One cone per pixel along the mirror direction, with the width of the specular lobe (Hong 2015,
 // sec. 2.5.3.3.7; Crassin et al. 2011), times the directional albedo of the GGX BRDF.
 //
-// Differs from the paper: the lobe is glTF's GGX, not Phong's. At normal incidence half of the
-// half-vectors have tan θ < α, as the distribution D cos θ dω has the CDF t²/(t² + α²) in t = tan
-// θ. Reflection doubles the angle, so half of the reflected light comes from within
-//     2 atan α (1)
-// of the mirror direction. A uniform cone of this half-angle, 1/(π (2α)²) per sr, also has the peak
-// of the lobe, D(0)/4 = 1/(4πα²) per sr, for small α.
-//
-// A rough surface needs no cone. From a roughness of 0.8 on, the lobe has the width of a
-// cosine-weighted hemisphere, by the length of its mean direction, and is centred near the normal:
-// its radiance is E/π of the diffuse cones. In between both are blended.
+// Differs from the paper: the lobe is glTF's GGX, not Phong's (frame/lobe.glsl). A rough surface
+// needs no cone: its radiance is E/π of the diffuse cones. In between both are blended.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -19,6 +11,7 @@
 #define GGX_ALBEDO_BINDING      9
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
+#include "frame/lobe.glsl"
 #include "techniques/vct/vct_constants.h"
 layout(constant_id = VCT_CONSTANT_MAP) const bool VCT_HAS_MAP = false;
 #define ENVIRONMENT_MAP_BINDING 19
@@ -48,12 +41,10 @@ layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D specular;
 // Tangent of the half-angle: a cone wider than 45° is no better resolved by the texels.
 const float WIDEST = 1.0;
 
-const float ROUGH_FROM = 0.6, ROUGH = 0.8; // roughness
-
 float tan_half_angle(float alpha)
 {
     if (set.tan_half > 0.0) return min(set.tan_half, WIDEST);
-    return alpha < 1.0 ? min(2.0 * alpha / (1.0 - alpha * alpha), WIDEST) : WIDEST; // (1)
+    return lobe_tan_half_angle(alpha, WIDEST);
 }
 
 // Mirror direction, lifted to the horizon where a normal map bends it below the surface.
@@ -72,7 +63,7 @@ vec3 reflected_radiance(ivec2 pixel, float z)
     vec3 at = (position - clips.origin_m) / set.texel_m;
     float tan_half = tan_half_angle(brdf_alpha(roughness_metallic.x));
     float width = 2.0 * set.step_size * tan_half;
-    float rough = smoothstep(ROUGH_FROM, ROUGH, roughness_metallic.x);
+    float rough = lobe_roughness(roughness_metallic.x);
     if (set.tan_half > 0.0) rough = 0.0;
     vec3 radiance = texelFetch(irradiance, pixel, 0).rgb / PI;
     if (rough < 1.0) {
