@@ -319,6 +319,13 @@ static bool prepare_layers(struct frame *f, const struct frame_input *input, uin
            gbuffer_prepare(&f->common->gbuffer, f->gpu, f->common->scene.variants_used, optional);
 }
 
+static uint32_t needs_of(const struct frame *f, const struct frame_indirect *indirect)
+{
+    const uint32_t needs = indirect ? indirect->needs : 0;
+    const bool mirrors = needs & FRAME_WRITES_SPECULAR_OF_MAP && f->common->environment.map;
+    return needs | (mirrors ? FRAME_WRITES_SPECULAR : 0);
+}
+
 bool frame_prepare(struct frame *f, const struct frame_input *input,
                    const struct frame_indirect *indirect)
 {
@@ -340,7 +347,7 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
         return false;
     if (input->pick) f->pinned |= 1u << FRAME_ID; // only the first pick creates the image
     const uint32_t kept = kept_layers(f, input);
-    f->needs = (indirect ? indirect->needs : 0) |
+    f->needs = needs_of(f, indirect) |
                (input->want_motion_layer || kept >> FRAME_MOTION & 1u ? FRAME_NEEDS_MOTION : 0) |
                (input->want_id_layer || input->pick ? FRAME_NEEDS_ID : 0);
     f->own = f->view_number ? kept | frame_kept_layers(input) : ~0u;

@@ -163,6 +163,8 @@ enum frame_need {
     // neither. With E ≥ 0, FRAME_COLOR is at least −2⁻¹⁰ of direct, which is rounding. Visibility
     // below 1 scales the difference, and so keeps a share of the reflection.
     FRAME_NEEDS_DIRECT_IRRADIANCE = 512,
+    // As FRAME_WRITES_SPECULAR while the environment has a map, and nothing without one.
+    FRAME_WRITES_SPECULAR_OF_MAP = 1024,
 };
 
 struct frame_indirect {

@@ -29,6 +29,7 @@ static const struct option_row option_rows[] = {
 struct ambient {
     struct ambient_options options;
     gpu_pipeline sum, total, fill;
+    gpu_pipeline mirror; // of `fill`, with specular light, if the option `specular` is set
     gpu_buffer partials; // vec3 each: scaled lumen
     gpu_buffer result;   // vec3: scaled lux
 };
@@ -42,13 +43,18 @@ static const float MEAN_PATH = 2.0f / 3.0f; // over the distance along the norma
 static void ambient_objects(const void *options, int view, uint32_t width, uint32_t height,
                             struct gpu_objects *out)
 {
-    (void)options, (void)view, (void)width, (void)height;
+    const struct ambient_options *o = options;
+    (void)view, (void)width, (void)height;
     GPU_ADD(out, 0,
             { GPU_BUFFER, "partials", MEMBER(partials), .bytes = AMBIENT_GROUPS * VEC3_BYTES },
             { GPU_BUFFER, "result", MEMBER(result), .bytes = VEC3_BYTES },
             { GPU_PIPELINE, "sum", MEMBER(sum), .shader = &shader_ambient_sum_comp },
             { GPU_PIPELINE, "total", MEMBER(total), .shader = &shader_ambient_total_comp },
-            { GPU_PIPELINE, "fill", MEMBER(fill), .shader = &shader_ambient_fill_comp });
+            { GPU_PIPELINE, "fill", MEMBER(fill), .shader = &shader_ambient_fill_diffuse_comp });
+    if (o->specular)
+        GPU_ADD(out, 0,
+                { GPU_PIPELINE, "mirror", MEMBER(mirror),
+                  .shader = &shader_ambient_fill_specular_comp });
 }
 
 // 1/m³; 0 for a flat or empty box, which has no mean path.
@@ -74,6 +80,7 @@ static struct ambient_push push_of(const struct ambient *ambient, const struct f
         .blocks = across * across * (uint32_t)view->rsm_face_count,
         .width = view->width,
         .height = view->height,
+        .has_dielectric = view->layers[FRAME_DIELECTRIC].id != 0,
     };
 }
 
@@ -101,15 +108,21 @@ static void ambient_record(void *state, struct gpu_cmd *cmd, const struct frame_
     struct ambient *ambient = state;
     const struct ambient_push push = push_of(ambient, view);
     const struct gpu_binding result = { .name = "ambient_result", .buffer = ambient->result };
+    const bool mirrors = ambient->options.specular && view->environment->map;
     gpu_scope_begin(cmd, "fill");
-    gpu_dispatch(cmd, ambient->fill,
-                 GPU_BIND(result, view->constants_binding,
-                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-                          { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                          { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+    gpu_dispatch(cmd, mirrors ? ambient->mirror : ambient->fill,
+                 GPU_BIND(result, FRAME_SURFACE_BINDINGS(view), view->environment_binding,
+                          { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] },
+                          { .name = "specular", .image = view->layers[FRAME_SPECULAR] }),
                  &push, sizeof push, gpu_groups(view->width, LOCAL),
                  gpu_groups(view->height, LOCAL), 1);
     gpu_scope_end(cmd);
+}
+
+static uint32_t more_needs(const void *options)
+{
+    const struct ambient_options *o = options;
+    return o->specular ? FRAME_WRITES_SPECULAR_OF_MAP : 0;
 }
 
 const struct technique technique_ambient = {
@@ -117,10 +130,11 @@ const struct technique technique_ambient = {
     .title = "uniform ambient irradiance from the reflected flux",
     .paper = "mean fluence in a box, mean chord after Cauchy; flux as in Martin 2012, sec. 3.1",
     .role = ROLE_SOURCE,
-    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | GATHERS_EMISSION,
+    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | MAKES_SPECULAR | GATHERS_EMISSION,
     .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,
     .options = OPTION_TABLE(struct ambient_options, option_rows, NULL),
     .state_size = sizeof(struct ambient),
+    .more_needs = more_needs,
     .objects = ambient_objects,
     .update = ambient_update,
     .record = ambient_record,

@@ -1,11 +1,19 @@
 // Writes the irradiance to every pixel with a surface: that of the scene's flux, the same
-// everywhere, and the environment's by the normal.
+// everywhere, and the environment's by the normal. SPECULAR: also the mean of the environment over
+// the specular lobe.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
 #include "core/half.glsl"
 #define FRAME_CONSTANTS_BINDING 3
+#if SPECULAR
+#define GGX_ALBEDO_BINDING      5
+#define ENVIRONMENT_MAP_BINDING 6
+#include "frame/brdf.glsl"
+#include "frame/environment_map.glsl"
+#include "frame/lobe.glsl"
+#endif
 #include "frame/environment.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/ambient/ambient_shared.h"
@@ -23,15 +31,45 @@ layout(set = 0, binding = 0, scalar) readonly buffer ambient_result
 layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 4) uniform sampler2D normal;
 layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D irradiance;
+#if SPECULAR
+layout(set = 0, binding = 7) uniform sampler2D albedo;
+layout(set = 0, binding = 8) uniform sampler2D material;
+layout(set = 0, binding = 9) uniform sampler2D dielectric; // FRAME_DIELECTRIC if `has_dielectric`
+layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D specular;
+
+// irradiance: of the environment at the normal.
+vec3 reflected(ivec2 pixel, float z, vec3 n, vec3 irradiance)
+{
+    vec4 coat = BRDF_DEFAULT_DIELECTRIC;
+    if (push.has_dielectric != 0u) coat = texelFetch(dielectric, pixel, 0);
+    brdf_material m =
+        brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, coat);
+    vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
+    vec3 to_viewer = normalize(frame.camera_position - position);
+    float alpha = brdf_alpha(m.roughness);
+    vec3 lobe = environment_lobe(lobe_mean(n, to_viewer, alpha), lobe_deviation(alpha));
+    vec3 radiance = mix(lobe, INV_PI * irradiance, lobe_roughness(m.roughness));
+    return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
+           min(push.strength * radiance, vec3(HALF_MAX));
+}
+#endif
 
 void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(push.width, push.height)))) return;
-    vec3 sum = vec3(0.0);
-    if (texelFetch(depth, pixel, 0).r > 0.0) {
+    float z = texelFetch(depth, pixel, 0).r;
+    vec3 sum = vec3(0.0), radiance = vec3(0.0);
+    if (z > 0.0) {
         vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-        sum = min(everywhere + push.strength * environment_irradiance_at(n), vec3(HALF_MAX));
+        vec3 environment = environment_irradiance_at(n);
+        sum = min(everywhere + push.strength * environment, vec3(HALF_MAX));
+#if SPECULAR
+        radiance = reflected(pixel, z, n, environment);
+#endif
     }
     imageStore(irradiance, pixel, vec4(sum, 1.0));
+#if SPECULAR
+    imageStore(specular, pixel, vec4(radiance, 1.0));
+#endif
 }

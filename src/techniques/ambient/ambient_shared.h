@@ -14,14 +14,15 @@ struct ambient_push {
     float per_path; // 1/m³: irradiance per flux and path length; 0 if the bounds have no volume
     vec3s box_min, box_max; // bounds of the scene
     float strength;
-    uint32_t rsm_size;      // texels
-    uint32_t blocks_across; // blocks in a row of a reflective shadow map
-    uint32_t blocks;        // in all reflective shadow maps
-    uint32_t width, height; // of the frame, pixels
+    uint32_t rsm_size;       // texels
+    uint32_t blocks_across;  // blocks in a row of a reflective shadow map
+    uint32_t blocks;         // in all reflective shadow maps
+    uint32_t width, height;  // of the frame, pixels
+    uint32_t has_dielectric; // bool: there is FRAME_DIELECTRIC
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct ambient_push) == 16 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct ambient_push) == 17 * 4, "layout is shared with GLSL");
 #endif
 
 #endif
