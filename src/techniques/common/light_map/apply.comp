@@ -27,7 +27,9 @@ layout(constant_id = LIGHT_MAP_APPLY_MIRRORS) const bool MIRRORS = false;
 #include "techniques/common/light_map/mirror.glsl"
 #endif
 
-// A processor's caches fetch the next lines of memory ahead: there, a workgroup is a row of pixels.
+// A processor's caches fetch the next lines of memory ahead: there, a workgroup is wide, and each
+// invocation has a column of pixels.
+layout(constant_id = LIGHT_MAP_APPLY_ROWS) const uint ROWS = 1;
 layout(local_size_x_id = LIGHT_MAP_APPLY_WIDTH, local_size_y_id = LIGHT_MAP_APPLY_HEIGHT) in;
 layout(constant_id = LIGHT_MAP_APPLY_DIELECTRIC) const bool HAS_DIELECTRIC = false;
 
@@ -83,31 +85,52 @@ vec3 reflected(ivec2 pixel, light_map_surface s, light_map_light light, vec3 pla
 }
 #endif
 
+void store(ivec2 pixel, vec3 light, vec3 radiance, bool mapped)
+{
+    imageStore(irradiance, pixel, vec4(light, mapped ? 1.0 : 0.0));
+#if SPECULAR
+    imageStore(specular, pixel, vec4(radiance, 1.0));
+#endif
+}
+
+void light_surface(ivec2 pixel)
+{
+    vec2 uv = (vec2(pixel) + 0.5) * vec2(push.per_view_width, push.per_view_height);
+    float z = texelFetch(depth, pixel, 0).r;
+    vec3 position = frame.camera_position + frame_view_distance(z) * frame_view_ray(uv);
+    vec3 n = unit(octahedral_direction(texelFetch(normal, pixel, 0).rg));
+    light_map_surface s = light_map_surface(position, n, frame.camera_position);
+    vec3 place = light_map_place_of(texelFetch(id, pixel, 0).rg, push.instances, s);
+    vec2 per_size = vec2(push.per_width, push.per_height);
+    light_map_light light = light_map_light(vec3(0.0), mat3(0.0));
+    vec3 radiance = vec3(0.0);
+    bool mapped = place.z >= 0.0;
+    if (mapped) light = light_map_lookup(light_map, per_size, place, s.normal);
+#if SPECULAR
+    radiance = reflected(pixel, s, light, place);
+#endif
+    store(pixel, light.irradiance, radiance, mapped);
+}
+
+// Pixels of a column without a surface cost a lookup of their depth, and where invocations side by
+// side have none, no more: a driver on a processor runs both sides of a branch, but no loop that no
+// invocation is in.
 void main()
 {
     frame = frame_block;
     push = push_of_all;
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
-    float z = texelFetch(depth, pixel, 0).r;
-    light_map_light light = light_map_light(vec3(0.0), mat3(0.0));
-    vec3 radiance = vec3(0.0);
-    bool mapped = true;
-    if (z > 0.0) {
-        vec2 uv = (vec2(pixel) + 0.5) * vec2(push.per_view_width, push.per_view_height);
-        vec3 position = frame.camera_position + frame_view_distance(z) * frame_view_ray(uv);
-        vec3 n = unit(octahedral_direction(texelFetch(normal, pixel, 0).rg));
-        light_map_surface s = light_map_surface(position, n, frame.camera_position);
-        vec3 place = light_map_place_of(texelFetch(id, pixel, 0).rg, push.instances, s);
-        vec2 per_size = vec2(push.per_width, push.per_height);
-        mapped = place.z >= 0.0;
-        if (mapped) light = light_map_lookup(light_map, per_size, place, s.normal);
-#if SPECULAR
-        radiance = reflected(pixel, s, light, place);
-#endif
+    ivec2 first = ivec2(gl_GlobalInvocationID.xy) * ivec2(1, ROWS);
+    int rows = min(int(ROWS), int(frame.height) - first.y);
+    uint surfaces = 0u;
+    if (first.x >= int(frame.width)) return;
+    for (int row = 0; row < rows; row++) {
+        ivec2 pixel = first + ivec2(0, row);
+        bool surface = texelFetch(depth, pixel, 0).r > 0.0;
+        if (surface) surfaces |= 1u << row;
+        if (!surface) store(pixel, vec3(0.0), vec3(0.0), true);
     }
-    imageStore(irradiance, pixel, vec4(light.irradiance, mapped ? 1.0 : 0.0));
-#if SPECULAR
-    imageStore(specular, pixel, vec4(radiance, 1.0));
-#endif
+    while (surfaces != 0u) {
+        light_surface(first + ivec2(0, findLSB(surfaces)));
+        surfaces &= surfaces - 1u;
+    }
 }

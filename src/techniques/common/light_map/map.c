@@ -14,14 +14,15 @@ void light_map_init(struct light_map *out, struct host *host, struct gpu *gpu,
                     const struct charts *charts, enum light_map_specular specular)
 {
     enum { LOCAL_2D = 8 };
-    // Rows of pixels suit the caches of a processor, squares those of a GPU.
-    const bool rows = gpu_info(gpu)->type == GPU_CPU;
+    // Wide workgroups suit the caches of a processor, squares those of a GPU.
+    const bool wide = gpu_info(gpu)->type == GPU_CPU;
     *out = (struct light_map){ .host = host,
                                .gpu = gpu,
                                .charts = charts,
                                .specular = specular,
-                               .apply_width = rows ? 64 : LOCAL_2D,
-                               .apply_height = rows ? 1 : LOCAL_2D };
+                               .apply_width = wide ? 64 : LOCAL_2D,
+                               .apply_height = wide ? 1 : LOCAL_2D,
+                               .apply_rows = wide ? 8 : 1 };
 }
 
 #define MEMBER(thing) offsetof(struct light_map, thing)
@@ -44,27 +45,28 @@ static void list_pipelines(const struct light_map *map, size_t base, struct gpu_
     const struct gpu_constant constants[LIGHT_MAP_CONSTANTS] = {
         { LIGHT_MAP_APPLY_WIDTH, map->apply_width },
         { LIGHT_MAP_APPLY_HEIGHT, map->apply_height },
+        { LIGHT_MAP_APPLY_ROWS, map->apply_rows },
         { LIGHT_MAP_HAS_BACKS, charts_sides(map->charts) == 2 },
         { LIGHT_MAP_APPLY_DIELECTRIC, 0 },
         { LIGHT_MAP_APPLY_DIELECTRIC, 1 },
         { LIGHT_MAP_HAS_MOVES, 0 },
         { LIGHT_MAP_APPLY_MIRRORS, 1 }
     };
-    const uint32_t still = 7u | 1u << 5, moved = 7u, mirrors = 7u | 1u << 6;
+    const uint32_t moved = 15u, still = moved | 1u << 6, mirrors = moved | 1u << 7;
     const struct gpu_shader *apply = apply_shader(map->specular);
     memcpy(out->constants, constants, sizeof constants);
 #define PIPELINE(thing) #thing, MEMBER(thing)
     GPU_ADD(out, base,
             { GPU_PIPELINE, PIPELINE(show), .shader = &shader_common_light_map_show_comp },
             { GPU_PIPELINE, PIPELINE(seams), .shader = &shader_common_light_map_seams_comp },
-            { GPU_PIPELINE, PIPELINE(apply[0][0]), .shader = apply, .consts = still | 1u << 3 },
-            { GPU_PIPELINE, PIPELINE(apply[0][1]), .shader = apply, .consts = still | 1u << 4 },
-            { GPU_PIPELINE, PIPELINE(apply[1][0]), .shader = apply, .consts = moved | 1u << 3 },
-            { GPU_PIPELINE, PIPELINE(apply[1][1]), .shader = apply, .consts = moved | 1u << 4 });
+            { GPU_PIPELINE, PIPELINE(apply[0][0]), .shader = apply, .consts = still | 1u << 4 },
+            { GPU_PIPELINE, PIPELINE(apply[0][1]), .shader = apply, .consts = still | 1u << 5 },
+            { GPU_PIPELINE, PIPELINE(apply[1][0]), .shader = apply, .consts = moved | 1u << 4 },
+            { GPU_PIPELINE, PIPELINE(apply[1][1]), .shader = apply, .consts = moved | 1u << 5 });
     if (map->specular != LIGHT_MAP_SPECULAR) return;
     GPU_ADD(out, base,
-            { GPU_PIPELINE, PIPELINE(mirror[0]), .shader = apply, .consts = mirrors | 1u << 3 },
-            { GPU_PIPELINE, PIPELINE(mirror[1]), .shader = apply, .consts = mirrors | 1u << 4 });
+            { GPU_PIPELINE, PIPELINE(mirror[0]), .shader = apply, .consts = mirrors | 1u << 4 },
+            { GPU_PIPELINE, PIPELINE(mirror[1]), .shader = apply, .consts = mirrors | 1u << 5 });
 }
 
 void light_map_list(const struct light_map *map, size_t base, struct gpu_objects *out)
@@ -292,6 +294,6 @@ void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
                  { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
                  { .name = "specular", .image = layers[FRAME_SPECULAR] }),
         &push, sizeof push, gpu_groups(view->width, map->apply_width),
-        gpu_groups(view->height, map->apply_height), 1);
+        gpu_groups(view->height, map->apply_height * map->apply_rows), 1);
     gpu_scope_end(cmd);
 }

@@ -30,9 +30,9 @@ struct light_map {
     gpu_image reflected;              // with LIGHT_MAP_REFLECTED, of the newest view
     gpu_sampler linear;
     gpu_pipeline show, seams;
-    gpu_pipeline apply[2][2];           // [with moves][whether there is FRAME_DIELECTRIC]
-    gpu_pipeline mirror[2];             // of `apply` if `specular`, and with the environment's map
-    uint32_t apply_width, apply_height; // of their workgroups
+    gpu_pipeline apply[2][2]; // [with moves][whether there is FRAME_DIELECTRIC]
+    gpu_pipeline mirror[2];   // of `apply` if `specular`, and with the environment's map
+    uint32_t apply_width, apply_height, apply_rows; // of their workgroups, of an invocation
 };
 
 // charts: may be empty yet; made before the other functions are called.
@@ -40,7 +40,7 @@ void light_map_init(struct light_map *out, struct host *host, struct gpu *gpu,
                     const struct charts *charts, enum light_map_specular specular);
 // Adds the objects of a map at this offset of the state, none of an empty scene but the sampler.
 // The constants 0 … LIGHT_MAP_CONSTANTS − 1 of the table are the map's.
-enum { LIGHT_MAP_CONSTANTS = 7 };
+enum { LIGHT_MAP_CONSTANTS = 8 };
 void light_map_list(const struct light_map *map, size_t base, struct gpu_objects *out);
 // Tables of the charts and of the seams of a bake, which is untrusted. instances: of the scene.
 // shown: [side_texel_count] whose light each texel shows (charts_fill). sky: [side_texel_count][4]
