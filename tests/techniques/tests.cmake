@@ -20,6 +20,7 @@ ag_test(techniques/kept USES techniques)
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
 ag_test(techniques/light_trials USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)
 ag_test(techniques/environment_trials USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
+ag_test(techniques/environment_mirror USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
 ag_test(techniques/radiosity_corridor USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
 ag_test(techniques/probe_trials USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
 ag_shaders_for(test_techniques_probe_trials techniques_test_shaders.h ${CMAKE_CURRENT_LIST_DIR}/shaders)
@@ -30,6 +31,6 @@ foreach(technique lpv vct mrt dnrt ort prt)
 endforeach()
 
 # Every option of every technique, or pipelines of many grids: minutes alone, more beside others.
-set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct.clip_light techniques.light_trials techniques.environment_trials techniques.radiosity_corridor
+set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct.clip_light techniques.light_trials techniques.environment_trials techniques.environment_mirror techniques.radiosity_corridor
   techniques.dnrt.frame
   PROPERTIES TIMEOUT 900)
