@@ -66,10 +66,12 @@ void prt_record_reflect(struct prt *s, struct gpu_cmd *cmd, const struct frame_v
 {
     const uint32_t texels = s->charts.side_texel_count, rows = prt_codebook_rows(&s->options);
     const struct prt_reflect_push push = { view->constants->camera_position, texels,
-                                           rows > 0 ? rows : texels, emitters(s, view) };
+                                           rows > 0 ? rows : texels, emitters(s, view),
+                                           prt_coefficients(&s->options) };
     gpu_scope_begin(cmd, "reflect");
     gpu_dispatch(cmd, s->pipelines.reflect,
-                 GPU_BIND(TRANSFER_BINDINGS(s, &s->tables.matrices, cmd),
+                 GPU_BIND(TRANSFER_BINDINGS(s, &s->tables.matrices, cmd), view->constants_binding,
+                          view->environment_binding,
                           { .name = "texel_radiance", .image = s->tables.texel_radiance }),
                  &push, sizeof push, gpu_groups(texels, PRT_LOCAL), 1, 1);
     light_map_record_reflected(&s->light_map, cmd, s->tables.texel_radiance, s->options.seams);

@@ -9,9 +9,18 @@
 #include "core/half.glsl"
 #include "core/math.glsl"
 #include "core/sh.glsl"
+#define FRAME_CONSTANTS_BINDING 6
+#define ENVIRONMENT_MAP_BINDING 7
+#include "frame/brdf.glsl"
+#include "frame/environment_map.glsl"
+#include "frame/lobe.glsl"
 #include "techniques/common/light_map/lookup.glsl"
 #if PRT_COMPRESSED
 #include "techniques/prt/prt_clusters.glsl"
+layout(set = 0, binding = 5, scalar) uniform prt_light_block
+{
+    prt_light light;
+};
 #else
 #include "techniques/prt/prt_transfer.glsl"
 #endif
@@ -30,19 +39,20 @@ vec4 texel_part(uint texel, int part)
     return imageLoad(prt_texels, light_map_at(part * push.texels + texel));
 }
 
+// Radiance that a texel reflects; alpha: of the visible part of a sky of radiance 1.
 #if PRT_COMPRESSED
-vec3 row_radiance(uint row, float basis[PRT_OUTGOING])
+vec4 row_radiance(uint row, float basis[PRT_OUTGOING])
 {
-    vec3 sum = vec3(0.0);
+    vec4 sum = vec4(0.0);
     for (uint k = 0; k < PRT_OUTGOING; k++)
-        sum += basis[k] * imageLoad(prt_row_light, light_map_at(k * push.rows + row)).rgb;
+        sum += basis[k] * imageLoad(prt_row_light, light_map_at(k * push.rows + row));
     return sum;
 }
 
-vec3 texel_reflected(uint texel, float basis[PRT_OUTGOING])
+vec4 texel_reflected(uint texel, float basis[PRT_OUTGOING])
 {
     uint row = imageLoad(prt_clusters, light_map_at(texel)).x * (1u + VECTORS);
-    vec3 sum = row_radiance(row, basis);
+    vec4 sum = row_radiance(row, basis);
     for (uint k = 0; k < VECTORS; k += PRT_ROW_HALVES) {
         vec4 w = light_map_unpack(
             imageLoad(prt_weights, light_map_at(k / PRT_ROW_HALVES * push.texels + texel)).xy);
@@ -52,14 +62,42 @@ vec3 texel_reflected(uint texel, float basis[PRT_OUTGOING])
     return sum;
 }
 #else
-vec3 texel_reflected(uint texel, float basis[PRT_OUTGOING])
+vec4 texel_reflected(uint texel, float basis[PRT_OUTGOING])
 {
-    vec3 sum = vec3(0.0);
-    for (uint k = 0; k < PRT_OUTGOING; k++)
-        sum += basis[k] * prt_row_irradiance(k * push.texels + texel, PRT_OUTGOING * push.texels);
+    vec4 sum = vec4(0.0);
+    for (uint k = 0; k < PRT_OUTGOING; k++) {
+        uint row = k * push.texels + texel;
+        sum +=
+            basis[k] * vec4(prt_row_irradiance(row, PRT_OUTGOING * push.texels), prt_row_sky(row));
+    }
     return sum;
 }
 #endif
+
+// Mean of the projected environment over a lobe of this deviation: a lobe by diffusion on the
+// sphere has the zonal factors exp(−l (l + 1) σ²/2).
+vec3 projected_lobe(vec3 direction, float sigma)
+{
+    float basis[25];
+    vec3 sum = vec3(0.0);
+    sh25_eval(direction, basis);
+    for (uint i = 0u; i < push.coefficients; i++) {
+        float band = floor(sqrt(float(i) + 0.5));
+        sum += exp(-0.5 * band * (band + 1.0) * sigma * sigma) * basis[i] * light.direct[i].rgb;
+    }
+    return sum;
+}
+
+// The detail of the environment's map that its few coefficients do not have, in the mean over the
+// lobe.
+vec3 detail(vec3 normal, vec3 to_viewer, float roughness)
+{
+    if (frame.environment_scale == 0.0) return vec3(0.0);
+    float alpha = brdf_alpha(roughness), of_rows = brdf_alpha(max(roughness, PRT_LEAST_ROUGHNESS));
+    vec3 direction = normalize(lobe_mean(normal, to_viewer, alpha));
+    return (1.0 - lobe_roughness(roughness)) * (environment_lobe(direction, lobe_deviation(alpha)) -
+                                                projected_lobe(direction, lobe_deviation(of_rows)));
+}
 
 vec3 emitted(uint texel, vec3 normal, vec3 to_viewer, float roughness)
 {
@@ -77,11 +115,14 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.texels) return;
     vec4 normal = texel_part(i, TEXEL_NORMAL);
+    vec3 shading = texel_part(i, TEXEL_SHADING).xyz;
     vec3 to_viewer = normalize(push.camera - texel_part(i, TEXEL_POSITION).xyz);
     float basis[PRT_OUTGOING];
-    sh25_eval(to_viewer * basis_of(texel_part(i, TEXEL_SHADING).xyz), basis);
+    sh25_eval(to_viewer * basis_of(shading), basis);
+    vec4 reflected = texel_reflected(i, basis);
+    reflected.rgb += clamp(reflected.a, 0.0, 1.0) * detail(shading, to_viewer, normal.w);
     // Sums of few bands ring below 0.
-    vec3 radiance = max(texel_reflected(i, basis), vec3(0.0)) +
-                    max(emitted(i, normal.xyz, to_viewer, normal.w), vec3(0.0));
+    vec3 radiance =
+        max(reflected.rgb, vec3(0.0)) + max(emitted(i, normal.xyz, to_viewer, normal.w), vec3(0.0));
     imageStore(texel_radiance, light_map_at(i), uvec4(light_map_pack(vec4(radiance, 0.0)), 0u, 0u));
 }

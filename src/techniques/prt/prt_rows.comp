@@ -1,4 +1,5 @@
-// Light of each row of the codebook: means and vectors of clusters.
+// Light of each row of the codebook, means and vectors of clusters; alpha: of a visible sky of
+// radiance 1.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -17,5 +18,6 @@ void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.rows) return;
-    imageStore(prt_row_light, light_map_at(i), vec4(prt_row_irradiance(i, push.rows), 0.0));
+    imageStore(prt_row_light, light_map_at(i),
+               vec4(prt_row_irradiance(i, push.rows), prt_row_sky(i)));
 }

@@ -9,6 +9,8 @@
 // Bands and coefficients of the radiance that specular lobes reflect, by outgoing direction.
 #define PRT_OUTGOING_BANDS 5
 #define PRT_OUTGOING       25
+// Of lobes of matrices: narrower ones have more detail than these bands.
+#define PRT_LEAST_ROUGHNESS 0.3
 
 #define PRT_LOCAL 64 // workgroup size over texels
 
@@ -38,6 +40,7 @@ struct prt_reflect_push {
     vec3s camera; // world, m
     uint32_t texels, rows;
     float emitters;
+    uint32_t coefficients; // of distant light
 };
 
 struct prt_light_push {
@@ -49,7 +52,7 @@ struct prt_light_push {
 _Static_assert(sizeof(struct prt_light) == 2 * PRT_MAX_COEFFICIENTS * 16, "layout is shared with "
                                                                           "GLSL");
 _Static_assert(sizeof(struct prt_rows_push) == 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct prt_reflect_push) == 24, "layout is shared with GLSL");
+_Static_assert(sizeof(struct prt_reflect_push) == 28, "layout is shared with GLSL");
 _Static_assert(sizeof(struct prt_light_push) == 8, "layout is shared with GLSL");
 #endif
 

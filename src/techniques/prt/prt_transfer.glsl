@@ -2,6 +2,7 @@
 #ifndef AG_PRT_TRANSFER_GLSL
 #define AG_PRT_TRANSFER_GLSL
 
+#include "core/sh.glsl"
 #include "techniques/common/light_map/table.glsl"
 #include "techniques/prt/prt_shared.h"
 
@@ -32,6 +33,12 @@ vec3 prt_row_irradiance(uint row, uint rows)
         }
     }
     return sum;
+}
+
+// Of the visible part of a sky of radiance 1, without bounces.
+float prt_row_sky(uint row)
+{
+    return light_map_unpack(imageLoad(prt_transfer, light_map_at(row)).xy).x / SH_Y0;
 }
 
 #endif

@@ -9,6 +9,8 @@
 
 enum { OUTGOING_DIRECTIONS = 512 };
 
+// The first lobe, and the last minus it.
+static const float LEAST = (float)PRT_LEAST_ROUGHNESS, RANGE = 1.0f - (float)PRT_LEAST_ROUGHNESS;
 static const vec3s UP = { { 0.0f, 0.0f, 1.0f } };
 
 // The quadrature over outgoing directions: even in the solid angle.
@@ -107,8 +109,7 @@ static void weigh_rays(const struct prt_lobes *lobes, float roughness, vec3s out
 static bool fill_rows(struct prt_lobes *lobes, const struct matrix_f64 *dual, int lobe,
                       struct matrix_f64 *weights, struct matrix_f64 *rows)
 {
-    const float roughness =
-        PRT_LEAST_ROUGHNESS + (1.0f - PRT_LEAST_ROUGHNESS) * (float)lobe / (PRT_LOBES - 1);
+    const float roughness = LEAST + RANGE * (float)lobe / (PRT_LOBES - 1);
     for (uint32_t i = 0; i < OUTGOING_DIRECTIONS; i++)
         weigh_rays(lobes, roughness, outgoing_direction(i), weights->at + i * weights->stride);
     if (!matrix_f64_multiply(lobes->host, 1, dual, NOT_TRANSPOSED, weights, NOT_TRANSPOSED, 0,
@@ -154,8 +155,7 @@ void prt_lobes_finish(struct prt_lobes *lobes)
 void prt_lobes_at(const struct prt_lobes *lobes, float roughness, float *out)
 {
     const size_t count = PRT_OUTGOING * lobes->rays;
-    const float place =
-        (PRT_LOBES - 1) * (roughness - PRT_LEAST_ROUGHNESS) / (1.0f - PRT_LEAST_ROUGHNESS);
+    const float place = (PRT_LOBES - 1) * (roughness - LEAST) / RANGE;
     const float clamped = place > 0.0f ? place < PRT_LOBES - 1 ? place : PRT_LOBES - 1 : 0.0f;
     const size_t below = clamped < PRT_LOBES - 1 ? (size_t)clamped : PRT_LOBES - 2;
     const float above = clamped - (float)below, *low = lobes->rows + below * count;

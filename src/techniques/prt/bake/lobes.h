@@ -16,8 +16,6 @@
 #include <stddef.h>
 
 enum { PRT_LOBES = 8 }; // roughnesses, in equal steps
-// Of the first lobe: narrower ones have more detail than 5 bands of light.
-#define PRT_LEAST_ROUGHNESS 0.3f
 
 //
 // With the matrix G of products ⟨y_k, y_j⟩, coefficients √G m have the norm of M.
