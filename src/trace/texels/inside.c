@@ -37,3 +37,27 @@ int inside_backs(const struct trace_scene *scene, vec3s from, vec3s normal, uint
     }
     return backs;
 }
+
+// Inside of a closed solid each ray meets one back more than outside, whatever else it passes: also
+// where solids overlap, and the nearest surface is the front of another.
+int inside_crossings(const struct trace_scene *scene, vec3s from, vec3s normal)
+{
+    enum { MOST_CROSSED = 64 };
+    int sum = 0;
+    for (uint32_t k = 0; k < INSIDE_CROSSINGS; k++) {
+        struct ray ray = inside_ray(from, normal, k);
+        struct ray_hit hit;
+        for (int i = 0; i < MOST_CROSSED; i++) {
+            if (!embree_closest(scene->embree, &ray, NULL, false, &hit)) break;
+            sum += inside_side_of(scene, &ray, &hit);
+            ray.near = hit.distance * (1.0f + 0x1p-18f) + 0x1p-18f;
+        }
+    }
+    return sum;
+}
+
+bool inside_solid(const struct trace_scene *scene, vec3s from, vec3s normal)
+{
+    return is_inside(inside_backs(scene, from, normal, 0, INSIDE_RAYS), INSIDE_RAYS) ||
+           inside_crossings(scene, from, normal) > INSIDE_CROSSINGS / 2;
+}

@@ -22,3 +22,9 @@ struct ray inside_ray(vec3s from, vec3s normal, uint32_t k);
 // How many of the rays first…end − 1 meet the back of a single-sided surface.
 int inside_backs(const struct trace_scene *scene, vec3s from, vec3s normal, uint32_t first,
                  uint32_t end);
+
+enum { INSIDE_CROSSINGS = 6 }; // rays that count all surfaces
+// Backs less fronts that those rays meet up to infinity.
+int inside_crossings(const struct trace_scene *scene, vec3s from, vec3s normal);
+// Whether most rays first meet a back, or leave a solid.
+bool inside_solid(const struct trace_scene *scene, vec3s from, vec3s normal);

@@ -6,8 +6,7 @@
 #include <limits.h>
 #include <math.h>
 
-// CROSSINGS: rays that count all surfaces.
-enum { ACROSS = 8, CROSSINGS = 6, MOST_CROSSED = 64, MOST_TRIANGLES = 16 };
+enum { ACROSS = 8, MOST_TRIANGLES = 16 };
 
 struct probe {
     const struct trace_scene *scene;
@@ -28,34 +27,16 @@ static int count_backs(const struct probe *p)
     return inside_backs(p->scene, p->from, p->normal, 0, INSIDE_RAYS);
 }
 
-// Backs less fronts that the rays meet up to infinity. Inside of a closed solid each ray meets one
-// back more than outside, whatever else it passes: also where solids overlap, and the nearest
-// surface is the front of another.
 static int count_crossings(const struct probe *p)
 {
-    int sum = 0;
-    for (uint32_t k = 0; k < CROSSINGS; k++) {
-        struct ray ray = inside_ray(p->from, p->normal, k);
-        struct ray_hit hit;
-        for (int i = 0; i < MOST_CROSSED; i++) {
-            if (!embree_closest(p->scene->embree, &ray, NULL, false, &hit)) break;
-            sum += inside_side_of(p->scene, &ray, &hit);
-            ray.near = hit.distance * (1.0f + 0x1p-18f) + 0x1p-18f;
-        }
-    }
-    return sum;
-}
-
-static bool is_in_solid(const struct probe *p)
-{
-    return count_crossings(p) > CROSSINGS / 2;
+    return inside_crossings(p->scene, p->from, p->normal);
 }
 
 bool texel_is_inside(const struct trace_scene *scene, const struct charts *charts, uint32_t texel,
                      vec3s at)
 {
     const struct probe p = probe_at(scene, charts, texel, at);
-    return is_inside(count_backs(&p), INSIDE_RAYS) || is_in_solid(&p);
+    return inside_solid(scene, p.from, p.normal);
 }
 
 static vec3s point_of(const struct chart_triangle *t, float u, float v)
@@ -243,9 +224,10 @@ struct texel_point texel_find_point(const struct trace_scene *scene, const struc
     const struct texel_point middle = { t->position, 1.0f };
     const struct probe p = probe_at(scene, charts, texel, t->position);
     const int backs = count_backs(&p), crossings = count_crossings(&p);
-    if (backs == 0 && crossings <= CROSSINGS / 2) return middle;
-    const bool inside = is_inside(backs, INSIDE_RAYS) || crossings > CROSSINGS / 2;
-    const int most = crossings - CROSSINGS / 2 - 1; // of points that are outside of one solid more
+    if (backs == 0 && crossings <= INSIDE_CROSSINGS / 2) return middle;
+    const bool inside = is_inside(backs, INSIDE_RAYS) || crossings > INSIDE_CROSSINGS / 2;
+    const int most =
+        crossings - INSIDE_CROSSINGS / 2 - 1; // of points that are outside of one solid more
     try_texel(&s, t, chart, inside ? ACROSS : ACROSS / 2);
     if (least_crossings(&s) <= most) return middle_of(&s, most);
     if (!inside) return middle;
