@@ -136,7 +136,8 @@ static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *
     struct host *host = &b->context->host;
     if (!gi_spec_parse(&b->spec, host, gi) || !find_term(b, gi, desc->technique)) return false;
     b->lightmap_samples = desc->lightmap_samples;
-    if (b->lightmap_samples > 0 && !b->spec.technique[b->term]->charts)
+    if (b->lightmap_samples > 0 &&
+        !technique_has_light_map(b->spec.technique[b->term], b->spec.options[b->term]))
         return host_fail(host, FAIL_ARGUMENT, "cannot bake %s: it has no light map", gi);
     b->options = run_options(desc);
     if (!api_pose_at(b->scene, &b->pose, desc->animation, desc->time_s)) return false;

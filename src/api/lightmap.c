@@ -35,7 +35,8 @@ enum ag_result ag_lightmap_technique(struct ag_context *context, const char *gi,
     struct gi_spec spec;
     const bool ok = gi_spec_parse(&spec, &context->host, gi);
     for (int i = 0; ok && i < spec.count && !*name; i++)
-        if (spec.technique[i]->light_map) *name = spec.technique[i]->name;
+        if (technique_has_light_map(spec.technique[i], spec.options[i]))
+            *name = spec.technique[i]->name;
     gi_spec_finish(&spec);
     return api_done(context, ok);
 }

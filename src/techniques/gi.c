@@ -258,8 +258,9 @@ bool gi_light_map(const struct gi *gi, int *term, gpu_image *out)
     for (int i = 0; i < gi->spec.count; i++) {
         const struct technique *technique = gi->spec.technique[i];
         *term = i;
-        if (technique->light_map) *out = technique->light_map(gi->state[i]);
-        if (technique->light_map && out->id) return true;
+        if (!technique_has_light_map(technique, gi->spec.options[i])) continue;
+        *out = technique->light_map(gi->state[i]);
+        if (out->id) return true;
     }
     return host_fail(gi->host, FAIL_ARGUMENT, "light map: no technique of the stack has one");
 }

@@ -136,6 +136,8 @@ struct technique {
     // The light map: the charts of static surfaces (scene/statics.h), and for each side and colour
     // a layer of irradiance along the surface's normal and vector irradiance, scaled radiance,
     // RGBA16F, that the newest update filled.
+    // Options of `has_light_map` may be without; NULL: none are.
+    bool (*has_light_map)(const void *options);
     bool (*charts)(const struct scene_pose *statics, const void *options, struct host *host,
                    struct charts *out);
     gpu_image (*light_map)(void *state);
@@ -145,6 +147,12 @@ struct technique {
     // Bytes of GPU memory for these options, beside that of `objects`: of what `load` creates.
     uint64_t (*memory_estimate)(const void *options);
 };
+
+// Whether it has a light map with these options.
+static inline bool technique_has_light_map(const struct technique *technique, const void *options)
+{
+    return technique->light_map && (!technique->has_light_map || technique->has_light_map(options));
+}
 
 // ---- technique.c: a technique with its objects. The owner is pushed by the caller.
 

@@ -30,18 +30,22 @@ struct gpu_image_desc light_map_image(const struct charts *charts, const char *n
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
 }
 
+struct light_map_triangle light_map_triangle_of(const struct chart_triangle *t, bool has_back)
+{
+    struct light_map_triangle out = { .front = has_back ? octahedral_pack(t->normal)
+                                                        : LIGHT_MAP_ONE_SIDED };
+    out.u_axis = axis_of(t, 0, &out.offset.x);
+    out.v_axis = axis_of(t, 1, &out.offset.y);
+    return out;
+}
+
 void light_map_fill_triangles(const struct charts *charts, const uint32_t *chart_triangle,
                               size_t count, struct light_map_triangle *out)
 {
     for (size_t i = 0; i < count; i++) {
-        struct light_map_triangle *to = &out[i];
-        *to = (struct light_map_triangle){ .offset = { { -1.0f, 0.0f } },
-                                           .front = LIGHT_MAP_ONE_SIDED };
+        out[i] = LIGHT_MAP_ABSENT;
         if (chart_triangle[i] == CHART_NONE) continue;
         const struct chart_triangle *t = &charts->triangles[chart_triangle[i]];
-        to->u_axis = axis_of(t, 0, &to->offset.x);
-        to->v_axis = axis_of(t, 1, &to->offset.y);
-        if (charts->charts[t->chart].first_back != CHART_NONE)
-            to->front = octahedral_pack(t->normal);
+        out[i] = light_map_triangle_of(t, charts->charts[t->chart].first_back != CHART_NONE);
     }
 }

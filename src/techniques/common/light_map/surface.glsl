@@ -34,15 +34,22 @@ light_map_surface light_map_surface_moved(light_map_surface s, light_map_move mo
     return light_map_surface(turn * s.position + move.by, s.normal, turn * s.camera + move.by);
 }
 
-// In texels; z: the side, 0 or 1, negative where there is none. ids: of FRAME_ID. Moves the
-// surface of an instance that has moved since.
-vec3 light_map_place_of(uvec2 ids, light_map_instances instances, inout light_map_surface s)
+// A triangle of the scene, in triangle_table. ids: of FRAME_ID.
+uint light_map_scene_triangle(uvec2 ids, light_map_instances instances)
 {
-    if (ids.x == 0u || ids.x > instances.count) return vec3(-1.0);
+    if (ids.x == 0u || ids.x > instances.count) return LIGHT_MAP_NO_TRIANGLE;
     uint first = first_triangle_table[ids.x - 1u];
     uint triangle = light_map_triangle_of(ids, first_triangle_table[ids.x] - first);
+    return triangle == LIGHT_MAP_NO_TRIANGLE ? triangle : first + triangle;
+}
+
+// In texels; z: the side, 0 or 1, negative where there is none. Moves the surface of an instance
+// that has moved since.
+vec3 light_map_place_in(uint triangle, uvec2 ids, light_map_instances instances,
+                        inout light_map_surface s)
+{
     if (triangle == LIGHT_MAP_NO_TRIANGLE) return vec3(-1.0);
-    light_map_triangle t = triangle_table[first + triangle];
+    light_map_triangle t = triangle_table[triangle];
     vec4 u = vec4(t.u_axis, t.offset.x), v = vec4(t.v_axis, t.offset.y);
     if (u == vec4(0.0, 0.0, 0.0, -1.0)) return vec3(-1.0);
     if (HAS_MOVES && ids.x <= instances.moved) {
@@ -53,6 +60,11 @@ vec3 light_map_place_of(uvec2 ids, light_map_instances instances, inout light_ma
     if (HAS_BACKS && t.front != LIGHT_MAP_ONE_SIDED)
         back = dot(octahedral_direction(unpackSnorm2x16(t.front)), s.camera - s.position) < 0.0;
     return vec3(dot(u, vec4(s.position, 1.0)), dot(v, vec4(s.position, 1.0)), back ? 1.0 : 0.0);
+}
+
+vec3 light_map_place_of(uvec2 ids, light_map_instances instances, inout light_map_surface s)
+{
+    return light_map_place_in(light_map_scene_triangle(ids, instances), ids, instances, s);
 }
 
 #endif

@@ -34,6 +34,11 @@ static inline uint32_t light_map_place_word(const struct charts *charts, size_t 
 // Of half floats, which shaders write and sample. layers: of a side.
 struct gpu_image_desc light_map_image(const struct charts *charts, const char *name,
                                       uint32_t layers);
+// A triangle that is not in the map, and one by its corners and their places in the atlas.
+static const struct light_map_triangle LIGHT_MAP_ABSENT = { .offset = { { -1.0f, 0.0f } },
+                                                            .front = LIGHT_MAP_ONE_SIDED };
+struct light_map_triangle light_map_triangle_of(const struct chart_triangle *triangle,
+                                                bool has_back);
 // Writes `count` triangles of the scene. chart_triangle: [count] in charts->triangles, CHART_NONE:
 // not in the map.
 void light_map_fill_triangles(const struct charts *charts, const uint32_t *chart_triangle,
