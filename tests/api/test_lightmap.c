@@ -131,6 +131,25 @@ TEST_GPU(light_maps_are_of_techniques_that_have_one)
     fixture_close(&s);
 }
 
+TEST_GPU(transfer_at_vertices_has_no_light_map)
+{
+    (void)gpu;
+    struct renderer_fixture s = fixture_open("none", NULL);
+    struct ag_bake_desc desc;
+    struct ag_bake *bake = NULL;
+    struct ag_lightmap *lightmap = NULL;
+    open_renderer(&s, "prt:at=vertex,rays=16");
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    assert_int_equal(ag_lightmap_from_renderer(s.renderer, NULL, &lightmap), AG_ERROR_ARGUMENT);
+    CHECK_STRING(ag_context_last_error(s.context), "light map: no technique of the stack has one");
+    ag_bake_desc_default(&desc);
+    desc.lightmap_samples = 1;
+    assert_int_equal(ag_bake_create(s.scene, "prt:at=vertex", &desc, &bake), AG_ERROR_ARGUMENT);
+    CHECK_STRING(ag_context_last_error(s.context),
+                 "cannot bake prt:at=vertex: it has no light map");
+    fixture_close(&s);
+}
+
 TEST(technique_of_a_light_map_is_the_one_of_the_stack_that_has_it)
 {
     struct ag_context *context = fixture_context();
@@ -142,8 +161,11 @@ TEST(technique_of_a_light_map_is_the_one_of_the_stack_that_has_it)
                strcmp(info.name, "prt") == 0));
     assert_int_equal(ag_lightmap_technique(context, "radiosity:texels=4096+vo", &name), AG_OK);
     CHECK_STRING(name, "radiosity");
-    assert_int_equal(ag_lightmap_technique(context, "vct", &name), AG_OK);
-    CHECK(name == NULL);
+    static const char *const NONE[] = { "vct", "prt:at=vertex" };
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(ag_lightmap_technique(context, NONE[i], &name), AG_OK);
+        CHECK(name == NULL);
+    }
     assert_int_equal(ag_lightmap_technique(context, "radiosty", &name), AG_ERROR_ARGUMENT);
     ag_context_destroy(context);
 }

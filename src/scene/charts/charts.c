@@ -205,3 +205,11 @@ void charts_finish(struct charts *charts)
     if (charts->host) clear(charts);
     *charts = (struct charts){ 0 };
 }
+
+struct box3 charts_bounds(const struct charts *charts)
+{
+    struct box3 box = box3_empty();
+    for (uint32_t t = 0; t < charts->triangle_count; t++)
+        for (int c = 0; c < 3; c++) box = box3_add_point(box, charts->triangles[t].corner[c]);
+    return box;
+}

@@ -110,6 +110,8 @@ struct charts {
 bool charts_init(struct charts *out, struct host *host, const struct scene_pose *pose,
                  const struct charts_options *options);
 void charts_finish(struct charts *charts);
+// Of the triangles in charts.
+struct box3 charts_bounds(const struct charts *charts);
 
 // Charts for the light map of a technique.
 struct charts_wish {

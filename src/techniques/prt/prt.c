@@ -1,7 +1,7 @@
 // Precomputed radiance transfer (Sloan, Kautz & Snyder 2002): diffuse transfer at the texels of a
-// light map. The bake has for each texel the vector T by which its irradiance follows from the
-// coefficients L of distant light, E = Σ T_i L_i, with shadows and all bounces in it; a frame in
-// which the light has changed computes that sum at all texels.
+// light map, or at vertices. The bake has for each of these receivers the vector T by which its
+// irradiance follows from the coefficients L of distant light, E = Σ T_i L_i, with shadows and all
+// bounces in it; a frame in which the light has changed computes that sum at all receivers.
 #include "techniques/prt/prt.h"
 
 #include "techniques/prt/prt_state.h"
@@ -38,11 +38,13 @@ static bool create(void *state, const struct technique_create *how)
     s->host = how->host;
     s->gpu = how->gpu;
     light_map_init(&s->light_map, s->host, s->gpu, &s->charts, specular_of(&s->options));
+    prt_vertex_map_init(&s->vertex_map, s->host, s->gpu, &s->receivers.vertices);
     if (!how->pose) return true;
     struct scene_statics statics;
-    const bool ok = scene_statics_init(&statics, s->host, how->pose) &&
-                    light_map_followed_init(&s->followed, s->host, "prt", how->pose, &statics) &&
-                    prt_charts(&statics.pose, &s->options, s->host, &s->charts);
+    const bool ok =
+        scene_statics_init(&statics, s->host, how->pose) &&
+        light_map_followed_init(&s->followed, s->host, "prt", how->pose, &statics) &&
+        prt_receivers_init(&s->receivers, &s->charts, s->host, &statics.pose, &s->options);
     scene_statics_finish(&statics);
     return ok;
 }
@@ -75,6 +77,15 @@ static void list_constants(const struct prt_options *o, struct gpu_constant *out
     out[2] = (struct gpu_constant){ PRT_VECTORS, prt_vectors(o) };
 }
 
+static const struct gpu_shader *light_shader(const struct prt *s)
+{
+    const bool compressed = prt_codebook_rows(&s->options) > 0;
+    if (s->receivers.at_vertices)
+        return compressed ? &shader_prt_vertex_light_clusters_comp
+                          : &shader_prt_vertex_light_vectors_comp;
+    return compressed ? &shader_prt_light_clusters_comp : &shader_prt_light_vectors_comp;
+}
+
 static void list_pipelines(const struct prt *s, struct gpu_objects *out)
 {
     const uint32_t first = LIGHT_MAP_CONSTANTS, of_vectors = 3u << first, of_weights = 4u << first;
@@ -86,9 +97,8 @@ static void list_pipelines(const struct prt *s, struct gpu_objects *out)
                   .consts = of_vectors });
     GPU_ADD(
         out, 0,
-        { GPU_PIPELINE, PIPELINE(light),
-          .shader = compressed ? &shader_prt_light_clusters_comp : &shader_prt_light_vectors_comp,
-          .consts = constants });
+        { GPU_PIPELINE, PIPELINE(light), .shader = light_shader(s),
+          .consts = s->receivers.at_vertices ? constants | 1u << PRT_HAS_EMITTED_AT : constants });
     if (prt_is_glossy(&s->options))
         GPU_ADD(out, 0,
                 { GPU_PIPELINE, PIPELINE(reflect),
@@ -97,26 +107,38 @@ static void list_pipelines(const struct prt *s, struct gpu_objects *out)
                   .consts = constants });
 }
 
+// Objects of what shows receivers.
+static void list_shown(const struct prt *s, struct gpu_objects *out)
+{
+    if (s->receivers.at_vertices) {
+        if (s->receivers.count > 0)
+            prt_vertex_map_list(&s->vertex_map, offsetof(struct prt, vertex_map),
+                                s->options.specular, out);
+        return;
+    }
+    light_map_list(&s->light_map, offsetof(struct prt, light_map), out);
+    if (s->receivers.count > 0)
+        GPU_ADD(out, 0,
+                { GPU_IMAGE, "texel_light", TABLE(texel_light),
+                  .image = light_map_table(GPU_RG32U, 3 * (size_t)s->receivers.count) });
+}
+
 static void list(const struct prt *s, struct gpu_objects *out)
 {
-    const size_t texels = s->charts.side_texel_count;
     const uint32_t rows = prt_codebook_rows(&s->options);
     gpu_objects_clear(out);
-    light_map_list(&s->light_map, offsetof(struct prt, light_map), out);
+    list_shown(s, out);
     list_constants(&s->options, out->constants + LIGHT_MAP_CONSTANTS);
     prt_probes_list(&s->probes, offsetof(struct prt, probes), &s->options,
                     3u << LIGHT_MAP_CONSTANTS, out);
-    if (texels == 0) return;
+    if (s->receivers.count == 0) return;
     list_pipelines(s, out);
-    GPU_ADD(out, 0,
-            { GPU_IMAGE, "texel_light", TABLE(texel_light),
-              .image = light_map_table(GPU_RG32U, 3 * texels) },
-            { GPU_IMAGE, .member = TABLE(texels) });
+    GPU_ADD(out, 0, { GPU_IMAGE, .member = TABLE(texels) });
     list_tables(TABLE(vectors), rows, out);
     if (!prt_is_glossy(&s->options)) return;
     GPU_ADD(out, 0,
             { GPU_IMAGE, "texel_radiance", TABLE(texel_radiance),
-              .image = light_map_table(GPU_RG32U, texels) });
+              .image = light_map_table(GPU_RG32U, s->receivers.count) });
     list_tables(TABLE(matrices), PRT_OUTGOING * rows, out);
 }
 
@@ -185,7 +207,8 @@ static void follow(void *state, const struct scene_pose *pose, bool wait)
     (void)wait;
     warn_of_lights(s, pose->scene);
     light_map_followed_update(&s->followed, pose);
-    s->light_map.surfaces.moves = s->followed.any_moved ? s->followed.places.moves : NULL;
+    s->light_map.surfaces.moves = s->vertex_map.surfaces.moves =
+        s->followed.any_moved ? s->followed.places.moves : NULL;
 }
 
 static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -195,7 +218,7 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     if (!(view->keep && s->kept.same)) {
         prt_project(&s->options, view, &s->light);
         s->probes.fresh = false;
-        if (s->charts.side_texel_count > 0) prt_record_update(s, cmd, view);
+        if (s->receivers.count > 0) prt_record_update(s, cmd, view);
     }
     if (s->options.probes) prt_record_probes(s, cmd, view);
 }
@@ -204,10 +227,13 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
 static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct prt *s = state;
-    const bool mapped = view->layers[FRAME_ID].id && s->charts.side_texel_count > 0;
+    const bool mapped = view->layers[FRAME_ID].id && s->receivers.count > 0;
     if (mapped && prt_is_glossy(&s->options) && view->layers[FRAME_SPECULAR].id)
         prt_record_reflect(s, cmd, view);
-    if (mapped) light_map_record_apply(&s->light_map, cmd, view);
+    if (mapped && s->receivers.at_vertices)
+        prt_vertex_map_record_apply(&s->vertex_map, cmd, view);
+    else if (mapped)
+        light_map_record_apply(&s->light_map, cmd, view);
     if (mapped && !s->followed.any_lit) return;
     prt_record_probes(s, cmd, view);
     probe_apply_record(&s->probes.apply, &s->probes.volume, cmd, view, mapped);
@@ -219,6 +245,12 @@ static bool probes(void *state, struct probe_volume *out)
     if (!s->options.probes) return false;
     *out = s->probes.volume;
     return true;
+}
+
+static bool has_light_map(const void *options)
+{
+    const struct prt_options *o = options;
+    return o->at == PRT_AT_TEXEL;
 }
 
 static gpu_image light_map(void *state)
@@ -235,7 +267,7 @@ static void destroy(void *state)
     list(s, &objects);
     gpu_objects_destroy(s->gpu, &objects, s);
     light_map_followed_finish(&s->followed);
-    charts_finish(&s->charts);
+    prt_receivers_finish(&s->receivers);
 }
 
 static uint32_t more_needs(const void *options)
@@ -297,6 +329,7 @@ const struct technique technique_prt = {
     .follow = follow,
     .update = update,
     .record = record,
+    .has_light_map = has_light_map,
     .charts = prt_charts,
     .light_map = light_map,
     .probes = probes,

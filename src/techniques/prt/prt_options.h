@@ -9,6 +9,7 @@ struct prt_options {
 #undef OPTION
 };
 
+enum { PRT_AT_TEXEL, PRT_AT_VERTEX };
 enum { PRT_UNSHADOWED, PRT_SHADOWED, PRT_INTERREFLECTED };
 
 // Rays of a transfer matrix, over the hemisphere.

@@ -23,7 +23,7 @@ static void record_rows(struct prt *s, struct gpu_cmd *cmd)
     gpu_scope_end(cmd);
 }
 
-// What the shaders of texels read of transfer.
+// What the shaders of receivers read of transfer.
 #define TRANSFER_BINDINGS(state, transferred, cmd)                                                 \
     gpu_transient(cmd, "prt_light_block", &(state)->light, sizeof(state)->light),                  \
         { .name = "prt_texels", .image = (state)->tables.texels },                                 \
@@ -41,11 +41,12 @@ static float emitters(const struct prt *s, const struct frame_view *view)
 
 static void record_light(struct prt *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    const struct prt_light_push push = { s->charts.side_texel_count, emitters(s, view) };
+    const struct prt_light_push push = { s->receivers.count, emitters(s, view) };
     gpu_scope_begin(cmd, "light");
     gpu_dispatch(cmd, s->pipelines.light,
                  GPU_BIND(TRANSFER_BINDINGS(s, &s->tables.vectors, cmd),
-                          { .name = "texel_light", .image = s->tables.texel_light }),
+                          { .name = "texel_light", .image = s->tables.texel_light },
+                          { .name = "vertex_light", .image = s->vertex_map.light }),
                  &push, sizeof push, gpu_groups(push.texels, PRT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
 }
@@ -59,12 +60,13 @@ void prt_record_update(struct prt *s, struct gpu_cmd *cmd, const struct frame_vi
 {
     record_rows(s, cmd);
     record_light(s, cmd, view);
-    light_map_record_all(&s->light_map, cmd, s->tables.texel_light, s->options.seams);
+    if (!s->receivers.at_vertices)
+        light_map_record_all(&s->light_map, cmd, s->tables.texel_light, s->options.seams);
 }
 
 void prt_record_reflect(struct prt *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    const uint32_t texels = s->charts.side_texel_count, rows = prt_codebook_rows(&s->options);
+    const uint32_t texels = s->receivers.count, rows = prt_codebook_rows(&s->options);
     const struct prt_reflect_push push = { view->constants->camera_position, texels,
                                            rows > 0 ? rows : texels, emitters(s, view),
                                            prt_coefficients(&s->options) };

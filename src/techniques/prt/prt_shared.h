@@ -4,6 +4,8 @@
 
 #include "core/shared.h"
 
+#include "techniques/common/light_map/surface_shared.h"
+
 #define PRT_MAX_COEFFICIENTS 25
 
 // Bands and coefficients of the radiance that specular lobes reflect, by outgoing direction.
@@ -24,6 +26,21 @@
 #define PRT_BOUNCES      1
 // Vectors of a cluster's subspace.
 #define PRT_VECTORS 2
+
+// Whether vertices have light of emissive surfaces.
+#define PRT_HAS_EMITTED 3
+
+// Rows of pixels of an invocation that shows vertices, at most 32.
+#define PRT_APPLY_ROWS 4
+
+// Parts of a vertex in the table of vertices: entry part · vertices + vertex.
+#define PRT_VERTEX_NORMAL    0 // unit, shading
+#define PRT_VERTEX_EMITTED_0 1 // by colour: vector irradiance beside the normal; w: irradiance, lux
+#define PRT_VERTEX_PARTS     4
+
+// And in that of their light, as words of two halves: irradiance, normal, and if PRT_HAS_EMITTED
+// the vector irradiance beside the normal by colour.
+#define PRT_LIGHT_PARTS 2
 
 // Uniform block "prt_light": coefficients of distant light, scaled radiance by colour.
 struct prt_light {
@@ -48,12 +65,19 @@ struct prt_light_push {
     float emitters; // factor of the light of emissive surfaces
 };
 
+struct prt_vertex_push {
+    float per_view_width, per_view_height; // 1 / size of the view
+    uint32_t vertices, triangles;          // triangles: of the scene
+    AG_STRUCT(light_map_instances) instances;
+};
+
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct prt_light) == 2 * PRT_MAX_COEFFICIENTS * 16, "layout is shared with "
                                                                           "GLSL");
 _Static_assert(sizeof(struct prt_rows_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct prt_reflect_push) == 28, "layout is shared with GLSL");
 _Static_assert(sizeof(struct prt_light_push) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct prt_vertex_push) == 24, "layout is shared with GLSL");
 #endif
 
 #endif

@@ -8,6 +8,7 @@
 #include "techniques/prt/probes/probes.h"
 #include "techniques/prt/project.h"
 #include "techniques/prt/prt_tensors.h"
+#include "techniques/prt/prt_vertex_map.h"
 
 // Transfer vectors, or matrices, of which each row is one: row out · R + r of r of R.
 struct prt_tables {
@@ -20,11 +21,13 @@ struct prt {
     struct prt_options options;
     struct host *host;
     struct gpu *gpu;
-    struct charts charts; // without texels: an empty scene
-    struct light_map light_map;
+    struct charts charts;             // of the receivers
+    struct prt_receivers receivers;   // none: an empty scene
+    struct light_map light_map;       // shows texels
+    struct prt_vertex_map vertex_map; // shows vertices
     struct prt_probes probes;
     struct {
-        gpu_image texels;           // of the bake
+        gpu_image texels;           // of the bake, or vertices
         gpu_image texel_light;      // of the newest light
         gpu_image texel_radiance;   // that texels reflect towards the newest view, with `glossy`
         struct prt_tables vectors;  // of diffuse transfer
@@ -64,12 +67,12 @@ static inline bool prt_is_glossy(const struct prt_options *options)
 
 // ---- prt_upload.c
 
-// Tables of the light map and of a bake, which is untrusted, on the GPU.
+// Tables of the receivers and of a bake, which is untrusted, on the GPU.
 bool prt_upload(struct prt *state, const struct tensors *bake);
 
 // ---- prt_record.c
 
-// The light map under the newest light and emissive surfaces.
+// The light of receivers under the newest light and emissive surfaces.
 void prt_record_update(struct prt *state, struct gpu_cmd *cmd, const struct frame_view *view);
 // The probes under the same, unless they have it.
 void prt_record_probes(struct prt *state, struct gpu_cmd *cmd, const struct frame_view *view);

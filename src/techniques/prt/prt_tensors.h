@@ -3,9 +3,8 @@
 
 #include "bake/bake.h"
 
-#include "scene/charts/charts.h"
 #include "techniques/common/light_map/tensors.h"
-#include "techniques/prt/prt_options.h"
+#include "techniques/prt/receivers/receivers.h"
 #include "techniques/technique.h"
 
 #define PRT_DIRECT  "transfer/direct"  // F16 [coefficients][texels]
@@ -35,10 +34,6 @@
 #define PRT_GLOSSY_CLUSTER "compressed/glossy_cluster" // U16 [texels]
 #define PRT_GLOSSY_WEIGHT  "compressed/glossy_weight"  // F16 [texels][vectors]
 #define PRT_GLOSSY_ERROR   "compressed/glossy_error"   // F32 [2]
-
-// ---- prt_charts.c
-bool prt_charts(const struct scene_pose *statics, const void *options, struct host *host,
-                struct charts *out);
 
 // ---- bake/stages.c
 bool prt_bake(struct bake_plan *plan, const struct technique_bake *how);

@@ -18,14 +18,14 @@ struct content {
 // Bounced light comes from all around: its vector irradiance is along the normal.
 static bool add_emitted_bounces(struct prt *s, const struct tensors *bake, struct content *c)
 {
-    const uint64_t texels = light_map_rows(s->charts.side_texel_count);
+    const uint64_t texels = light_map_rows(s->receivers.count);
     const float *bounced = TENSORS_EXPECT(s->host, bake, PRT_EMITTED, TENSOR_F32, texels, 3);
     if (!bounced) return false;
     c->emitted = host_alloc(s->host, (size_t)texels, sizeof(float[3][4]));
     if (!c->emitted) return false;
     memcpy(c->emitted, c->texels.emitted, (size_t)texels * sizeof(float[3][4]));
-    for (uint32_t i = 0; i < s->charts.side_texel_count; i++) {
-        const vec3s normal = chart_texel_normal(&s->charts, i);
+    for (uint32_t i = 0; i < s->receivers.count; i++) {
+        const vec3s normal = prt_receiver_normal(&s->receivers, i);
         for (size_t k = 0; k < 3; k++) {
             float *at = c->emitted + 4 * (3 * (size_t)i + k), e = bounced[3 * (size_t)i + k];
             at[0] += e;
@@ -38,7 +38,7 @@ static bool add_emitted_bounces(struct prt *s, const struct tensors *bake, struc
 
 static bool find_vectors(struct prt *s, const struct tensors *bake, struct content *out)
 {
-    const uint64_t texels = light_map_rows(s->charts.side_texel_count);
+    const uint64_t texels = light_map_rows(s->receivers.count);
     const uint64_t coefficients = prt_coefficients(&s->options);
     out->direct = TENSORS_EXPECT(s->host, bake, PRT_DIRECT, TENSOR_F16, coefficients, texels);
     if (!out->direct || s->options.transfer != PRT_INTERREFLECTED) return out->direct != NULL;
@@ -48,7 +48,7 @@ static bool find_vectors(struct prt *s, const struct tensors *bake, struct conte
 
 static bool check_clusters(const struct prt *s, const uint16_t *cluster)
 {
-    for (uint32_t i = 0; i < s->charts.side_texel_count; i++)
+    for (uint32_t i = 0; i < s->receivers.count; i++)
         if (cluster[i] >= prt_clusters(&s->options))
             return host_fail(s->host, FAIL_FORMAT, "bake of prt: texel %u is in cluster %u of %u",
                              i, cluster[i], prt_clusters(&s->options));
@@ -59,7 +59,7 @@ static bool check_clusters(const struct prt *s, const uint16_t *cluster)
 static bool find_points(struct prt *s, const struct tensors *bake, bool matrices,
                         struct compressed *out)
 {
-    const uint64_t texels = light_map_rows(s->charts.side_texel_count);
+    const uint64_t texels = light_map_rows(s->receivers.count);
     const uint64_t vectors = prt_vectors(&s->options);
     const char *cluster = matrices ? PRT_GLOSSY_CLUSTER : PRT_CLUSTER;
     out->cluster = TENSORS_EXPECT(s->host, bake, cluster, TENSOR_U16, texels);
@@ -81,7 +81,7 @@ static bool find_codebook(struct prt *s, const struct tensors *bake, struct cont
 
 static bool find_matrices(struct prt *s, const struct tensors *bake, struct content *out)
 {
-    const uint64_t texels = light_map_rows(s->charts.side_texel_count);
+    const uint64_t texels = light_map_rows(s->receivers.count);
     const uint64_t rows = prt_codebook_rows(&s->options), numbers = prt_dimension(&s->options);
     if (!prt_is_glossy(&s->options)) return true;
     out->texels.roughness = TENSORS_EXPECT(s->host, bake, PRT_ROUGHNESS, TENSOR_F32, texels);
@@ -97,20 +97,32 @@ static bool find_matrices(struct prt *s, const struct tensors *bake, struct cont
     return out->matrices.rows && find_points(s, bake, true, &out->matrices);
 }
 
+// At vertices reflectance and the light of the sky are of the bake alone, as for the frames of a
+// light map.
+static bool find_receivers(struct prt *s, const struct tensors *bake, struct light_map_texels *out)
+{
+    const uint64_t n = light_map_rows(s->receivers.count);
+    if (!s->receivers.at_vertices) return light_map_find_texels(out, s->host, &s->charts, bake);
+#define EXPECT(...) TENSORS_EXPECT(s->host, bake, __VA_ARGS__)
+    return EXPECT(LIGHT_MAP_ALBEDO, TENSOR_F32, n, 4) && EXPECT(LIGHT_MAP_SKY, TENSOR_F32, n, 4) &&
+           (out->emitted = EXPECT(LIGHT_MAP_EMITTED, TENSOR_F32, n, 3, 4)) &&
+           (out->point = EXPECT(LIGHT_MAP_POINT, TENSOR_F32, n, 4));
+#undef EXPECT
+}
+
 static bool find_tensors(struct prt *s, const struct tensors *bake, struct content *out)
 {
     *out = (struct content){ 0 };
     const bool ok = s->options.compression == PRT_NONE ? find_vectors(s, bake, out)
                                                        : find_codebook(s, bake, out);
-    return ok && light_map_find_texels(&out->texels, s->host, &s->charts, bake) &&
-           find_matrices(s, bake, out) &&
+    return ok && find_receivers(s, bake, &out->texels) && find_matrices(s, bake, out) &&
            (s->options.transfer != PRT_INTERREFLECTED || add_emitted_bounces(s, bake, out));
 }
 
 // Number k of a transfer vector, or of a row of the codebook.
 static uint16_t value_of(const struct prt *s, const struct content *c, size_t row, size_t k)
 {
-    const size_t texels = s->charts.side_texel_count;
+    const size_t texels = s->receivers.count;
     if (c->vectors.rows) return c->vectors.rows[row * prt_dimension(&s->options) + k];
     if (!c->bounce) return c->direct[k * texels + row];
     const size_t at = k / 4 * texels + row;
@@ -120,7 +132,7 @@ static uint16_t value_of(const struct prt *s, const struct content *c, size_t ro
 static size_t row_count(const struct prt *s)
 {
     const size_t rows = prt_codebook_rows(&s->options);
-    return rows > 0 ? rows : s->charts.side_texel_count;
+    return rows > 0 ? rows : s->receivers.count;
 }
 
 static bool upload_transfer(struct prt *s, const struct content *c)
@@ -152,7 +164,7 @@ static bool upload_matrices(struct prt *s, const struct content *c)
 
 static bool upload_clusters(struct prt *s, const struct compressed *c, struct prt_tables *out)
 {
-    const size_t texels = s->charts.side_texel_count, vectors = prt_vectors(&s->options);
+    const size_t texels = s->receivers.count, vectors = prt_vectors(&s->options);
     const size_t count = prt_weight_entries(&s->options) * texels;
     if (!c->rows) return true;
     uint32_t *clusters = host_alloc(s->host, light_map_table_room(texels), sizeof *clusters);
@@ -168,23 +180,31 @@ static bool upload_clusters(struct prt *s, const struct compressed *c, struct pr
            ok;
 }
 
+static bool upload_shown(struct prt *s, const struct content *c, const struct tensors *bake)
+{
+    const uint32_t instances = (uint32_t)s->followed.places.count;
+    if (s->receivers.at_vertices)
+        return prt_vertex_map_upload(&s->vertex_map, instances, c->shown, c->texels.emitted,
+                                     &s->tables.texels);
+    return light_map_upload_texels(&c->texels, s->host, s->gpu, &s->tables.texels) &&
+           light_map_upload(&s->light_map, instances, c->shown, c->texels.sky, bake);
+}
+
 static bool upload_all(struct prt *s, struct content *c, const struct tensors *bake)
 {
-    if (s->charts.side_texel_count == 0) return true;
-    c->shown = light_map_shown(&c->texels, s->host);
+    if (s->receivers.count == 0) return true;
+    c->shown = prt_receivers_shown(&s->receivers, c->texels.point);
     return c->shown && upload_transfer(s, c) && upload_matrices(s, c) &&
            upload_clusters(s, &c->vectors, &s->tables.vectors) &&
-           upload_clusters(s, &c->matrices, &s->tables.matrices) &&
-           light_map_upload_texels(&c->texels, s->host, s->gpu, &s->tables.texels) &&
-           light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c->shown,
-                            c->texels.sky, bake);
+           upload_clusters(s, &c->matrices, &s->tables.matrices) && upload_shown(s, c, bake);
 }
 
 bool prt_upload(struct prt *s, const struct tensors *bake)
 {
     struct content c;
     const bool ok = find_tensors(s, bake, &c) && upload_all(s, &c, bake) &&
-                    prt_probes_upload(&s->probes, s->host, s->gpu, &s->charts, &s->options, bake);
+                    prt_probes_upload(&s->probes, s->host, s->gpu,
+                                      prt_receivers_bounds(&s->receivers), &s->options, bake);
     host_free(s->host, c.shown);
     host_free(s->host, c.emitted);
     return ok;

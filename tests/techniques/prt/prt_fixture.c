@@ -65,6 +65,34 @@ void prt_fixture_sphere(struct prt_fixture *f, vec3s center, float radius, int r
     free(mesh.indices);
 }
 
+void prt_fixture_grid(struct prt_fixture *f, float half, int steps, int material)
+{
+    const size_t across = (size_t)steps + 1, vertices = across * across;
+    struct mesh mesh = { .name = "grid", .vertex_count = (uint32_t)vertices, .material = material };
+    mesh.positions = calloc(vertices, sizeof *mesh.positions);
+    mesh.normals = calloc(vertices, sizeof *mesh.normals);
+    mesh.indices = calloc((size_t)(steps * steps) * 6, sizeof *mesh.indices);
+    assert_true(mesh.positions && mesh.normals && mesh.indices);
+    for (size_t v = 0; v < vertices; v++) {
+        const float x = (float)(v % across), z = (float)(v / across);
+        mesh.positions[v] =
+            vec3_of(half * (2 * x / (float)steps - 1), 0, half * (2 * z / (float)steps - 1));
+        mesh.normals[v] = vec3_of(0, 1, 0);
+    }
+    for (int q = 0; q < steps * steps; q++) {
+        const uint32_t a = (uint32_t)(q / steps * (steps + 1) + q % steps), b = a + 1,
+                       c = a + (uint32_t)across, d = c + 1;
+        const uint32_t up[6] = { a, c, b, b, c, d };
+        for (int k = 0; k < 6; k++) mesh.indices[mesh.index_count++] = up[k];
+    }
+    const int index = scene_add_mesh(f->s.scene, &mesh);
+    assert_true(index >= 0);
+    fixture_instance(&f->s, index, NULL);
+    free(mesh.positions);
+    free(mesh.normals);
+    free(mesh.indices);
+}
+
 void prt_fixture_disk(struct prt_fixture *f, vec3s center, float radius, int material)
 {
     enum { CORNERS = 64 };

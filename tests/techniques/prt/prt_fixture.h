@@ -32,6 +32,8 @@ int prt_fixture_diffuse(struct prt_fixture *f, float albedo);
 // are left out. inwards: normals point to its centre.
 void prt_fixture_sphere(struct prt_fixture *f, vec3s center, float radius, int rings, int open,
                         bool inwards, int material);
+// y = 0, facing up, from −half to half: steps × steps quads of shared vertices.
+void prt_fixture_grid(struct prt_fixture *f, float half, int steps, int material);
 // A regular polygon of 64 corners with the area of a disk of this radius, facing down.
 void prt_fixture_disk(struct prt_fixture *f, vec3s center, float radius, int material);
 // A scene made in f->s. options: without spaces; outlive the fixture.

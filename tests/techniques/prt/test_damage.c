@@ -58,14 +58,17 @@ TEST_GPU(a_bake_without_a_tensor_or_with_another_shape_is_refused)
     check_tensors(gpu, SMALL ",transfer=shadowed");
     check_tensors(gpu, SMALL ",compression=vq");
     check_tensors(gpu, SMALL ",compression=cpca");
+    check_tensors(gpu, SMALL ",at=vertex");
+    check_tensors(gpu, SMALL ",at=vertex,transfer=shadowed");
+    check_tensors(gpu, SMALL ",at=vertex,compression=cpca");
 }
 
 // One element of each tensor of floats.
-TEST_GPU(a_bake_with_a_value_that_is_not_finite_is_refused)
+static void check_finite(struct gpu *gpu, const char *text)
 {
     struct damage_fixture u;
     int changed = 0;
-    open_subject(&u, gpu, SMALL);
+    open_subject(&u, gpu, text);
     for (size_t i = 0; i < u.set.count; i++) {
         const size_t size = tensor_type_bytes(u.at[i].type), middle = u.at[i].bytes / size / 2;
         static const float NOT_FINITE[] = { NAN, INFINITY };
@@ -84,6 +87,12 @@ TEST_GPU(a_bake_with_a_value_that_is_not_finite_is_refused)
     print_message("%d tensors with a value that is not finite were refused\n", changed);
     CHECK(changed >= 6);
     damage_close(&u);
+}
+
+TEST_GPU(a_bake_with_a_value_that_is_not_finite_is_refused)
+{
+    check_finite(gpu, SMALL);
+    check_finite(gpu, SMALL ",at=vertex");
 }
 
 TEST_GPU(a_bake_with_a_cluster_that_it_has_not_is_refused)

@@ -199,6 +199,130 @@ TEST_GPU(reflections_of_texels_are_the_products_of_their_matrices)
     }
 }
 
+// ---- vertices
+
+// Irradiance of a vertex by distant light, or NULL: by emissive surfaces.
+static void vertex_irradiance(const struct prt_baked *baked, uint32_t vertex,
+                              const struct prt_light *light, float out[3])
+{
+    const float *emitted = tensors_find(baked->tensors, LIGHT_MAP_EMITTED)->data;
+    const float *bounced = tensors_find(baked->tensors, PRT_EMITTED)->data;
+    if (light) prt_irradiance(baked, vertex, light, out);
+    for (size_t c = 0; c < 3; c++)
+        out[c] = light ? fmaxf(out[c], 0.0f)
+                       : emitted[12 * (size_t)vertex + 4 * c] + bounced[3 * (size_t)vertex + c];
+}
+
+// Barycentric weights of the point where a pixel's ray meets the triangle's plane.
+static vec3s weights_at(const struct prt_fixture *f, uint32_t x, uint32_t y, const vec3s corner[3],
+                        vec3s normal)
+{
+    const vec3s p = fixture_ray_on_plane(&f->s, x, y, normal, glms_vec3_dot(normal, corner[0]));
+    vec3s weight;
+    for (int k = 0; k < 3; k++) {
+        const vec3s from = corner[(k + 1) % 3], edge = glms_vec3_sub(corner[(k + 2) % 3], from);
+        const vec3s height = glms_vec3_cross(normal, edge);
+        weight.raw[k] = glms_vec3_dot(glms_vec3_sub(p, from), height) /
+                        glms_vec3_dot(glms_vec3_sub(corner[k], from), height);
+    }
+    return weight;
+}
+
+// What a pixel has of its triangle's vertices, which are those of its side. False: no surface.
+static bool expect_pixel(const struct prt_fixture *f, const struct prt_vertices *v,
+                         const struct prt_baked *baked, const struct prt_light *light,
+                         const float *ids, uint32_t x, uint32_t y, float out[3])
+{
+    const float *id = ids + 2 * ((size_t)y * f->s.width + x);
+    vec3s corner[3];
+    if (id[0] < 0) return false;
+    const uint32_t triangle = (uint32_t)id[1];
+    const vec3s normal = v->face[v->triangle_0[(int)id[0]] + triangle];
+    const uint32_t *front = prt_vertices_of(v, (int)id[0], triangle, false);
+    for (int k = 0; k < 3; k++) corner[k] = v->at[front[k]].position;
+    const vec3s weight = weights_at(f, x, y, corner, normal);
+    const bool back = glms_vec3_dot(normal, fixture_ray(&f->s, (float)x, (float)y)) > 0;
+    out[0] = out[1] = out[2] = 0;
+    for (int k = 0; k < 3; k++) {
+        float e[3];
+        vertex_irradiance(baked, prt_vertices_of(v, (int)id[0], triangle, back)[k], light, e);
+        for (int c = 0; c < 3; c++) out[c] += weight.raw[k] * e[c];
+    }
+    return true;
+}
+
+// Largest difference of a pixel over the largest irradiance. factor: of what is drawn.
+static double compare_pixels(struct prt_fixture *f, const struct prt_baked *baked,
+                             const struct prt_light *light)
+{
+    struct prt_vertices v;
+    double worst = 0, most = 0;
+    int count = 0;
+    CHECK(prt_vertices_init(&v, test_host(), &f->statics.pose));
+    float *ids = fixture_read(&f->s, READ_ID), *got = fixture_read(&f->s, READ_IRRADIANCE);
+    const float factor = light ? frame_radiance_scale(f->s.frame) : 1;
+    for (uint32_t i = 0; i < f->s.width * f->s.height; i++) {
+        float expected[3];
+        if (!expect_pixel(f, &v, baked, light, ids, i % f->s.width, i / f->s.width, expected))
+            continue;
+        for (size_t c = 0; c < 3; c++) {
+            most = fmax(most, (double)expected[c]);
+            worst = fmax(worst, fabs((double)(got[3 * (size_t)i + c] * factor - expected[c])));
+        }
+        count++;
+    }
+    free(ids);
+    free(got);
+    prt_vertices_finish(&v);
+    CHECK(count > 100 && most > 0.1);
+    return worst / most;
+}
+
+// With a sphere of shared vertices, and a double-sided quad that is seen from behind.
+static void make_vertex_scene(struct prt_fixture *f, bool emits)
+{
+    struct material m = material_default();
+    m.double_sided = true;
+    make_scene(f);
+    fixture_quad(&f->s, vec3_of(0.5f, 0, -0.5f), vec3_of(-0.5f, 0, 1), vec3_of(-0.5f, 1, 1),
+                 vec3_of(0.5f, 1, -0.5f), fixture_material(&f->s, &m));
+    m.emissive = vec3_of(10, 20, 30);
+    if (emits)
+        fixture_quad(&f->s, vec3_of(2, 0, -1), vec3_of(2, 0, -2), vec3_of(2, 1, -2),
+                     vec3_of(2, 1, -1), fixture_material(&f->s, &m));
+    else
+        prt_fixture_sphere(f, vec3_of(1, 0.5f, 1), 0.5f, 8, 0, false, prt_fixture_diffuse(f, 1));
+}
+
+TEST_GPU(pixels_have_the_weighted_light_of_their_vertices)
+{
+    static const char *const MORE[] = { "at=vertex", "at=vertex,compression=cpca,clusters=8",
+                                        "at=vertex,specular=false", "at=vertex" };
+    for (size_t i = 0; i < sizeof MORE / sizeof *MORE; i++) {
+        struct prt_fixture f;
+        struct prt_light light;
+        struct gpu_side g;
+        const bool emits = i == 3;
+        make_vertex_scene(&f, emits);
+        f.s.width = 96;
+        f.s.height = 80;
+        prt_fixture_open(&f, "texels=64,rays=64");
+        struct prt_baked baked = prt_fixture_bake(&f, MORE[i], 0);
+        prt_random_light((uint32_t)i, &light);
+        if (emits) light = (struct prt_light){ 0 };
+        open_stack(&g, &f, &baked, gpu, MORE[i], &light);
+        fixture_render(&f.s);
+        const double worst = compare_pixels(&f, &baked, emits ? NULL : &light);
+        print_message("%s: %.2g off\n", MORE[i], worst);
+        CHECK(worst < 2e-3);
+        close_stack(&g);
+        prt_baked_finish(&baked);
+        prt_fixture_close(&f);
+    }
+}
+
+// ---- pixels
+
 // A floor without anything else: all texels have one irradiance, which pixels show.
 TEST_GPU(pixels_of_an_open_floor_have_its_irradiance)
 {

@@ -7,3 +7,4 @@ ag_test(techniques/prt/probes USES techniques LIBRARIES ag_test_prt_bake ag_test
 ag_test(techniques/prt/damage USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)
 ag_test(techniques/prt/frame USES techniques LIBRARIES ag_test_prt_bake ag_test_techniques)
 ag_test(techniques/prt/compress USES techniques)
+ag_test(techniques/prt/vertex USES techniques LIBRARIES ag_test_prt_bake)

@@ -1,7 +1,5 @@
 #include "techniques/common/probes/grid.h"
 
-#include "scene/charts/charts.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -25,17 +23,9 @@ struct frame_probes probe_grid_over(struct box3 box, float spacing_m)
     return grid;
 }
 
-// ---- around charts
+// ---- around surfaces
 
 enum { MOST_PROBES = 1 << 18, MOST_ALONG_AXIS = 128 };
-
-static struct box3 bounds_of(const struct charts *charts)
-{
-    struct box3 box = box3_empty();
-    for (uint32_t t = 0; t < charts->triangle_count; t++)
-        for (int c = 0; c < 3; c++) box = box3_add_point(box, charts->triangles[t].corner[c]);
-    return box;
-}
 
 static bool is_within(vec3s size, float spacing, double most)
 {
@@ -58,9 +48,8 @@ static float spacing_of(vec3s size, float least, double most)
     return spacing;
 }
 
-struct frame_probes probe_grid_around(const struct charts *charts, float spacing_m, uint64_t most)
+struct frame_probes probe_grid_around(struct box3 box, float spacing_m, uint64_t most)
 {
-    const struct box3 box = bounds_of(charts);
     const vec3s size = box3_size(box);
     if (box3_is_empty(box) || !(glms_vec3_max(size) > 0.0f)) return probe_grid_of_one();
     return probe_grid_over(box, spacing_m > 0.0f

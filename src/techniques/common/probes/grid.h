@@ -8,10 +8,8 @@
 // Cells that cover a box, a probe in the middle of each.
 struct frame_probes probe_grid_over(struct box3 box, float spacing_m);
 struct frame_probes probe_grid_of_one(void);
-// Around the triangles of charts; without any: one probe. spacing_m 0: about `most` probes, at
-// most.
-struct charts;
-struct frame_probes probe_grid_around(const struct charts *charts, float spacing_m, uint64_t most);
+// Around surfaces; of an empty or flat box: one probe. spacing_m 0: about `most` probes, at most.
+struct frame_probes probe_grid_around(struct box3 box, float spacing_m, uint64_t most);
 
 static inline uint32_t probe_grid_count(struct frame_probes grid)
 {

@@ -60,14 +60,14 @@ static bool points_init(struct points *p, const struct bake_task *task)
     const struct prt_scene *scene = task->job;
     const struct tensor *tensor = bake_task_input(task, LIGHT_MAP_POINT);
     const bool *matrices = task->argument;
-    *p = (struct points){ .texels = scene->charts.side_texel_count };
+    *p = (struct points){ .texels = scene->receivers.count };
     if (!tensor || !(*matrices ? find_matrices(p, task) : find_vectors(p, task))) return false;
     const float *point = tensor->data;
     p->texel = host_alloc(task->host, p->texels, sizeof *p->texel);
     p->at = host_alloc(task->host, p->texels, p->dim * sizeof *p->at);
     if (!p->texel || !p->at) return false;
     p->all = (struct prt_points){ p->at, 0, p->dim };
-    for (uint32_t i = 0; i < scene->charts.side_texel_count; i++) {
+    for (uint32_t i = 0; i < scene->receivers.count; i++) {
         if (!(point[4 * (size_t)i + 3] > 0.0f)) continue;
         p->texel[p->all.count] = i;
         fill_point(p, i, p->at + p->all.count++ * p->dim);
@@ -186,7 +186,7 @@ static bool add_stage(struct bake_plan *plan, const struct prt_scene *scene, con
 bool prt_add_compression(struct bake_plan *plan, const struct prt_scene *scene)
 {
     static const bool VECTORS = false, MATRICES = true;
-    const uint64_t texels = light_map_rows(scene->charts.side_texel_count);
+    const uint64_t texels = light_map_rows(scene->receivers.count);
     const uint64_t dim = prt_dimension(&scene->options), rows = prt_codebook_rows(&scene->options);
     const uint64_t vectors = prt_vectors(&scene->options);
     const struct bake_output of_vectors[OUT_COUNT] = {

@@ -125,7 +125,7 @@ static void trace(const struct work *w, const struct frame *frame, size_t s)
     }
     if (!has_bounces(scene)) return;
     const struct texel_seen seen = texel_seen_at(scene->trace, &ray, &hit);
-    const uint32_t texel = prt_sent_texel(scene, &hit, &seen);
+    const uint32_t texel = prt_sent_receiver(scene, &hit, &seen, 0.0f);
     if (texel != CHART_NONE) prt_sent_radiance(&w->sent, texel, out);
 }
 

@@ -21,7 +21,7 @@ static bool has_bounces(const struct prt_scene *scene)
 
 static struct frame_probes grid_of(const struct prt_scene *scene)
 {
-    return probe_grid_around(&scene->charts, scene->options.probe_spacing,
+    return probe_grid_around(prt_receivers_bounds(&scene->receivers), scene->options.probe_spacing,
                              prt_probes_most(&scene->options));
 }
 
@@ -33,7 +33,8 @@ struct work {
     uint32_t light_samples; // 0: no emissive surfaces
     int bands;              // of the rows
     size_t rows, coefficients, planes;
-    bool gathers; // else rays look for a place
+    bool gathers;        // else rays look for a place
+    uint32_t seed, seen; // of the probe; rays that met a surface
     float matrix[PRT_OUTGOING * PRT_MAX_COEFFICIENTS * 4];
     float emitted[PRT_OUTGOING][3];
 };
@@ -70,12 +71,14 @@ static void add_seen(struct work *w, const struct probe_ray *ray, const struct r
     if (glms_vec3_max(seen->emission) > 0.0f)
         add_emission(w, ray->direction, seen->emission,
                      1.0f / ray->solid_angle + (float)w->light_samples * seen->pdf);
-    const uint32_t texel = has_bounces(w->scene) ? prt_sent_texel(w->scene, hit, seen) : CHART_NONE;
-    if (texel == CHART_NONE) return;
+    const float choice = rng_unit(pcg_hash(w->seed + w->seen++));
+    const uint32_t receiver =
+        has_bounces(w->scene) ? prt_sent_receiver(w->scene, hit, seen, choice) : CHART_NONE;
+    if (receiver == CHART_NONE) return;
     float radiance[4 * PRT_MAX_COEFFICIENTS];
-    prt_sent_radiance(&w->sent, texel, radiance);
+    prt_sent_radiance(&w->sent, receiver, radiance);
     add_radiance(w, ray->direction, ray->solid_angle, radiance);
-    add_emission(w, ray->direction, prt_sent_emission(&w->sent, texel), 1.0f / ray->solid_angle);
+    add_emission(w, ray->direction, prt_sent_emission(&w->sent, receiver), 1.0f / ray->solid_angle);
 }
 
 static float trace_ray(void *user, const struct probe_ray *from, bool *inside)
@@ -94,11 +97,12 @@ static float trace_ray(void *user, const struct probe_ray *from, bool *inside)
     return hit.distance;
 }
 
-static void sample_emitters(struct work *w, vec3s position, uint32_t seed)
+static void sample_emitters(struct work *w, vec3s position)
 {
     for (uint32_t k = 0; k < w->light_samples; k++) {
         struct emitter_sample s;
-        if (!texel_sample_emitter(w->scene->trace, position, NULL, k, w->light_samples, seed, &s))
+        if (!texel_sample_emitter(w->scene->trace, position, NULL, k, w->light_samples, w->seed,
+                                  &s))
             continue;
         add_emission(w, s.to_light, s.radiance,
                      1.0f / probe_solid_angle(&w->sphere, s.to_light) +
@@ -115,6 +119,8 @@ static void make_probe(struct work *w, uint32_t probe, uint64_t row)
     float *place = bake_row(w->task, OUT_PLACE, row);
     vec3s position;
     w->gathers = false;
+    w->seed = (uint32_t)rng_mix(w->task->bake_seed ^ (uint64_t)probe << 32) | 1u;
+    w->seen = 0;
     if (!probe_find_place(&tracer, probe_grid_point(grid, probe), grid.spacing_m, &position))
         return;
     memcpy(place, position.raw, sizeof position.raw);
@@ -124,8 +130,7 @@ static void make_probe(struct work *w, uint32_t probe, uint64_t row)
     memset(w->emitted, 0, sizeof w->emitted);
     probe_trace_depths(&w->sphere, &tracer, position, grid.spacing_m,
                        bake_row(w->task, OUT_DEPTH, row));
-    sample_emitters(w, position,
-                    (uint32_t)rng_mix(w->task->bake_seed ^ (uint64_t)probe << 32) | 1u);
+    sample_emitters(w, position);
     for (size_t i = 0; i < count; i++) matrix[i] = half_from_float(w->matrix[i]);
     memcpy(bake_row(w->task, OUT_EMITTED, row), w->emitted, w->rows * sizeof *w->emitted);
 }
@@ -145,8 +150,7 @@ static bool run(const struct bake_task *task)
     w->bands = scene->options.glossy ? PRT_OUTGOING_BANDS : 3;
     w->coefficients = prt_coefficients(&scene->options);
     w->planes = has_bounces(scene) ? 4 : 1;
-    bool ok =
-        !has_bounces(scene) || scene->charts.side_texel_count == 0 || prt_sent_init(&w->sent, task);
+    bool ok = !has_bounces(scene) || scene->receivers.count == 0 || prt_sent_init(&w->sent, task);
     for (uint64_t i = 0; ok && i < count; i++) {
         ok = !bake_task_cancelled(task);
         if (ok) make_probe(w, (uint32_t)(first + i), i);
@@ -170,15 +174,15 @@ bool prt_add_probes(struct bake_plan *plan, const struct prt_scene *scene)
         { PRT_PROBE_DEPTH, TENSOR_F16, 3, { probes, depths, 2 }, BAKE_ROWS, BAKE_SAVED },
     };
     return bake_plan_add(
-        plan, &(struct bake_stage){
-                  .name = "probes",
-                  .wave = PRT_MATRICES_WAVE,
-                  .task_count = tasks,
-                  .run = run,
-                  .outputs = out,
-                  .output_count = OUT_COUNT,
-                  .rays = (double)(probes * rays) / (double)tasks,
-                  .flops = MULTIPLY_ADD * (double)(probes * rays * rows * numbers) / (double)tasks,
-                  .scratch_bytes =
-                      sizeof(struct work) + scene->charts.side_texel_count * sizeof(uint32_t) });
+        plan,
+        &(struct bake_stage){
+            .name = "probes",
+            .wave = PRT_MATRICES_WAVE,
+            .task_count = tasks,
+            .run = run,
+            .outputs = out,
+            .output_count = OUT_COUNT,
+            .rays = (double)(probes * rays) / (double)tasks,
+            .flops = MULTIPLY_ADD * (double)(probes * rays * rows * numbers) / (double)tasks,
+            .scratch_bytes = sizeof(struct work) + scene->receivers.count * sizeof(uint32_t) });
 }

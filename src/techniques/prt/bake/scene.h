@@ -13,7 +13,9 @@ struct prt_scene {
     struct host *host;
     const struct scene_pose *pose;
     struct prt_options options;
-    struct charts charts; // made while planning
+    // Made while planning:
+    struct charts charts; // of the receivers
+    struct prt_receivers receivers;
     // Between prepare and finish:
     struct scene_statics statics;
     struct trace_scene *trace;
@@ -22,7 +24,7 @@ struct prt_scene {
 };
 
 // Tensors that live during the bake alone.
-#define PRT_HITS "texels/hit"    // U32 [texels][rays]: texel that a ray meets; CHART_NONE: none
+#define PRT_HITS "texels/hit"    // U32 [texels][rays]: the one that a ray meets; CHART_NONE: none
 #define PRT_ROWS "texels/direct" // F32 [texels][coefficients]: transfer without bounces
 
 // Irradiance of unit coefficients by a whole sky: the clamped cosine around the normal.
@@ -33,8 +35,17 @@ static inline void prt_unshadowed(int bands, vec3s normal, float *out)
     zh_rotate(bands, zonal, normal, out);
 }
 
-// ---- texels.c: rays of all texels
-bool prt_add_texels(struct bake_plan *plan, const struct prt_scene *scene);
+// ---- sample.c: receivers in the traced scene
+
+// Where a receiver is sampled, and the share of it that is not inside geometry; 0: none is.
+struct texel_point prt_receiver_point(const struct prt_scene *scene, uint32_t receiver);
+// Offset of rays that leave it.
+float prt_receiver_reach(const struct prt_scene *scene, uint32_t receiver);
+// As texel_reflectance; at vertices the cosines are those to the vertex's normal.
+vec4s prt_receiver_reflectance(const struct prt_scene *scene, uint32_t receiver);
+
+// ---- rays.c: rays of all receivers
+bool prt_add_rays(struct bake_plan *plan, const struct prt_scene *scene);
 
 // ---- transfer.c: transfer vectors with bounces, by coefficient
 bool prt_add_transfer(struct bake_plan *plan, const struct prt_scene *scene);

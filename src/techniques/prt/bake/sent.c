@@ -2,17 +2,6 @@
 
 #include "core/half.h"
 
-static uint32_t *find_shown(const struct bake_task *task, const struct charts *charts,
-                            const float *point)
-{
-    const size_t texels = charts->side_texel_count;
-    bool *hidden = host_alloc(task->host, texels, sizeof *hidden);
-    for (size_t i = 0; hidden && i < texels; i++) hidden[i] = !(point[4 * i + 3] > 0.0f);
-    uint32_t *shown = hidden ? charts_fill(charts, hidden) : NULL;
-    host_free(task->host, hidden);
-    return shown;
-}
-
 bool prt_sent_init(struct prt_sent *out, const struct bake_task *task)
 {
     const struct prt_scene *scene = task->job;
@@ -24,31 +13,30 @@ bool prt_sent_init(struct prt_sent *out, const struct bake_task *task)
     const struct tensor *bounce = bake_task_input(task, PRT_BOUNCE);
     *out = (struct prt_sent){ 0 };
     if (!point || !albedo || !emitted || !bounces || !direct || !bounce) return false;
-    *out = (struct prt_sent){ .host = scene->charts.host,
-                              .scene = scene,
-                              .texels = scene->charts.side_texel_count,
+    *out = (struct prt_sent){ .scene = scene,
+                              .receivers = scene->receivers.count,
                               .coefficients = prt_coefficients(&scene->options),
                               .albedo = albedo->data,
                               .emitted = emitted->data,
                               .emitted_bounces = bounces->data,
                               .direct = direct->data,
                               .bounce = bounce->data,
-                              .shown = find_shown(task, &scene->charts, point->data) };
+                              .shown = prt_receivers_shown(&scene->receivers, point->data) };
     return out->shown != NULL;
 }
 
 void prt_sent_finish(struct prt_sent *sent)
 {
-    if (sent->host) host_free(sent->host, sent->shown);
+    if (sent->scene) host_free(sent->scene->receivers.host, sent->shown);
     *sent = (struct prt_sent){ 0 };
 }
 
-uint32_t prt_sent_texel(const struct prt_scene *scene, const struct ray_hit *hit,
-                        const struct texel_seen *seen)
+uint32_t prt_sent_receiver(const struct prt_scene *scene, const struct ray_hit *hit,
+                           const struct texel_seen *seen, float choice)
 {
-    const int instance = scene->trace->meshes[hit->geometry].instance;
-    if (seen->inside) return CHART_NONE;
-    return chart_texel_at(&scene->charts, instance, hit->triangle, hit->u, hit->v, seen->back);
+    const struct prt_point point = { scene->trace->meshes[hit->geometry].instance, hit->triangle,
+                                     hit->u, hit->v, seen->back };
+    return seen->inside ? CHART_NONE : prt_receiver_at(&scene->receivers, &point, choice);
 }
 
 // Over π; the factor of shading normals is that of light from all directions
@@ -60,12 +48,12 @@ static vec3s reflectance(const struct prt_sent *sent, uint32_t from)
     return vec3_of(factor * albedo[0], factor * albedo[1], factor * albedo[2]);
 }
 
-void prt_sent_radiance(const struct prt_sent *sent, uint32_t texel, float *out)
+void prt_sent_radiance(const struct prt_sent *sent, uint32_t receiver, float *out)
 {
-    const uint32_t from = sent->shown[texel];
+    const uint32_t from = sent->shown[receiver];
     const vec3s reflected = reflectance(sent, from);
     for (size_t i = 0; i < sent->coefficients; i++) {
-        const size_t at = i * sent->texels + from;
+        const size_t at = i * sent->receivers + from;
         const float direct = float_from_half(sent->direct[at]);
         out[4 * i] = 0.0f;
         for (size_t c = 0; c < 3; c++)
@@ -74,9 +62,9 @@ void prt_sent_radiance(const struct prt_sent *sent, uint32_t texel, float *out)
     }
 }
 
-vec3s prt_sent_emission(const struct prt_sent *sent, uint32_t texel)
+vec3s prt_sent_emission(const struct prt_sent *sent, uint32_t receiver)
 {
-    const size_t from = sent->shown[texel];
+    const size_t from = sent->shown[receiver];
     vec3s out = reflectance(sent, (uint32_t)from);
     for (size_t c = 0; c < 3; c++)
         out.raw[c] *= sent->emitted[12 * from + 4 * c] + sent->emitted_bounces[3 * from + c];

@@ -8,7 +8,7 @@
 void prt_series_finish(struct prt_series *s)
 {
     if (!s->host) return;
-    host_free(s->scene->charts.host, s->shown);
+    host_free(s->scene->receivers.host, s->shown);
     host_free(s->host, s->term);
     host_free(s->host, s->sent);
     host_free(s->host, s->sum);
@@ -18,15 +18,6 @@ void prt_series_finish(struct prt_series *s)
 static bool is_hidden(const struct prt_series *s, size_t texel)
 {
     return !(s->point[4 * texel + 3] > 0.0f);
-}
-
-static uint32_t *find_shown(const struct prt_series *s)
-{
-    bool *hidden = host_alloc(s->host, s->texels, sizeof *hidden);
-    for (uint32_t i = 0; hidden && i < s->texels; i++) hidden[i] = is_hidden(s, i);
-    uint32_t *shown = hidden ? charts_fill(&s->scene->charts, hidden) : NULL;
-    host_free(s->host, hidden);
-    return shown;
 }
 
 bool prt_series_init(struct prt_series *s, const struct bake_task *task)
@@ -41,8 +32,8 @@ bool prt_series_init(struct prt_series *s, const struct bake_task *task)
                               .albedo = albedo->data,
                               .point = point->data,
                               .hits = hits->data };
-    s->texels = s->scene->charts.side_texel_count;
-    s->shown = find_shown(s);
+    s->texels = s->scene->receivers.count;
+    s->shown = prt_receivers_shown(&s->scene->receivers, s->point);
     s->term = host_alloc(s->host, s->texels, sizeof *s->term);
     s->sent = host_alloc(s->host, s->texels, sizeof *s->sent);
     s->sum = host_alloc(s->host, s->texels, sizeof *s->sum);

@@ -1,4 +1,4 @@
-// The stages of a bake, in the order of their waves: texels · transfer, emitters, seams ·
+// The stages of a bake, in the order of their waves: rays · transfer, emitters, seams ·
 // matrices, probes · compression.
 #include "techniques/prt/bake/scene.h"
 
@@ -14,7 +14,8 @@ static bool prepare(void *argument, struct host *host)
     if (scene->options.glossy &&
         !prt_lobes_init(&scene->lobes, host, prt_glossy_rays(&scene->options)))
         return false;
-    return scene->trace && seam_closing_init(&scene->closing, host, &scene->charts, scene->trace);
+    return scene->trace && (scene->receivers.at_vertices ||
+                            seam_closing_init(&scene->closing, host, &scene->charts, scene->trace));
 }
 
 static void finish(void *argument)
@@ -30,14 +31,17 @@ static void finish(void *argument)
 static void destroy(void *argument)
 {
     struct prt_scene *scene = argument;
-    charts_finish(&scene->charts);
+    prt_receivers_finish(&scene->receivers);
 }
 
 // The trace scene has Embree's hierarchy, corners and facets of each triangle.
-static size_t prepared_bytes(const struct charts *charts)
+static size_t prepared_bytes(const struct prt_receivers *receivers)
 {
-    enum { OF_TRIANGLE = 240, OF_TEXEL = 60 };
-    return charts->triangle_count * (sizeof *charts->triangles + OF_TRIANGLE) +
+    enum { OF_TRIANGLE = 240, OF_TEXEL = 60, OF_VERTEX = 120 };
+    const struct charts *charts = receivers->charts;
+    return receivers->vertices.triangle_count * OF_TRIANGLE +
+           receivers->vertices.count * (size_t)OF_VERTEX +
+           charts->triangle_count * (sizeof *charts->triangles + OF_TRIANGLE) +
            (size_t)charts->width * charts->height * sizeof *charts->owner +
            (size_t)charts->side_texel_count * OF_TEXEL;
 }
@@ -50,21 +54,32 @@ static bool plan_at(struct bake_plan *plan, const void *job, float texels_per_m)
     return prt_bake(plan, &(struct technique_bake){ .pose = scene->pose, .options = &options });
 }
 
+static bool add_light_map(struct bake_plan *plan, struct prt_scene *scene)
+{
+    const struct charts *charts = &scene->charts;
+    if (scene->receivers.at_vertices) return true;
+    bake_plan_set_light_map(
+        plan, (struct bake_light_map){ charts->count, charts->texels_per_m, plan_at });
+    return light_map_add_seams(plan, &scene->closing, charts);
+}
+
 static bool add_stages(struct bake_plan *plan, struct prt_scene *scene,
                        const struct scene_pose *statics)
 {
-    struct charts *charts = &scene->charts;
+    struct prt_receivers *receivers = &scene->receivers;
     bake_plan_depends(plan, scene_key(statics, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS));
-    if (!prt_charts(statics, &scene->options, bake_plan_host(plan), charts)) return false;
+    if (!prt_receivers_init(receivers, &scene->charts, bake_plan_host(plan), statics,
+                            &scene->options)) {
+        prt_receivers_finish(receivers);
+        return false;
+    }
     bake_plan_set_job(plan, &(struct bake_job){ .job = scene,
                                                 .prepare = prepare,
                                                 .finish = finish,
                                                 .destroy = destroy,
-                                                .bytes = prepared_bytes(charts) });
-    bake_plan_set_light_map(
-        plan, (struct bake_light_map){ charts->count, charts->texels_per_m, plan_at });
-    return prt_add_texels(plan, scene) && prt_add_transfer(plan, scene) &&
-           light_map_add_seams(plan, &scene->closing, charts) && prt_add_matrices(plan, scene) &&
+                                                .bytes = prepared_bytes(receivers) });
+    return prt_add_rays(plan, scene) && prt_add_transfer(plan, scene) &&
+           add_light_map(plan, scene) && prt_add_matrices(plan, scene) &&
            prt_add_probes(plan, scene) && prt_add_compression(plan, scene);
 }
 

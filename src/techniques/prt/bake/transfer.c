@@ -14,7 +14,7 @@ static bool has_bounces(const struct prt_scene *scene)
 
 static double series_cost(const struct prt_scene *scene)
 {
-    return PRT_SERIES_COST * (double)scene->charts.side_texel_count * scene->options.rays *
+    return PRT_SERIES_COST * (double)scene->receivers.count * scene->options.rays *
            scene->options.bounces;
 }
 
@@ -26,7 +26,7 @@ static void write_direct(const struct prt_scene *scene, const float *rows, size_
                          uint16_t *out)
 {
     const size_t count = prt_coefficients(&scene->options);
-    for (size_t i = 0; i < scene->charts.side_texel_count; i++)
+    for (size_t i = 0; i < scene->receivers.count; i++)
         out[i] = half_from_float(rows[i * count + coefficient]);
 }
 
@@ -64,7 +64,7 @@ static bool run_transfer(const struct bake_task *task)
 
 static bool add_coefficients(struct bake_plan *plan, const struct prt_scene *scene)
 {
-    const uint64_t texels = light_map_rows(scene->charts.side_texel_count);
+    const uint64_t texels = light_map_rows(scene->receivers.count);
     const uint64_t coefficients = prt_coefficients(&scene->options);
     const bool bounces = has_bounces(scene);
     const int keep = prt_keep(&scene->options);
@@ -107,7 +107,7 @@ static bool run_emitted(const struct bake_task *task)
 
 static bool add_emitted(struct bake_plan *plan, const struct prt_scene *scene)
 {
-    const uint64_t texels = light_map_rows(scene->charts.side_texel_count);
+    const uint64_t texels = light_map_rows(scene->receivers.count);
     return bake_plan_add(
         plan, &(struct bake_stage){
                   .name = "emitters",

@@ -6,7 +6,6 @@
 #include "techniques/prt/prt_options.h"
 
 struct tensors;
-struct charts;
 struct prt_light;
 
 struct prt_probes {
@@ -19,9 +18,9 @@ struct prt_probes {
     bool fresh; // the volume has the newest light
 };
 
-// The tables of a bake, which is untrusted.
+// The tables of a bake, which is untrusted. bounds: of the receivers.
 bool prt_probes_upload(struct prt_probes *probes, struct host *host, struct gpu *gpu,
-                       const struct charts *charts, const struct prt_options *options,
+                       struct box3 bounds, const struct prt_options *options,
                        const struct tensors *bake);
 // Adds the objects at this offset of the state. consts: of the pipeline.
 void prt_probes_list(const struct prt_probes *probes, size_t base,

@@ -58,12 +58,11 @@ static bool upload_table(struct prt_probes *p, struct host *host, struct gpu *gp
     return light_map_table_upload(host, gpu, "probe_table", GPU_RGBA32F, table, count, &p->table);
 }
 
-bool prt_probes_upload(struct prt_probes *p, struct host *host, struct gpu *gpu,
-                       const struct charts *charts, const struct prt_options *options,
-                       const struct tensors *bake)
+bool prt_probes_upload(struct prt_probes *p, struct host *host, struct gpu *gpu, struct box3 bounds,
+                       const struct prt_options *options, const struct tensors *bake)
 {
     struct content c = { .owner = NULL };
-    p->volume.grid = probe_grid_around(charts, options->probe_spacing, prt_probes_most(options));
+    p->volume.grid = probe_grid_around(bounds, options->probe_spacing, prt_probes_most(options));
     p->count = probe_grid_count(p->volume.grid);
     p->rows = prt_probe_rows(options);
     const bool ok = find_tensors(p, host, prt_dimension(options), bake, &c) &&

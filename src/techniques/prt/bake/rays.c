@@ -1,5 +1,5 @@
-// The first stage: where texels are sampled, what they reflect, what their rays meet, the transfer
-// of the sky that they see (Sloan, Kautz & Snyder 2002), and light of emissive surfaces.
+// The first stage: where receivers are sampled, what they reflect, what their rays meet, the
+// transfer of the sky that they see (Sloan, Kautz & Snyder 2002), and light of emissive surfaces.
 #include "techniques/prt/bake/scene.h"
 
 #include "bake/plan.h"
@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { TEXELS_PER_TASK = 128 };
+enum { RECEIVERS_PER_TASK = 128 };
 enum { OUT_ROWS, OUT_ALBEDO, OUT_SKY, OUT_EMITTED, OUT_POINT, OUT_HITS, OUT_COUNT };
 
 static bool has_bounces(const struct prt_scene *scene)
@@ -18,24 +18,26 @@ static bool has_bounces(const struct prt_scene *scene)
 
 struct visit {
     const struct prt_scene *scene;
+    uint32_t seed; // of the receiver
     int bands;
     float *row;     // transfer
     uint32_t *hits; // NULL: without bounces
     uint32_t count; // of hits
 };
 
-// Rays that meet no texel leave no entry: those that do come first.
+// Rays that meet no receiver leave no entry: those that do come first.
 static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit, vec3s local,
                     const struct texel_seen *seen)
 {
     struct visit *v = user;
-    const int instance = v->scene->trace->meshes[hit->geometry].instance;
+    const struct prt_point point = { v->scene->trace->meshes[hit->geometry].instance, hit->triangle,
+                                     hit->u, hit->v, seen->back };
     (void)ray;
     (void)local;
     if (!v->hits || seen->inside) return;
-    const uint32_t texel =
-        chart_texel_at(&v->scene->charts, instance, hit->triangle, hit->u, hit->v, seen->back);
-    if (texel != CHART_NONE) v->hits[v->count++] = texel;
+    const float choice = rng_unit(pcg_hash(v->seed + v->count));
+    const uint32_t receiver = prt_receiver_at(&v->scene->receivers, &point, choice);
+    if (receiver != CHART_NONE) v->hits[v->count++] = receiver;
 }
 
 // ∫ V(ω) (n·ω)₊ Y_i(ω) dω: rays of density (n·ω)/π have the weight π.
@@ -47,19 +49,17 @@ static void add_miss(void *user, vec3s direction)
     for (int i = 0; i < SH_COUNT(v->bands); i++) v->row[i] += y[i];
 }
 
-static struct texel_receiver receiver_of(const struct bake_task *task, uint32_t texel,
+static struct texel_receiver receiver_of(const struct bake_task *task, uint32_t receiver,
                                          vec3s position)
 {
     const struct prt_scene *scene = task->job;
-    const struct chart_triangle *of = chart_triangle_of(&scene->charts, texel);
-    const vec3s normal = chart_texel_normal(&scene->charts, texel);
-    const float reach = trace_mesh_of(scene->trace, of->instance)->facets[of->triangle].reach;
+    const vec3s normal = prt_receiver_normal(&scene->receivers, receiver);
     return (struct texel_receiver){
-        .position = glms_vec3_muladds(normal, reach, position),
+        .position = glms_vec3_muladds(normal, prt_receiver_reach(scene, receiver), position),
         .normal = normal,
         .rays = scene->options.rays,
         .light_samples = texel_light_samples(scene->trace, scene->options.rays),
-        .seed = (uint32_t)rng_mix(task->bake_seed ^ (uint64_t)texel << 32) | 1u,
+        .seed = (uint32_t)rng_mix(task->bake_seed ^ (uint64_t)receiver << 32) | 1u,
     };
 }
 
@@ -67,8 +67,11 @@ static void gather(const struct bake_task *task, const struct texel_receiver *re
                    uint64_t row, struct texel_lights *light)
 {
     const struct prt_scene *scene = task->job;
-    struct visit visit = { scene, prt_bands(&scene->options), bake_row(task, OUT_ROWS, row),
-                           has_bounces(scene) ? bake_row(task, OUT_HITS, row) : NULL, 0 };
+    struct visit visit = { .scene = scene,
+                           .seed = receiver->seed,
+                           .bands = prt_bands(&scene->options),
+                           .row = bake_row(task, OUT_ROWS, row),
+                           .hits = has_bounces(scene) ? bake_row(task, OUT_HITS, row) : NULL };
     texel_gather(scene->trace, receiver, &(struct texel_visitor){ add_hit, add_miss, &visit },
                  light);
     for (int i = 0; i < SH_COUNT(visit.bands); i++) visit.row[i] *= GLM_PIf / (float)receiver->rays;
@@ -86,15 +89,15 @@ static void gather_unshadowed(const struct bake_task *task, const struct texel_r
     prt_unshadowed(prt_bands(&scene->options), receiver->normal, bake_row(task, OUT_ROWS, row));
 }
 
-static void make_texel(const struct bake_task *task, uint32_t texel, uint64_t row)
+static void make_receiver(const struct bake_task *task, uint32_t i, uint64_t row)
 {
     const struct prt_scene *scene = task->job;
-    const struct texel_point point = texel_find_point(scene->trace, &scene->charts, texel);
+    const struct texel_point point = prt_receiver_point(scene, i);
     if (has_bounces(scene))
         memset(bake_row(task, OUT_HITS, row), 0xff, (size_t)scene->options.rays * sizeof(uint32_t));
     memcpy(bake_row(task, OUT_POINT, row), &point, sizeof point);
     if (point.share == 0.0f) return;
-    const struct texel_receiver receiver = receiver_of(task, texel, point.position);
+    const struct texel_receiver receiver = receiver_of(task, i, point.position);
     struct texel_lights light = { 0 };
     if (scene->options.transfer == PRT_UNSHADOWED)
         gather_unshadowed(task, &receiver, row, &light);
@@ -102,7 +105,7 @@ static void make_texel(const struct bake_task *task, uint32_t texel, uint64_t ro
         gather(task, &receiver, row, &light);
     memcpy(bake_row(task, OUT_SKY, row), &light.sky, sizeof light.sky);
     memcpy(bake_row(task, OUT_EMITTED, row), light.emitted, sizeof light.emitted);
-    const vec4s albedo = texel_reflectance(scene->trace, &scene->charts, texel, NULL);
+    const vec4s albedo = prt_receiver_reflectance(scene, i);
     memcpy(bake_row(task, OUT_ALBEDO, row), albedo.raw, sizeof albedo.raw);
 }
 
@@ -110,21 +113,21 @@ static bool run(const struct bake_task *task)
 {
     const struct prt_scene *scene = task->job;
     uint64_t count, first = bake_task_rows(task, OUT_ROWS, &count);
-    if (scene->charts.side_texel_count == 0) return true;
+    if (scene->receivers.count == 0) return true;
     for (uint64_t i = 0; i < count; i++) {
         if (bake_task_cancelled(task)) return false;
-        make_texel(task, (uint32_t)(first + i), i);
+        make_receiver(task, (uint32_t)(first + i), i);
     }
     return true;
 }
 
-bool prt_add_texels(struct bake_plan *plan, const struct prt_scene *scene)
+bool prt_add_rays(struct bake_plan *plan, const struct prt_scene *scene)
 {
     enum { LAST_WAVE = 1 }; // transfer
-    const uint64_t texels = light_map_rows(scene->charts.side_texel_count);
+    const uint64_t texels = light_map_rows(scene->receivers.count);
     const uint64_t rays = (uint64_t)scene->options.rays;
     const uint64_t coefficients = prt_coefficients(&scene->options);
-    const size_t tasks = (size_t)((texels + TEXELS_PER_TASK - 1) / TEXELS_PER_TASK);
+    const size_t tasks = (size_t)((texels + RECEIVERS_PER_TASK - 1) / RECEIVERS_PER_TASK);
     const bool unshadowed = scene->options.transfer == PRT_UNSHADOWED;
     const struct bake_output out[OUT_COUNT] = {
         { PRT_ROWS, TENSOR_F32, 2, { texels, coefficients }, BAKE_ROWS, LAST_WAVE },
@@ -135,7 +138,7 @@ bool prt_add_texels(struct bake_plan *plan, const struct prt_scene *scene)
         { PRT_HITS, TENSOR_U32, 2, { texels, rays }, BAKE_ROWS, LAST_WAVE },
     };
     return bake_plan_add(plan, &(struct bake_stage){
-                                   .name = "texels",
+                                   .name = "rays",
                                    .wave = 0,
                                    .task_count = tasks,
                                    .run = run,

@@ -1,0 +1,136 @@
+// Irradiance of each pixel by the light of its triangle's vertices; SPECULAR: also the radiance
+// that the specular lobe reflects. Alpha is 0 where there is no such triangle.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#if SPECULAR
+#define GGX_ALBEDO_BINDING 8
+#endif
+#define FRAME_CONSTANTS_COPIED
+#include "frame/frame.glsl"
+#include "frame/brdf.glsl"
+#include "frame/octahedral.glsl"
+#define LIGHT_MAP_INSTANCES_BINDING 4
+#define LIGHT_MAP_TRIANGLES_BINDING 5
+#define LIGHT_MAP_MOVES_BINDING     13
+#include "techniques/common/light_map/lookup.glsl"
+#include "techniques/common/light_map/surface.glsl"
+#include "techniques/common/light_map/table.glsl"
+#include "techniques/prt/prt_vertex.glsl"
+
+layout(local_size_x_id = LIGHT_MAP_APPLY_WIDTH, local_size_y_id = LIGHT_MAP_APPLY_HEIGHT) in;
+layout(constant_id = PRT_APPLY_ROWS) const int ROWS = 8; // of an invocation
+layout(constant_id = LIGHT_MAP_APPLY_DIELECTRIC) const bool HAS_DIELECTRIC = false;
+
+layout(push_constant, scalar) uniform push_block
+{
+    prt_vertex_push push_of_all;
+};
+prt_vertex_push push; // a copy, as FRAME_CONSTANTS_COPIED
+layout(set = 0, binding = 1) uniform sampler2D depth;
+layout(set = 0, binding = 2) uniform sampler2D normal;
+layout(set = 0, binding = 3) uniform usampler2D id;                             // FRAME_ID
+layout(set = 0, binding = 6, rgba32ui) uniform readonly uimage2D prt_corners;   // [side][triangle]
+layout(set = 0, binding = 14, rgba32ui) uniform readonly uimage2D vertex_light; // [part][vertex]
+layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D irradiance;
+#if SPECULAR
+layout(set = 0, binding = 9) uniform sampler2D albedo;
+layout(set = 0, binding = 10) uniform sampler2D material;
+layout(set = 0, binding = 11) uniform sampler2D dielectric; // FRAME_DIELECTRIC if HAS_DIELECTRIC
+layout(set = 0, binding = 12, rgba16f) uniform writeonly image2D specular;
+#endif
+
+// One division, where normalize has three on software drivers.
+vec3 unit(vec3 v)
+{
+    return v * inversesqrt(max(dot(v, v), 1e-20));
+}
+
+// Weights of the corners, moved into the triangle.
+vec3 corner_weights(vec2 place)
+{
+    vec2 at = max(place, vec2(0.0));
+    at /= max(at.x + at.y, 1.0);
+    return vec3(1.0 - at.x - at.y, at);
+}
+
+// The vector irradiance is along the interpolated normal, where E(n) = (E + n·V) / 2 is E.
+light_map_light light_of(uint triangle, vec3 place, vec3 n)
+{
+    uint row = triangle + uint(place.z) * push.triangles;
+    uvec3 corner = imageLoad(prt_corners, light_map_at(row)).xyz;
+    vec3 weight = corner_weights(place.xy);
+    prt_vertex_light sum = prt_vertex_dark();
+    for (int k = 0; k < 3; k++) {
+        prt_vertex_add_0(sum, weight[k], imageLoad(vertex_light, light_map_at(corner[k])));
+        if (EMITTED)
+            prt_vertex_add_1(sum, weight[k],
+                             imageLoad(vertex_light, light_map_at(push.vertices + corner[k])));
+    }
+    light_map_light light;
+    light.vector = outerProduct(unit(sum.normal), sum.irradiance) + sum.beside;
+    light.irradiance = clamp(0.5 * (sum.irradiance + n * light.vector), vec3(0.0), vec3(HALF_MAX));
+    return light;
+}
+
+#if SPECULAR
+vec3 reflected(ivec2 pixel, light_map_surface s, light_map_light light)
+{
+    vec4 lobe = BRDF_DEFAULT_DIELECTRIC;
+    if (HAS_DIELECTRIC) lobe = texelFetch(dielectric, pixel, 0);
+    brdf_material m =
+        brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
+    vec3 n = s.normal, to_viewer = unit(s.camera - s.position);
+    vec3 radiance = light_map_radiance(light, n, to_viewer, brdf_alpha(m.roughness));
+    return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
+           clamp(radiance, vec3(0.0), vec3(HALF_MAX));
+}
+#endif
+
+void store(ivec2 pixel, vec4 light, vec3 radiance)
+{
+    imageStore(irradiance, pixel, light);
+#if SPECULAR
+    imageStore(specular, pixel, vec4(radiance, 1.0));
+#endif
+}
+
+void shade(ivec2 pixel)
+{
+    float z = texelFetch(depth, pixel, 0).r;
+    light_map_light light = light_map_light(vec3(0.0), mat3(0.0));
+    vec3 radiance = vec3(0.0);
+    vec2 uv = (vec2(pixel) + 0.5) * vec2(push.per_view_width, push.per_view_height);
+    vec3 position = frame.camera_position + frame_view_distance(z) * frame_view_ray(uv);
+    vec3 n = unit(octahedral_direction(texelFetch(normal, pixel, 0).rg));
+    light_map_surface s = light_map_surface(position, n, frame.camera_position);
+    uvec2 ids = texelFetch(id, pixel, 0).rg;
+    uint triangle = light_map_scene_triangle(ids, push.instances);
+    vec3 place = light_map_place_in(triangle, ids, push.instances, s);
+    bool mapped = place.z >= 0.0;
+    if (mapped) light = light_of(triangle, place, s.normal);
+#if SPECULAR
+    radiance = reflected(pixel, s, light);
+#endif
+    store(pixel, vec4(light.irradiance, mapped ? 1.0 : 0.0), radiance);
+}
+
+// A driver on a processor executes both sides of a branch for all pixels, but a loop only as often
+// as one of a few needs: an invocation has several rows, and a loop over pixels with a surface.
+void main()
+{
+    frame = frame_block;
+    push = push_of_all;
+    ivec2 first = ivec2(gl_GlobalInvocationID.xy) * ivec2(1, ROWS);
+    uint surfaces = 0u;
+    if (first.x >= int(frame.width)) return;
+    for (int row = 0; row < min(ROWS, int(frame.height) - first.y); row++) {
+        ivec2 pixel = first + ivec2(0, row);
+        if (texelFetch(depth, pixel, 0).r > 0.0)
+            surfaces |= 1u << row;
+        else
+            store(pixel, vec4(0.0, 0.0, 0.0, 1.0), vec3(0.0));
+    }
+    for (; surfaces != 0u; surfaces &= surfaces - 1u) shade(first + ivec2(0, findLSB(surfaces)));
+}
