@@ -280,8 +280,8 @@ static uint32_t more_needs(const void *options)
 static uint64_t tables_bytes(const struct prt_options *o, uint64_t rows_of_one)
 {
     const uint64_t texels = (uint64_t)o->texels, rows = rows_of_one * prt_codebook_rows(o);
-    if (rows == 0) return light_map_table_bytes(prt_row_entries(o) * rows_of_one * texels, 8);
-    return light_map_table_bytes(prt_row_entries(o) * rows, 8) + light_map_table_bytes(texels, 4) +
+    if (rows == 0) return light_map_table_bytes(prt_row_entries(o) * rows_of_one * texels, 16);
+    return light_map_table_bytes(prt_row_entries(o) * rows, 16) + light_map_table_bytes(texels, 4) +
            light_map_table_bytes(prt_weight_entries(o) * texels, 8) +
            light_map_table_bytes(rows, 16);
 }
@@ -289,7 +289,7 @@ static uint64_t tables_bytes(const struct prt_options *o, uint64_t rows_of_one)
 static uint64_t probes_bytes(const struct prt_options *o)
 {
     const uint64_t probes = prt_probes_most(o), rows = prt_probe_rows(o);
-    return light_map_table_bytes(prt_row_entries(o) * rows * probes, 8) +
+    return light_map_table_bytes(prt_row_entries(o) * rows * probes, 16) +
            light_map_table_bytes((1 + rows) * probes, 16) +
            light_map_table_bytes(rows * probes, 8) + probes * PROBE_VOLUME_BYTES;
 }

@@ -16,9 +16,12 @@
 
 #define PRT_LOCAL 64 // workgroup size over texels
 
-// Transfer vectors of texels, or rows of a codebook, in a table of four halves: entry k · rows +
-// row. With bounces it has coefficient k: the direct one and by colour the bounced ones; without,
-// the direct coefficients 4k … 4k + 3.
+// Transfer vectors of receivers, or rows of a codebook, in a table of eight halves: entry k · rows
+// + row. With bounces it has coefficients 2k and 2k + 1, of each the direct one and by colour the
+// bounced ones; without, the direct coefficients 8k … 8k + 7. Those beyond the last are 0.
+#define PRT_VECTOR_HALVES 8
+
+// Weights of receivers in a table of four halves: entry k · receivers + receiver.
 #define PRT_ROW_HALVES 4
 
 // Specialization constants: coefficients of a vector; whether it has bounces.

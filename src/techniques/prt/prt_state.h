@@ -45,7 +45,7 @@ struct prt {
 // Entries of a row in the table of transfer vectors.
 static inline uint32_t prt_row_entries(const struct prt_options *options)
 {
-    return (prt_dimension(options) + PRT_ROW_HALVES - 1) / PRT_ROW_HALVES;
+    return (prt_dimension(options) + PRT_VECTOR_HALVES - 1) / PRT_VECTOR_HALVES;
 }
 // Entries of a texel in the table of weights.
 static inline uint32_t prt_weight_entries(const struct prt_options *options)
@@ -53,10 +53,10 @@ static inline uint32_t prt_weight_entries(const struct prt_options *options)
     return (prt_vectors(options) + PRT_ROW_HALVES - 1) / PRT_ROW_HALVES;
 }
 
-// Half k of row `row` of `rows` in a table of transfer vectors.
-static inline uint16_t *prt_table_half(uint16_t *table, size_t rows, size_t row, size_t k)
+// Number k of row `row` of `rows` in a table whose entries have so many halves.
+static inline uint16_t *prt_table_half(uint16_t *table, size_t halves, size_t rows, size_t row,
+                                       size_t k)
 {
-    const size_t halves = PRT_ROW_HALVES;
     return &table[halves * (k / halves * rows + row) + k % halves];
 }
 // Reflections by matrices.

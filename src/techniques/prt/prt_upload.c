@@ -138,11 +138,12 @@ static size_t row_count(const struct prt *s)
 static bool upload_transfer(struct prt *s, const struct content *c)
 {
     const size_t rows = row_count(s), count = prt_row_entries(&s->options) * rows;
-    uint16_t *table = host_alloc(s->host, light_map_table_room(count), 4 * sizeof *table);
+    uint16_t *table =
+        host_alloc(s->host, light_map_table_room(count), sizeof(uint16_t[PRT_VECTOR_HALVES]));
     for (size_t k = 0; table && k < prt_dimension(&s->options); k++)
         for (size_t row = 0; row < rows; row++)
-            *prt_table_half(table, rows, row, k) = value_of(s, c, row, k);
-    return light_map_table_upload(s->host, s->gpu, "transfer", GPU_RG32U, table, count,
+            *prt_table_half(table, PRT_VECTOR_HALVES, rows, row, k) = value_of(s, c, row, k);
+    return light_map_table_upload(s->host, s->gpu, "transfer", GPU_RGBA32U, table, count,
                                   &s->tables.vectors.transfer);
 }
 
@@ -152,13 +153,14 @@ static bool upload_matrices(struct prt *s, const struct content *c)
     const size_t numbers = prt_dimension(&s->options), count = prt_row_entries(&s->options) * rows;
     const uint16_t *from = c->matrices.rows ? c->matrices.rows : c->matrix;
     if (!from) return true;
-    uint16_t *table = host_alloc(s->host, light_map_table_room(count), 4 * sizeof *table);
+    uint16_t *table =
+        host_alloc(s->host, light_map_table_room(count), sizeof(uint16_t[PRT_VECTOR_HALVES]));
     for (size_t i = 0; table && i < matrices; i++)
         for (size_t out = 0; out < PRT_OUTGOING; out++)
             for (size_t k = 0; k < numbers; k++)
-                *prt_table_half(table, rows, out * matrices + i, k) =
+                *prt_table_half(table, PRT_VECTOR_HALVES, rows, out * matrices + i, k) =
                     from[(i * PRT_OUTGOING + out) * numbers + k];
-    return light_map_table_upload(s->host, s->gpu, "matrices", GPU_RG32U, table, count,
+    return light_map_table_upload(s->host, s->gpu, "matrices", GPU_RGBA32U, table, count,
                                   &s->tables.matrices.transfer);
 }
 
@@ -172,7 +174,7 @@ static bool upload_clusters(struct prt *s, const struct compressed *c, struct pr
     for (size_t i = 0; clusters && i < texels; i++) clusters[i] = c->cluster[i];
     for (size_t i = 0; weights && i < texels; i++)
         for (size_t k = 0; k < vectors; k++)
-            *prt_table_half(weights, texels, i, k) = c->weight[i * vectors + k];
+            *prt_table_half(weights, PRT_ROW_HALVES, texels, i, k) = c->weight[i * vectors + k];
     const bool ok = light_map_table_upload(s->host, s->gpu, "clusters", GPU_R32U, clusters, texels,
                                            &out->clusters);
     return light_map_table_upload(s->host, s->gpu, "weights", GPU_RG32U, weights, count,

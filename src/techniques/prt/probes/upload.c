@@ -31,13 +31,14 @@ static bool upload_matrices(struct prt_probes *p, struct host *host, struct gpu 
 {
     const size_t probes = p->count, rows = p->rows, numbers = prt_dimension(options);
     const size_t count = prt_row_entries(options) * rows * probes;
-    uint16_t *table = host_alloc(host, light_map_table_room(count), 4 * sizeof *table);
+    uint16_t *table =
+        host_alloc(host, light_map_table_room(count), sizeof(uint16_t[PRT_VECTOR_HALVES]));
     for (size_t i = 0; table && i < probes; i++)
         for (size_t row = 0; row < rows; row++)
             for (size_t k = 0; k < numbers; k++)
-                *prt_table_half(table, rows * probes, row * probes + i, k) =
+                *prt_table_half(table, PRT_VECTOR_HALVES, rows * probes, row * probes + i, k) =
                     c->matrix[(c->owner[i] * rows + row) * numbers + k];
-    return light_map_table_upload(host, gpu, "probe_matrices", GPU_RG32U, table, count,
+    return light_map_table_upload(host, gpu, "probe_matrices", GPU_RGBA32U, table, count,
                                   &p->matrices);
 }
 
