@@ -294,6 +294,7 @@ static uint64_t probes_bytes(const struct prt_options *o)
            light_map_table_bytes(rows * probes, 8) + probes * PROBE_VOLUME_BYTES;
 }
 
+// At vertices their number is the scene's: as for a light map of so many texels.
 static uint64_t memory_estimate(const void *options)
 {
     const struct prt_options *o = options;

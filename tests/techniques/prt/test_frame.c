@@ -2,6 +2,7 @@
 #include "techniques/prt/prt_fixture.h"
 
 #include "core/half.h"
+#include "scene/scene_edit.h"
 #include "techniques/gi.h"
 #include "techniques/prt/prt_state.h"
 #include "techniques/technique_rules.h"
@@ -319,6 +320,46 @@ TEST_GPU(pixels_have_the_weighted_light_of_their_vertices)
         prt_baked_finish(&baked);
         prt_fixture_close(&f);
     }
+}
+
+// An object that the camera moves along with looks the same.
+TEST_GPU(moved_instances_keep_the_light_of_their_vertices)
+{
+    struct prt_fixture f;
+    struct prt_light light;
+    struct gpu_side g;
+    double worst = 0, most = 0;
+    prt_fixture_init(&f);
+    prt_fixture_sphere(&f, vec3_of(0, 0, 0), 1, 8, 0, false, prt_fixture_diffuse(&f, 1));
+    fixture_look(&f.s, vec3_of(0, 0, 3), vec3_of(0, 0, 0));
+    prt_fixture_open(&f, "texels=64,rays=64");
+    struct prt_baked baked = prt_fixture_bake(&f, "at=vertex", 0);
+    prt_random_light(1, &light);
+    light.direct[0] = (vec4s){ { 5, 6, 7, 0 } };
+    open_stack(&g, &f, &baked, gpu, "at=vertex", &light);
+    float *images[2];
+    for (int i = 0; i < 2; i++) {
+        gi_follow(g.gi, &f.s.pose, true);
+        fixture_render(&f.s);
+        images[i] = fixture_read(&f.s, READ_IRRADIANCE);
+        const vec3s by = vec3_of(2, -1, 1);
+        CHECK(scene_set_instance_transform(f.s.scene, 0, glms_translate_make(by)));
+        CHECK(pose_follow(&f.s.pose));
+        pose_update(&f.s.pose, -1, 0);
+        fixture_look(&f.s, glms_vec3_add(by, vec3_of(0, 0, 3)), by);
+    }
+    CHECK(strstr(test_last_message(), "static geometry changed"));
+    for (size_t i = 0; i < (size_t)3 * f.s.width * f.s.height; i++) {
+        most = fmax(most, (double)images[0][i]);
+        worst = fmax(worst, (double)fabsf(images[1][i] - images[0][i]));
+    }
+    print_message("%.2g off of %.2g\n", worst, most);
+    CHECK(most > 0 && worst < 2e-3 * most);
+    free(images[0]);
+    free(images[1]);
+    close_stack(&g);
+    prt_baked_finish(&baked);
+    prt_fixture_close(&f);
 }
 
 // ---- pixels

@@ -86,6 +86,29 @@ TEST(double_sided_materials_have_receivers_on_both_sides)
     prt_fixture_close(&f);
 }
 
+// The mean over choices is interpolated light.
+TEST(a_point_sends_the_light_of_a_corner_with_the_probability_of_its_weight)
+{
+    enum { CHOICES = 1000 };
+    struct prt_fixture f;
+    struct prt_receivers r = { .at_vertices = true };
+    int count[3] = { 0 };
+    prt_fixture_init(&f);
+    add_unshared_quad(&f, false);
+    prt_fixture_open(&f, "rays=16");
+    r.vertices = vertices_of(&f);
+    struct prt_point point = { .triangle = 1, .u = 0.2f, .v = 0.3f };
+    for (int i = 0; i < CHOICES; i++) {
+        const uint32_t at = prt_receiver_at(&r, &point, ((float)i + 0.5f) / CHOICES);
+        for (int k = 0; k < 3; k++) count[k] += at == r.vertices.corners[1][k];
+    }
+    CHECK(count[0] == 500 && count[1] == 200 && count[2] == 300);
+    point.back = true;
+    CHECK(prt_receiver_at(&r, &point, 0.5f) == CHART_NONE);
+    prt_vertices_finish(&r.vertices);
+    prt_fixture_close(&f);
+}
+
 // All but the outermost columns are hidden: those left of the middle show the left one.
 TEST(hidden_vertices_show_the_nearest_along_edges)
 {
@@ -232,14 +255,35 @@ TEST(irradiance_below_a_black_disk_is_that_of_its_form_factor)
     }
 }
 
-// Rays of corners of a closed room, whose vertices are all in the planes of two other walls.
+// A cube of edges of 4 m whose walls face its inside, turned so that they are not exactly planar.
+static void add_turned_room(struct prt_fixture *f, int material)
+{
+    static const float AROUND[4][2] = { { -2, -2 }, { 2, -2 }, { 2, 2 }, { -2, 2 } };
+    const mat4s turn = glms_rotate_make(0.7f, vec3_of(1, 2, 3));
+    for (int wall = 0; wall < 6; wall++) {
+        const int axis = wall / 2, side = wall % 2;
+        vec3s corner[4];
+        for (int k = 0; k < 4; k++) {
+            const float *around = AROUND[side ? 3 - k : k];
+            vec3s p;
+            p.raw[axis] = side ? 2 : -2;
+            p.raw[(axis + 1) % 3] = around[0];
+            p.raw[(axis + 2) % 3] = around[1];
+            corner[k] = mat4_point(turn, p);
+        }
+        fixture_quad(&f->s, corner[0], corner[1], corner[2], corner[3], material);
+    }
+}
+
+// Corners are in the planes of two other walls, within rounding.
 TEST(no_sky_enters_a_closed_room)
 {
     struct prt_fixture f;
     prt_fixture_init(&f);
-    fixture_box(&f.s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, prt_fixture_diffuse(&f, 0.5f));
+    add_turned_room(&f, prt_fixture_diffuse(&f, 0.5f));
     prt_fixture_open(&f, "rays=1024");
     struct prt_baked baked = prt_fixture_bake(&f, "at=vertex", 0);
+    CHECK(tensors_find(baked.tensors, LIGHT_MAP_POINT)->shape[0] == 24);
     for (uint32_t i = 0; i < 24; i++) {
         CHECK(prt_is_open(&baked, i));
         for (size_t k = 0; k < 9; k++) CHECK(prt_coefficient(&baked, i, k).x == 0);
