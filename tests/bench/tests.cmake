@@ -11,6 +11,8 @@ add_test(NAME bench.paper_mrt COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/paper_mrt.sh 
 set_tests_properties(bench.paper_mrt PROPERTIES TIMEOUT 300 LABELS bench SKIP_RETURN_CODE 77)
 add_test(NAME bench.paper_ort COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/paper_ort.sh $<TARGET_FILE:bench_paper_ort> $<TARGET_FILE:afterglow>)
 set_tests_properties(bench.paper_ort PROPERTIES TIMEOUT 300 LABELS bench SKIP_RETURN_CODE 77)
+add_test(NAME bench.paper_prt COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/paper_prt.sh $<TARGET_FILE:bench_paper_prt> $<TARGET_FILE:afterglow>)
+set_tests_properties(bench.paper_prt PROPERTIES TIMEOUT 300 LABELS bench SKIP_RETURN_CODE 77)
 add_test(NAME bench.paper_vct COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/paper_vct.sh $<TARGET_FILE:bench_paper_vct> $<TARGET_FILE:afterglow>)
 set_tests_properties(bench.paper_vct PROPERTIES TIMEOUT 300 LABELS bench SKIP_RETURN_CODE 77)
 add_test(NAME bench.occlusion COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/occlusion.sh $<TARGET_FILE:bench_occlusion> $<TARGET_FILE:afterglow>)
