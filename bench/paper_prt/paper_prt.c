@@ -216,7 +216,7 @@ static void write_times(FILE *file, const char *scene, const struct prt_times *t
     fflush(file);
 }
 
-// Passes whose time depends on the number of texels; `rows` takes less than a tenth of `light`.
+// Passes whose time depends on the number of texels.
 static const struct time_curve {
     const char *name;
     int variant;

@@ -7,7 +7,6 @@
 
 enum { TEXT = 256 };
 
-// Names are not values in a report but those of stages, which differ from all members.
 double report_number_of(const char *json, const char *name)
 {
     char quoted[TEXT];
@@ -20,11 +19,12 @@ double report_number_of(const char *json, const char *name)
     return end != at ? value : (double)NAN;
 }
 
-// A stage has its name before its seconds.
+// Options come before the stages, and a stage has its name before its seconds.
 double report_seconds_of(const char *json, const char *stage)
 {
     char quoted[TEXT];
     snprintf(quoted, sizeof quoted, "\"%s\"", stage);
-    const char *at = strstr(json, quoted);
+    const char *stages = strstr(json, "\"stages\":");
+    const char *at = stages ? strstr(stages, quoted) : NULL;
     return at ? report_number_of(at, "seconds") : (double)NAN;
 }
