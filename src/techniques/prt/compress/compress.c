@@ -126,7 +126,7 @@ static bool compress_reduced(const struct prt_points *centred, const struct prt_
     const struct prt_points *points = less->at ? &reduced : centred;
     ok = ok && codebook_init(out, host, points, how->clusters, 0) &&
          compress(points, how, out, error);
-    if (ok && less->at) ok = prt_expand(&reduction, out);
+    if (ok && less->at) ok = prt_expand(&reduction, out) && prt_update(centred, out);
     prt_reduction_finish(&reduction);
     return ok;
 }

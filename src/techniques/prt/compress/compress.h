@@ -36,7 +36,8 @@ struct prt_codebook {
 // Clusters by vector quantisation: seeds by their squared distances (Arthur & Vassilvitskii 2007,
 // "k-means++"), then Lloyd's rounds. With vectors, rounds follow in which points move to the
 // subspace nearest to them. Points of many numbers are clustered in the space of their 128 largest
-// principal vectors. Deterministic. False: no memory, or stopped (FAIL_CANCELLED).
+// principal vectors; means and vectors are then those of the whole points. Deterministic. False: no
+// memory, or stopped (FAIL_CANCELLED).
 bool prt_compress(struct host *host, const struct prt_points *points,
                   const struct prt_compression *how, struct prt_codebook *out);
 void prt_codebook_finish(struct prt_codebook *codebook);

@@ -147,20 +147,38 @@ static bool find_scatter(const struct prt_points *points, const size_t *member, 
     return ok;
 }
 
-// Eigenvectors of the scatter matrix of a cluster, by descending variance.
+// Columns are eigenvectors by descending variance. Few of many are found without the others.
+static bool find_eigenvectors(struct host *host, const struct matrix_f64 *scatter, size_t count,
+                              struct matrix_f64 *out)
+{
+    enum { MOST_WHOLE = 128 };
+    static const char WHAT[] = "scatter of transfer vectors";
+    if (scatter->rows > MOST_WHOLE) {
+        const struct linalg_truncation truncation = { 1.0, count, 0 };
+        return linalg_truncated_left(host, WHAT, scatter, &truncation, out);
+    }
+    struct linalg_eigen eigen = { 0 };
+    if (!linalg_symmetric_eigen(host, WHAT, scatter, &eigen)) return false;
+    *out = eigen.vectors;
+    eigen.vectors = (struct matrix_f64){ 0 };
+    linalg_eigen_finish(host, &eigen);
+    return true;
+}
+
+// Vectors beyond the rank of the members are 0.
 static bool update_vectors(const struct prt_points *points, const size_t *member, size_t count,
                            struct prt_codebook *book, float *mean)
 {
     const size_t dim = book->dim;
     struct matrix_f64 scatter = { 0 };
-    struct linalg_eigen eigen = { 0 };
-    const bool ok =
-        find_scatter(points, member, count, book->host, mean, &scatter) &&
-        linalg_symmetric_eigen(book->host, "scatter of transfer vectors", &scatter, &eigen);
+    struct matrix_f64 vectors = { 0 };
+    const bool ok = find_scatter(points, member, count, book->host, mean, &scatter) &&
+                    find_eigenvectors(book->host, &scatter, book->vectors, &vectors);
     for (size_t k = 0; ok && k < book->vectors; k++)
         for (size_t d = 0; d < dim; d++)
-            mean[(1 + k) * dim + d] = (float)eigen.vectors.at[d * eigen.vectors.stride + k];
-    linalg_eigen_finish(book->host, &eigen);
+            mean[(1 + k) * dim + d] =
+                k < vectors.columns ? (float)vectors.at[d * vectors.stride + k] : 0.0f;
+    matrix_f64_finish(book->host, &vectors);
     matrix_f64_finish(book->host, &scatter);
     return ok;
 }
