@@ -1,5 +1,6 @@
 // Irradiance of each pixel by the light of its triangle's vertices; SPECULAR: also the radiance
-// that the specular lobe reflects. Alpha is 0 where there is no such triangle.
+// that the specular lobe reflects. Alpha is 0 where there is no such triangle. Pixels without a
+// surface stay as they are.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -88,19 +89,10 @@ vec3 reflected(ivec2 pixel, light_map_surface s, light_map_light light)
 }
 #endif
 
-void store(ivec2 pixel, vec4 light, vec3 radiance)
-{
-    imageStore(irradiance, pixel, light);
-#if SPECULAR
-    imageStore(specular, pixel, vec4(radiance, 1.0));
-#endif
-}
-
 void shade(ivec2 pixel)
 {
     float z = texelFetch(depth, pixel, 0).r;
     light_map_light light = light_map_light(vec3(0.0), mat3(0.0));
-    vec3 radiance = vec3(0.0);
     vec2 uv = (vec2(pixel) + 0.5) * vec2(push.per_view_width, push.per_view_height);
     vec3 position = frame.camera_position + frame_view_distance(z) * frame_view_ray(uv);
     vec3 n = unit(octahedral_direction(texelFetch(normal, pixel, 0).rg));
@@ -110,10 +102,10 @@ void shade(ivec2 pixel)
     vec3 place = light_map_place_in(triangle, ids, push.instances, s);
     bool mapped = place.z >= 0.0;
     if (mapped) light = light_of(triangle, place, s.normal);
+    imageStore(irradiance, pixel, vec4(light.irradiance, mapped ? 1.0 : 0.0));
 #if SPECULAR
-    radiance = reflected(pixel, s, light);
+    imageStore(specular, pixel, vec4(reflected(pixel, s, light), 1.0));
 #endif
-    store(pixel, vec4(light.irradiance, mapped ? 1.0 : 0.0), radiance);
 }
 
 // A driver on a processor executes both sides of a branch for all pixels, but a loop only as often
@@ -125,12 +117,7 @@ void main()
     ivec2 first = ivec2(gl_GlobalInvocationID.xy) * ivec2(1, ROWS);
     uint surfaces = 0u;
     if (first.x >= int(frame.width)) return;
-    for (int row = 0; row < min(ROWS, int(frame.height) - first.y); row++) {
-        ivec2 pixel = first + ivec2(0, row);
-        if (texelFetch(depth, pixel, 0).r > 0.0)
-            surfaces |= 1u << row;
-        else
-            store(pixel, vec4(0.0, 0.0, 0.0, 1.0), vec3(0.0));
-    }
+    for (int row = 0; row < min(ROWS, int(frame.height) - first.y); row++)
+        if (texelFetch(depth, first + ivec2(0, row), 0).r > 0.0) surfaces |= 1u << row;
     for (; surfaces != 0u; surfaces &= surfaces - 1u) shade(first + ivec2(0, findLSB(surfaces)));
 }

@@ -139,12 +139,15 @@ bool prt_vertex_map_upload(struct prt_vertex_map *map, uint32_t instances, const
 void prt_vertex_map_record_apply(const struct prt_vertex_map *map, struct gpu_cmd *cmd,
                                  const struct frame_view *view)
 {
+    static const float NONE[4] = { 0, 0, 0, 1 }; // of pixels without a surface
     const gpu_image *layers = view->layers;
     const struct prt_vertex_push push = { 1.0f / (float)view->width, 1.0f / (float)view->height,
                                           map->vertices->count,
                                           (uint32_t)map->vertices->triangle_count,
                                           light_map_instances(&map->surfaces) };
     gpu_scope_begin(cmd, "apply");
+    gpu_clear_image(cmd, layers[FRAME_IRRADIANCE], NONE);
+    if (layers[FRAME_SPECULAR].id) gpu_clear_image(cmd, layers[FRAME_SPECULAR], NONE);
     gpu_dispatch(cmd, map->apply[map->surfaces.moves != NULL][layers[FRAME_DIELECTRIC].id != 0],
                  GPU_BIND(FRAME_SURFACE_BINDINGS(view), { .name = "id", .image = layers[FRAME_ID] },
                           LIGHT_MAP_SURFACE_BINDINGS(&map->surfaces, cmd),

@@ -252,7 +252,7 @@ static bool expect_pixel(const struct prt_fixture *f, const struct prt_vertices 
     return true;
 }
 
-// Largest difference of a pixel over the largest irradiance. factor: of what is drawn.
+// Largest difference of a pixel over the largest irradiance. Those without a surface have none.
 static double compare_pixels(struct prt_fixture *f, const struct prt_baked *baked,
                              const struct prt_light *light)
 {
@@ -264,8 +264,10 @@ static double compare_pixels(struct prt_fixture *f, const struct prt_baked *bake
     const float factor = light ? frame_radiance_scale(f->s.frame) : 1;
     for (uint32_t i = 0; i < f->s.width * f->s.height; i++) {
         float expected[3];
-        if (!expect_pixel(f, &v, baked, light, ids, i % f->s.width, i / f->s.width, expected))
+        if (!expect_pixel(f, &v, baked, light, ids, i % f->s.width, i / f->s.width, expected)) {
+            for (size_t c = 0; c < 3; c++) CHECK(got[3 * (size_t)i + c] == 0);
             continue;
+        }
         for (size_t c = 0; c < 3; c++) {
             most = fmax(most, (double)expected[c]);
             worst = fmax(worst, fabs((double)(got[3 * (size_t)i + c] * factor - expected[c])));
@@ -275,7 +277,7 @@ static double compare_pixels(struct prt_fixture *f, const struct prt_baked *bake
     free(ids);
     free(got);
     prt_vertices_finish(&v);
-    CHECK(count > 100 && most > 0.1);
+    CHECK(count > 100 && (uint32_t)count < f->s.width * f->s.height && most > 0.1);
     return worst / most;
 }
 
