@@ -1,6 +1,6 @@
 /// Light maps as files: the irradiance of static surfaces, of all bounces, for any engine. Texels
-/// are those of a technique with a light map (radiosity, ort, prt). Their light is that of a
-/// renderer's newest frame, or of a bake by the path tracer (ag_bake_desc.lightmap_samples).
+/// are those of a technique with a light map (radiosity, ort, prt at texels). Their light is that
+/// of a renderer's newest frame, or of a bake by the path tracer (ag_bake_desc.lightmap_samples).
 ///
 /// A map holds irradiance in lux along the interpolated vertex normal, without albedo and 1/π: a
 /// diffuse surface reflects albedo/π times that. Rows go down, as v does in glTF. Around each chart

@@ -23,7 +23,7 @@ static void record_rows(struct prt *s, struct gpu_cmd *cmd)
     gpu_scope_end(cmd);
 }
 
-// What the shaders of receivers read of transfer.
+// The transfer that shaders of receivers read.
 #define TRANSFER_BINDINGS(state, transferred, cmd)                                                 \
     gpu_transient(cmd, "prt_light_block", &(state)->light, sizeof(state)->light),                  \
         { .name = "prt_texels", .image = (state)->tables.texels },                                 \

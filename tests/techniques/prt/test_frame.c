@@ -229,7 +229,7 @@ static vec3s weights_at(const struct prt_fixture *f, uint32_t x, uint32_t y, con
     return weight;
 }
 
-// What a pixel has of its triangle's vertices, which are those of its side. False: no surface.
+// The weighted light of a pixel's triangle, of the vertices of its side. False: no surface.
 static bool expect_pixel(const struct prt_fixture *f, const struct prt_vertices *v,
                          const struct prt_baked *baked, const struct prt_light *light,
                          const float *ids, uint32_t x, uint32_t y, float out[3])

@@ -126,11 +126,11 @@ TEST(hidden_vertices_show_the_nearest_along_edges)
         CHECK(!hidden[shown[i]] && (hidden[i] || shown[i] == i));
         if (p.x != 0) CHECK(p.z == q.z && p.x * q.x > 0);
     }
-    free(shown);
+    host_free(test_host(), shown);
     for (uint32_t i = 0; i < v.count; i++) hidden[i] = true;
     shown = prt_vertices_fill(&v, hidden);
     for (uint32_t i = 0; i < v.count; i++) CHECK(shown[i] == i);
-    free(shown);
+    host_free(test_host(), shown);
     free(hidden);
     prt_vertices_finish(&v);
     prt_fixture_close(&f);

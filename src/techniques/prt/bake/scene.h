@@ -37,7 +37,7 @@ static inline void prt_unshadowed(int bands, vec3s normal, float *out)
 
 // ---- sample.c: receivers in the traced scene
 
-// Where a receiver is sampled, and the share of it that is not inside geometry; 0: none is.
+// The sample point of a receiver, and the share of it that is not inside geometry; 0: none is.
 struct texel_point prt_receiver_point(const struct prt_scene *scene, uint32_t receiver);
 // Offset of rays that leave it.
 float prt_receiver_reach(const struct prt_scene *scene, uint32_t receiver);

@@ -3,8 +3,8 @@
 //
 //     T_{b+1}(x) = ∫ (1 − V(ω)) ρ(y)/π T_b(y) (n·ω)₊ dω,
 //
-// where y is the texel that the ray of x along ω meets. Rays of density (n·ω)/π make it the mean of
-// ρ T_b over them, 0 where they meet the sky.
+// where y is the receiver that the ray of x along ω meets. Rays of density (n·ω)/π make it the mean
+// of ρ T_b over them, 0 where they meet the sky.
 #pragma once
 
 #include "techniques/prt/bake/scene.h"

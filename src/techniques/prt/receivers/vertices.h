@@ -28,7 +28,7 @@ struct prt_vertices {
 bool prt_vertices_init(struct prt_vertices *out, struct host *host, const struct scene_pose *pose);
 void prt_vertices_finish(struct prt_vertices *vertices);
 
-// Of a triangle of an instance's mesh.
+// The vertices of a triangle of an instance's mesh.
 static inline const uint32_t *prt_vertices_of(const struct prt_vertices *v, int instance,
                                               uint32_t triangle, bool back)
 {
