@@ -203,7 +203,7 @@ TEST(a_floor_reflects_the_wall_beside_it)
     fixture_floor(&f.s, 2, metal(&f, 0.3f));
     fixture_box(&f.s, vec3_of(-2, 0, -2), vec3_of(-1.9f, 8, 2), false,
                 fixture_matte(&f.s, vec3_of(0.8f, 0.1f, 0.1f)));
-    prt_fixture_open(&f, "density=6,rays=1024,coefficients=25,glossy=true");
+    prt_fixture_open(&f, "density=6,rays=512,coefficients=9,glossy=true");
     struct prt_baked baked = prt_fixture_bake(&f, "", 0);
     double sum[2][3] = { 0 };
     int count = 0;

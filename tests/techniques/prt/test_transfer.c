@@ -423,8 +423,8 @@ TEST(a_scene_turned_with_its_light_has_the_same_irradiance)
     for (int i = 0; i < 3; i++) {
         struct prt_fixture a, b;
         double mean_a[3], mean_b[3];
-        open_turned(&a, one, "density=8,rays=2048,coefficients=16");
-        open_turned(&b, turn, "density=8,rays=2048,coefficients=16");
+        open_turned(&a, one, "density=8,rays=1024,coefficients=16");
+        open_turned(&b, turn, "density=8,rays=1024,coefficients=16");
         struct prt_baked baked_a = prt_fixture_bake(&a, MORE[i], 0),
                          baked_b = prt_fixture_bake(&b, MORE[i], 0);
         mean_light(&a, &baked_a, &light, mean_a);
