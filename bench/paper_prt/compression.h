@@ -7,7 +7,7 @@ enum { GI_SIZE = 1024, PRT_METHODS = 3 };
 enum prt_method { PRT_VQ, PRT_PCA, PRT_CPCA };
 extern const char *const prt_methods[PRT_METHODS]; // as the option has them
 
-// What is compressed.
+// The kinds of points that are compressed.
 struct prt_subject {
     const char *name;
     const char *options; // of prt

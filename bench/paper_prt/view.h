@@ -27,7 +27,7 @@ struct prt_baseline {
 enum ag_result prt_baseline_create(const struct prt_view *view, const char *gi,
                                    struct prt_baseline *out);
 void prt_baseline_destroy(const struct prt_view *view, struct prt_baseline *baseline);
-// Of all pixels, and of those with a surface.
+// Errors of all pixels, and of those with a surface.
 struct prt_flip {
     double all, surface;
 };

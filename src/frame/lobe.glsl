@@ -27,7 +27,7 @@ float lobe_tan_half_angle(float alpha, float widest)
     return alpha < 1.0 ? min(2.0 * alpha / (1.0 - alpha * alpha), widest) : widest; // (1)
 }
 
-// Of the cone, for each of two axes, rad.
+// Standard deviation of the cone, for each of two axes, rad.
 float lobe_deviation(float alpha)
 {
     return atan(alpha);

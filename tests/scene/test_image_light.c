@@ -74,7 +74,7 @@ TEST(rotations_turn_the_light)
                 glms_quatv(GLM_PI_2f, vec3_of(0, 1, 0)), 1.0f);
     check_light(",'rotation':[0.70710678,0,0,0.70710678]", 255,
                 glms_quatv(GLM_PI_2f, vec3_of(1, 0, 0)), 1.0f);
-    // Of any length.
+    // A direction of any length.
     check_light(",'rotation':[0.3,0.4,-0.2,0.6]", 255,
                 glms_quat_normalize((versors){ { 0.3f, 0.4f, -0.2f, 0.6f } }), 1.0f);
 }

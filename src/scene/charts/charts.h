@@ -110,7 +110,7 @@ struct charts {
 bool charts_init(struct charts *out, struct host *host, const struct scene_pose *pose,
                  const struct charts_options *options);
 void charts_finish(struct charts *charts);
-// Of the triangles in charts.
+// Bounds of the triangles in charts.
 struct box3 charts_bounds(const struct charts *charts);
 
 // Charts for the light map of a technique.

@@ -276,7 +276,7 @@ static uint32_t more_needs(const void *options)
     return o->specular ? FRAME_WRITES_SPECULAR : 0;
 }
 
-// Of vectors, or of matrices with as many rows.
+// Bytes of vectors, or of matrices with as many rows.
 static uint64_t tables_bytes(const struct prt_options *o, uint64_t rows_of_one)
 {
     const uint64_t texels = (uint64_t)o->texels, rows = rows_of_one * prt_codebook_rows(o);

@@ -11,7 +11,7 @@
 // Bands and coefficients of the radiance that specular lobes reflect, by outgoing direction.
 #define PRT_OUTGOING_BANDS 5
 #define PRT_OUTGOING       25
-// Of lobes of matrices: narrower ones have more detail than these bands.
+// Roughness of the narrowest lobe of matrices: narrower ones have more detail than these bands.
 #define PRT_LEAST_ROUGHNESS 0.3
 
 #define PRT_LOCAL 64 // workgroup size over texels

@@ -43,7 +43,7 @@ vec3 prt_row_irradiance(uint row, uint rows)
     return sum;
 }
 
-// Of the visible part of a sky of radiance 1, without bounces.
+// Irradiance by the visible part of a sky of radiance 1, without bounces.
 float prt_row_sky(uint row)
 {
     return light_map_unpack(imageLoad(prt_transfer, light_map_at(row)).xy).x / SH_Y0;

@@ -55,7 +55,7 @@ static bool check_clusters(const struct prt *s, const uint16_t *cluster)
     return true;
 }
 
-// Of the tensors of vectors, or of matrices.
+// Finds the tensors of compressed vectors, or matrices.
 static bool find_points(struct prt *s, const struct tensors *bake, bool matrices,
                         struct compressed *out)
 {

@@ -91,7 +91,7 @@ bool radiosity_upload_factors(struct radiosity *state, const uint32_t *source,
                               const uint16_t *cluster_factor);
 void radiosity_destroy_rows(struct radiosity *state, struct radiosity_rows *rows);
 
-// What a bake has of the surroundings of texels.
+// The content of a bake about the surroundings of texels.
 struct radiosity_surroundings {
     const struct light_map_texels *texels;
     const float *inverse_distance; // [texels] harmonic mean of the distances of what each one sees

@@ -95,6 +95,49 @@ TEST(clusters_find_the_subspaces_of_the_points)
     points_finish(&points);
 }
 
+// The same points by a linear map to many numbers.
+static struct prt_points widened(const struct prt_points *from, size_t dim)
+{
+    float *at = calloc(from->count * dim, sizeof *at);
+    assert_non_null(at);
+    for (size_t d = 0; d < dim; d++) {
+        struct rng rng = rng_for((uint32_t)d, 3, 0);
+        float row[DIM];
+        for (size_t k = 0; k < DIM; k++) row[k] = 2 * rng_float(&rng) - 1;
+        for (size_t i = 0; i < from->count; i++)
+            for (size_t k = 0; k < DIM; k++)
+                at[i * dim + d] += row[k] * from->at[i * from->dim + k];
+    }
+    return (struct prt_points){ at, from->count, dim };
+}
+
+// Points of more than 128 numbers are clustered in fewer.
+TEST(clusters_of_many_numbers_find_the_subspaces_of_the_points)
+{
+    struct prt_points narrow = make_points(2000, 8, 0), wide = widened(&narrow, 300);
+    struct prt_codebook book;
+    const struct prt_compression how = { .clusters = 8, .vectors = 2, .seed = 5 };
+    CHECK(prt_compress(test_host(), &wide, &how, &book));
+    CHECK(book.dim == 300);
+    double error = 0;
+    for (size_t i = 0; i < wide.count; i++) {
+        const float *mean = prt_codebook_row(&book, book.cluster[i], 0);
+        float weights[2];
+        prt_weigh(&book, book.cluster[i], wide.at + i * wide.dim, weights);
+        for (size_t d = 0; d < wide.dim; d++) {
+            const float x = mean[d] + weights[0] * mean[wide.dim + d] +
+                            weights[1] * mean[2 * wide.dim + d] - wide.at[i * wide.dim + d];
+            error += (double)(x * x);
+        }
+    }
+    error /= prt_variance(&wide);
+    print_message("relative error: %.2g\n", error);
+    CHECK(error < 1e-6);
+    prt_codebook_finish(&book);
+    points_finish(&wide);
+    points_finish(&narrow);
+}
+
 static size_t bytes_of(size_t points, size_t clusters, size_t vectors)
 {
     return 2 * (points * (vectors + (clusters > 1)) + clusters * (1 + vectors) * DIM);

@@ -1,4 +1,4 @@
-// Where the encoded bytes of an image are (glTF 2.0, section 3.8.2).
+// The place of the encoded bytes of an image (glTF 2.0, section 3.8.2).
 #include "scene/import/gltf/gltf.h"
 
 #include "scene/import/import_files.h"

@@ -11,7 +11,7 @@
 
 layout(set = 0, binding = LIGHT_MAP_VISIBLE_SKY_BINDING) uniform sampler2DArray visible_sky;
 
-// What a place sees of the sky, as a cone about its vector irradiance. One of half-angle ρ about
+// The sky that a place sees, as a cone about its vector irradiance. One of half-angle ρ about
 // the normal has the irradiance sin²ρ of a sky of radiance 1/π.
 struct light_map_sky {
     float share; // irradiance, 0…1

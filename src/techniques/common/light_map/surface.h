@@ -31,7 +31,7 @@ static inline uint32_t light_map_place_word(const struct charts *charts, size_t 
                       line % charts->height << LIGHT_MAP_PLACE_BITS | place % charts->width);
 }
 
-// Of half floats, which shaders write and sample. layers: of a side.
+// An image of half floats, which shaders write and sample. layers: of a side.
 struct gpu_image_desc light_map_image(const struct charts *charts, const char *name,
                                       uint32_t layers);
 // A triangle that is not in the map, and one by its corners and their places in the atlas.

@@ -11,7 +11,7 @@ struct prt_sent {
     uint32_t *shown; // [receivers] in whose place hidden ones send
 };
 
-// Of a bake with bounces. False: a tensor is missing, or no memory. prt_sent_finish accepts zero.
+// For a bake with bounces. False: a tensor is missing, or no memory. prt_sent_finish accepts zero.
 bool prt_sent_init(struct prt_sent *out, const struct bake_task *task);
 void prt_sent_finish(struct prt_sent *sent);
 
