@@ -299,15 +299,19 @@ static void info_text(struct session *session, const struct facts *facts)
     print_defaults(&facts->defaults);
 }
 
+// That of --environment, or of the scene's file.
 static enum status find_environment(struct session *session, struct facts *facts)
 {
     struct ag_environment *environment = NULL;
-    if (!session->arguments->environment) return DONE;
     enum ag_result result =
-        environment_make(session->context, &session->arguments->environment_value, &environment);
-    if (result == AG_OK) result = ag_environment_get_info(environment, &facts->environment);
+        session->arguments->environment
+            ? environment_make(session->context, &session->arguments->environment_value,
+                               &environment)
+            : ag_scene_get_environment(session->scene, &environment, NULL);
+    if (result == AG_OK && environment)
+        result = ag_environment_get_info(environment, &facts->environment);
+    facts->has_environment = result == AG_OK && environment;
     ag_environment_destroy(environment);
-    facts->has_environment = result == AG_OK;
     return result == AG_OK ? DONE : fail_library(session->context, result);
 }
 

@@ -69,6 +69,11 @@ AG_API void ag_environment_use_default(struct ag_environment_use *use);
 AG_API enum ag_result ag_scene_set_environment(struct ag_scene *scene,
                                                const struct ag_environment *environment,
                                                const struct ag_environment_use *use);
+/// The environment that a scene has, set or read from its file, and its use, which may be NULL. The
+/// caller destroys it. *out NULL: the scene has none.
+AG_API enum ag_result ag_scene_get_environment(const struct ag_scene *scene,
+                                               struct ag_environment **out,
+                                               struct ag_environment_use *use);
 
 AG_END
 

@@ -11,7 +11,7 @@ static const float STRONGEST = 1e6f;
 
 struct ag_environment {
     struct ag_context *context;
-    struct environment_map *map;
+    const struct environment_map *map;
 };
 
 // Passes a map to the caller; NULL: it could not be made.
@@ -137,5 +137,23 @@ enum ag_result ag_scene_set_environment(struct ag_scene *scene,
     AG_REQUIRE(scene->context, isfinite(use->rotation), "rotation is not finite");
     scene_set_environment_map(scene->scene, environment ? environment->map : NULL, use->strength,
                               fmodf(use->rotation, 2.0f * GLM_PIf));
+    return AG_OK;
+}
+
+enum ag_result ag_scene_get_environment(const struct ag_scene *scene, struct ag_environment **out,
+                                        struct ag_environment_use *use)
+{
+    AG_REQUIRE_OUT(NULL, out);
+    AG_REQUIRE(NULL, scene, "scene is NULL");
+    const struct environment *environment = &scene->scene->environment;
+    if (use)
+        *use = (struct ag_environment_use){ .strength = environment->strength,
+                                            .rotation = environment->rotation_rad };
+    if (!environment->map) return AG_OK;
+    struct ag_environment *made = host_alloc(&scene->context->host, 1, sizeof *made);
+    if (!made) return api_done(scene->context, NULL);
+    environment_map_retain(environment->map);
+    *made = (struct ag_environment){ scene->context, environment->map };
+    *out = made;
     return AG_OK;
 }

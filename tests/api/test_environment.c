@@ -316,6 +316,33 @@ static struct ag_scene *floor_scene(struct ag_context *context)
     return scene;
 }
 
+TEST(a_scene_gives_the_environment_that_it_has)
+{
+    struct ag_context *context = fixture_context();
+    struct ag_scene *scene = floor_scene(context);
+    struct ag_environment *made = uniform(context, 7), *got = (struct ag_environment *)1;
+    struct ag_environment_use how;
+    struct ag_environment_info info;
+    assert_int_equal(ag_scene_get_environment(scene, &got, &how), AG_OK);
+    assert_null(got);
+    ag_environment_use_default(&how);
+    how.strength = 3;
+    how.rotation = 0.5f;
+    assert_int_equal(ag_scene_set_environment(scene, made, &how), AG_OK);
+    ag_environment_destroy(made);
+    how = (struct ag_environment_use){ 0 };
+    assert_int_equal(ag_scene_get_environment(scene, &got, &how), AG_OK);
+    assert_non_null(got);
+    CHECK(how.strength == 3 && fabsf(how.rotation - 0.5f) < 1e-6f);
+    ag_scene_destroy(scene);
+    assert_int_equal(ag_environment_get_info(got, &info), AG_OK);
+    CHECK(info.width == 8 && info.height == 4 && fabsf(info.mean[0] - 7) < 0.01f);
+    ag_environment_destroy(got);
+    assert_int_equal(ag_scene_get_environment(NULL, &got, NULL), AG_ERROR_ARGUMENT);
+    assert_null(got);
+    ag_context_destroy(context);
+}
+
 TEST(a_scene_keeps_its_environment_until_it_is_replaced)
 {
     struct ag_context *context = fixture_context();
