@@ -6,6 +6,7 @@
 #include "core/rng.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define SMALL "prt:texels=512,rays=64"
@@ -58,6 +59,8 @@ TEST_GPU(a_bake_without_a_tensor_or_with_another_shape_is_refused)
     check_tensors(gpu, SMALL ",transfer=shadowed");
     check_tensors(gpu, SMALL ",compression=vq");
     check_tensors(gpu, SMALL ",compression=cpca");
+    check_tensors(gpu, SMALL ",glossy=true");
+    check_tensors(gpu, SMALL ",glossy=true,compression=cpca,clusters=4");
     check_tensors(gpu, SMALL ",at=vertex");
     check_tensors(gpu, SMALL ",at=vertex,transfer=shadowed");
     check_tensors(gpu, SMALL ",at=vertex,compression=cpca");
@@ -136,15 +139,19 @@ static uint16_t noise(uint64_t i)
 // The validation layers, and the sanitizer where it is on, report reads beyond bounds.
 TEST_GPU(a_bake_of_hostile_vectors_draws)
 {
-    static const char *const NAMES[2][2] = { { "transfer/direct", "transfer/bounce" },
-                                             { "compressed/rows", "compressed/weight" } };
-    for (int compressed = 0; compressed < 2; compressed++) {
+    static const char *const MORE[] = { "", ",compression=cpca", ",glossy=true" };
+    static const char *const NAMES[3][2] = { { "transfer/direct", "transfer/bounce" },
+                                             { "compressed/rows", "compressed/weight" },
+                                             { "glossy/matrix", "probes/matrix" } };
+    for (int kind = 0; kind < 3; kind++) {
         struct damage_fixture u;
-        open_subject(&u, gpu, compressed ? SMALL ",compression=cpca" : SMALL);
+        char text[64];
+        snprintf(text, sizeof text, SMALL "%s", MORE[kind]);
+        open_subject(&u, gpu, text);
         for (int i = 0; i < 2; i++) {
-            fill(&u, NAMES[compressed][i], huge);
-            fill(&u, NAMES[compressed][i], negative);
-            fill(&u, NAMES[compressed][i], noise);
+            fill(&u, NAMES[kind][i], huge);
+            fill(&u, NAMES[kind][i], negative);
+            fill(&u, NAMES[kind][i], noise);
         }
         damage_close(&u);
     }
