@@ -48,6 +48,18 @@ static void finite_frames(struct frame_fixture *s, int count)
     free(v);
 }
 
+// A technique with more options; at its lowest quality, if it has one: bakes take a part of the
+// time.
+static void print_spec(const struct technique *technique, const char *more, char *text, size_t size)
+{
+    const char *quality = technique->presets ? ":quality=low" : "";
+    snprintf(text, size, "%s%s%s%s", technique->name, quality,
+             !more[0]             ? ""
+             : technique->presets ? ","
+                                  : ":",
+             more);
+}
+
 TEST_GPU(techniques_survive_frames_resizes_and_debug_views)
 {
     struct frame_fixture s;
@@ -55,7 +67,7 @@ TEST_GPU(techniques_survive_frames_resizes_and_debug_views)
     for (size_t i = 0; techniques[i]; i++) {
         char text[64];
         const bool probes = techniques[i]->capabilities & PUBLISHES_PROBES; // has a debug view
-        snprintf(text, sizeof text, "%s%s", techniques[i]->name, probes ? ":probes=true" : "");
+        print_spec(techniques[i], probes ? "probes=true" : "", text, sizeof text);
         struct gi *gi = create(&s, text);
         finite_frames(&s, 3);
         CHECK(gi_resize(gi, 45, 27));
@@ -102,7 +114,9 @@ static void print_end(const struct technique *technique, const struct option_row
     else
         *(int32_t *)((char *)options + row->offset) = (int32_t)end;
     option_print(row, options, value, sizeof value);
-    snprintf(text, size, "%s:%s=%s", technique->name, row->name, value);
+    char more[OPTION_VALUE_SIZE + 64];
+    snprintf(more, sizeof more, "%s=%s", row->name, value);
+    print_spec(technique, more, text, size);
     gi_spec_finish(&spec);
 }
 
@@ -124,14 +138,15 @@ TEST_GPU(techniques_run_with_every_option_at_both_ends)
     struct frame_fixture s;
     room(&s, gpu);
     for (size_t i = 0; techniques[i]; i++) {
-        struct gi *running = create(&s, techniques[i]->name);
+        char text[OPTION_VALUE_SIZE + 128];
+        print_spec(techniques[i], "", text, sizeof text);
+        struct gi *running = create(&s, text);
         for (size_t k = 0; k < techniques[i]->options.count; k++)
             for (int end = 0; end < 2; end++) {
                 // The largest bakes take hours. Texts have no ends.
                 if (techniques[i]->options.rows[k].effect == REBAKE ||
                     techniques[i]->options.rows[k].type == OPTION_TYPE_text)
                     continue;
-                char text[128];
                 print_end(techniques[i], &techniques[i]->options.rows[k], end != 0, text,
                           sizeof text);
                 run_with(&s, running, text);
