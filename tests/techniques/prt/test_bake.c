@@ -54,6 +54,8 @@ static const char *const OPTIONS[] = { "",
                                        "compression=pca",
                                        "compression=vq",
                                        "compression=cpca,clusters=16",
+                                       "glossy=true",
+                                       "glossy=true,compression=cpca,clusters=16",
                                        "at=vertex",
                                        "at=vertex,compression=cpca,clusters=16" };
 
