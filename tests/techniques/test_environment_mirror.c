@@ -9,6 +9,7 @@
 #define ORT       "ort:texels=1024,offsets=100,coordinates=charts,rays=1024"
 #define ORT_ROOM  "ort:texels=4096,offsets=400,coordinates=charts"
 #define PRT       "prt:texels=1024,rays=1024"
+#define GLOSSY    PRT ",glossy=true"
 #define COUNT(of) (sizeof(of) / sizeof *(of))
 
 struct trial {
@@ -92,7 +93,8 @@ TEST_GPU(a_polished_plate_shows_the_map)
                                           { "ambient", 0.01 },
                                           { RADIOSITY, 0.1 },
                                           { ORT, 0.1 },
-                                          { PRT, 0.1 } };
+                                          { PRT, 0.1 },
+                                          { GLOSSY, 0.1 } };
     const struct environment e = { .map = fixture_map(128, gradient),
                                    .strength = 2,
                                    .rotation_rad = 1.2f };
@@ -145,7 +147,7 @@ static float *box_on_floor(struct gpu *gpu, const char *gi, const struct environ
 // Values are half floats, of which several are rounded.
 TEST_GPU(a_uniform_map_is_mirrored_as_a_uniform_sky)
 {
-    static const char *const cases[] = { RADIOSITY, ORT, PRT };
+    static const char *const cases[] = { RADIOSITY, ORT, PRT, GLOSSY };
     const struct environment map = { .map = fixture_map(32, uniform), .strength = 1 };
     const struct environment sky = { .sky = uniform(vec3_of(0, 1, 0)) };
     for (size_t k = 0; k < COUNT(cases); k++) {
@@ -192,7 +194,7 @@ static double floor_beside(struct gpu *gpu, const char *gi, bool wall,
 TEST_GPU(a_wall_hides_the_map_from_a_metal_floor)
 {
     static const struct trial cases[] = {
-        { "vct:quality=high", 0.1 }, { RADIOSITY, 0.1 }, { ORT, 0.1 }, { PRT, 0.1 }
+        { "vct:quality=high", 0.1 }, { RADIOSITY, 0.1 }, { ORT, 0.1 }, { PRT, 0.1 }, { GLOSSY, 0.1 }
     };
     const struct environment e = { .map = fixture_map(128, window), .strength = 1 };
     for (size_t k = 0; k < COUNT(cases); k++) {
@@ -229,7 +231,7 @@ static double room_radiance(struct gpu *gpu, const char *gi, bool dark,
 // Light maps and cones leak some light at edges: a map's no more than a uniform sky's.
 TEST_GPU(metal_in_a_closed_room_stays_dark)
 {
-    static const char *const cases[] = { "vct:quality=high", RADIOSITY, ORT_ROOM, PRT };
+    static const char *const cases[] = { "vct:quality=high", RADIOSITY, ORT_ROOM, PRT, GLOSSY };
     const struct environment sky = { .sky = vec3_of(2000, 2000, 2000) };
     const struct environment map = { .map = fixture_map(64, gradient), .strength = 1000 };
     for (size_t k = 0; k < COUNT(cases); k++) {
