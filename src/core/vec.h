@@ -63,6 +63,18 @@ vec3s box3_centre(struct box3 box);
 vec3s box3_size(struct box3 box);
 int box3_longest_axis(struct box3 box); // of equal ones the first
 
+// The transform of normals: the cofactor matrix, which is the inverse transpose times the
+// determinant. It exists for singular matrices too; the sign is corrected for mirroring ones.
+static inline mat3s mat4_normal_transform(mat4s m)
+{
+    const vec3s x = vec3_xyz(m.col[0]), y = vec3_xyz(m.col[1]), z = vec3_xyz(m.col[2]);
+    mat3s cofactor = { .col = { glms_vec3_cross(y, z), glms_vec3_cross(z, x),
+                                glms_vec3_cross(x, y) } };
+    if (glms_vec3_dot(x, cofactor.col[0]) < 0.0f)
+        for (int i = 0; i < 3; i++) cofactor.col[i] = glms_vec3_negate(cofactor.col[i]);
+    return cofactor;
+}
+
 // Completes the unit vector n to a right-handed orthonormal basis (tangent, bitangent, n) (Duff et
 // al. 2017, "Building an Orthonormal Basis, Revisited").
 static inline void basis_of(vec3s n, vec3s *tangent, vec3s *bitangent)

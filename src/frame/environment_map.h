@@ -15,7 +15,7 @@ struct frame_environment {
     gpu_sampler sampler;
     float texel_scale; // a power of two: the largest texel is below 2¹⁵
     uint32_t side;     // texels of the finest level
-    // Of the environment with this key, cd/m².
+    // Radiance of the environment with this key, cd/m².
     bool known;
     uint64_t key;
     float sh[3][SH_MAX_COUNT]; // 3 bands

@@ -22,19 +22,6 @@ bool deformer_init(struct deformer *deformer, struct arena *arena, const struct 
     return deformer->world_from_mesh != NULL;
 }
 
-// The transform of normals: the cofactor matrix, which is the inverse transpose times the
-// determinant. It exists for singular matrices too; the sign is corrected for mirroring ones.
-static mat3s normal_transform(mat4s m)
-{
-    vec3s x = vec3_xyz(m.col[0]), y = vec3_xyz(m.col[1]), z = vec3_xyz(m.col[2]);
-    mat3s cofactor = { .col = { glms_vec3_cross(y, z), glms_vec3_cross(z, x),
-                                glms_vec3_cross(x, y) } };
-    if (glms_vec3_dot(x, cofactor.col[0]) < 0.0f) {
-        for (int i = 0; i < 3; i++) cofactor.col[i] = glms_vec3_negate(cofactor.col[i]);
-    }
-    return cofactor;
-}
-
 static vec3s unit_or(vec3s v, vec3s fallback)
 {
     float length = glms_vec3_norm(v);
@@ -81,7 +68,7 @@ static vec4s transform_tangent(mat4s world_from_mesh, vec4s tangent, vec3s norma
 static void deform_vertices(const struct mesh *mesh, const float *weights, const mat4s *joints,
                             mat4s world_from_node, struct deformed_mesh *out)
 {
-    mat3s node_normals = normal_transform(world_from_node);
+    mat3s node_normals = mat4_normal_transform(world_from_node);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         vec3s position, normal;
         morph_vertex(mesh, weights, v, &position, &normal);
@@ -89,7 +76,7 @@ static void deform_vertices(const struct mesh *mesh, const float *weights, const
         mat3s normals = node_normals;
         if (joints) {
             world_from_mesh = blend_joints(joints, mesh->joints[v], mesh->weights[v]);
-            normals = normal_transform(world_from_mesh);
+            normals = mat4_normal_transform(world_from_mesh);
         }
         out->positions[v] = mat4_point(world_from_mesh, position);
         out->normals[v] = unit_or(glms_mat3_mulv(normals, normal), mesh->normals[v]);

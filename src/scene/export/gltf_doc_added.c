@@ -70,7 +70,7 @@ static void add_sky(const struct added *a)
 
 // ---- the environment
 
-// A file that has the scene's environment stays as it is.
+// A file that has the scene's environment is not changed.
 static void add_environment(const struct added *a)
 {
     const struct environment *environment = &a->scene->environment;

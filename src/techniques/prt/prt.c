@@ -73,7 +73,7 @@ static void list_tables(size_t base, uint32_t rows, struct gpu_objects *out)
 static void list_constants(const struct prt_options *o, struct gpu_constant *out)
 {
     out[0] = (struct gpu_constant){ PRT_COEFFICIENTS, prt_coefficients(o) };
-    out[1] = (struct gpu_constant){ PRT_BOUNCES, o->transfer == PRT_INTERREFLECTED };
+    out[1] = (struct gpu_constant){ PRT_BOUNCES, prt_has_bounces(o) };
     out[2] = (struct gpu_constant){ PRT_VECTORS, prt_vectors(o) };
 }
 
@@ -107,7 +107,7 @@ static void list_pipelines(const struct prt *s, struct gpu_objects *out)
                   .consts = constants });
 }
 
-// Objects of what shows receivers.
+// Objects of the map that shows receivers.
 static void list_shown(const struct prt *s, struct gpu_objects *out)
 {
     if (s->receivers.at_vertices) {
@@ -294,7 +294,7 @@ static uint64_t probes_bytes(const struct prt_options *o)
            light_map_table_bytes(rows * probes, 8) + probes * PROBE_VOLUME_BYTES;
 }
 
-// At vertices their number is the scene's: as for a light map of so many texels.
+// The number of vertices is known with the scene alone: the estimate is that of the texels.
 static uint64_t memory_estimate(const void *options)
 {
     const struct prt_options *o = options;

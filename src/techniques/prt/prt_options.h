@@ -29,11 +29,15 @@ static inline uint32_t prt_coefficients(const struct prt_options *options)
 {
     return (uint32_t)(prt_bands(options) * prt_bands(options));
 }
+static inline bool prt_has_bounces(const struct prt_options *options)
+{
+    return options->transfer == PRT_INTERREFLECTED;
+}
 // Numbers of a texel's transfer vector: with bounces for each coefficient the direct one, then the
 // bounced ones by colour.
 static inline uint32_t prt_dimension(const struct prt_options *options)
 {
-    return prt_coefficients(options) * (options->transfer == PRT_INTERREFLECTED ? 4 : 1);
+    return prt_coefficients(options) * (prt_has_bounces(options) ? 4 : 1);
 }
 // Coefficients of the radiance that arrives at a probe.
 static inline uint32_t prt_probe_rows(const struct prt_options *options)
@@ -41,7 +45,7 @@ static inline uint32_t prt_probe_rows(const struct prt_options *options)
     enum { OF_IRRADIANCE = 9, OF_REFLECTIONS = 25 };
     return options->glossy ? OF_REFLECTIONS : OF_IRRADIANCE;
 }
-// At most so many probes, about, without probe_spacing.
+// Largest number of probes, about, without probe_spacing.
 static inline uint64_t prt_probes_most(const struct prt_options *options)
 {
     enum { TEXELS_PER_PROBE = 32 };

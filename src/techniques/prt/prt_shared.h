@@ -33,9 +33,6 @@
 // Whether vertices have light of emissive surfaces.
 #define PRT_HAS_EMITTED 3
 
-// Rows of pixels of an invocation that shows vertices, at most 32.
-#define PRT_APPLY_ROWS 4
-
 // Parts of a vertex in the table of vertices: entry part · vertices + vertex.
 #define PRT_VERTEX_NORMAL    0 // unit, shading
 #define PRT_VERTEX_EMITTED_0 1 // by colour: vector irradiance beside the normal; w: irradiance, lux

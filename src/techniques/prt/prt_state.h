@@ -53,7 +53,7 @@ static inline uint32_t prt_weight_entries(const struct prt_options *options)
     return (prt_vectors(options) + PRT_ROW_HALVES - 1) / PRT_ROW_HALVES;
 }
 
-// Number k of row `row` of `rows` in a table whose entries have so many halves.
+// Address of number k of row `row` of `rows`, in a table with this number of halves in an entry.
 static inline uint16_t *prt_table_half(uint16_t *table, size_t halves, size_t rows, size_t row,
                                        size_t k)
 {

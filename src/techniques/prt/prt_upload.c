@@ -41,7 +41,7 @@ static bool find_vectors(struct prt *s, const struct tensors *bake, struct conte
     const uint64_t texels = light_map_rows(s->receivers.count);
     const uint64_t coefficients = prt_coefficients(&s->options);
     out->direct = TENSORS_EXPECT(s->host, bake, PRT_DIRECT, TENSOR_F16, coefficients, texels);
-    if (!out->direct || s->options.transfer != PRT_INTERREFLECTED) return out->direct != NULL;
+    if (!out->direct || !prt_has_bounces(&s->options)) return out->direct != NULL;
     out->bounce = TENSORS_EXPECT(s->host, bake, PRT_BOUNCE, TENSOR_F16, coefficients, texels, 3);
     return out->bounce != NULL;
 }
@@ -116,7 +116,7 @@ static bool find_tensors(struct prt *s, const struct tensors *bake, struct conte
     const bool ok = s->options.compression == PRT_NONE ? find_vectors(s, bake, out)
                                                        : find_codebook(s, bake, out);
     return ok && find_receivers(s, bake, &out->texels) && find_matrices(s, bake, out) &&
-           (s->options.transfer != PRT_INTERREFLECTED || add_emitted_bounces(s, bake, out));
+           (!prt_has_bounces(&s->options) || add_emitted_bounces(s, bake, out));
 }
 
 // Number k of a transfer vector, or of a row of the codebook.

@@ -20,8 +20,6 @@
 #include "techniques/common/light_map/table.glsl"
 #include "techniques/prt/prt_vertex.glsl"
 
-layout(local_size_x_id = LIGHT_MAP_APPLY_WIDTH, local_size_y_id = LIGHT_MAP_APPLY_HEIGHT) in;
-layout(constant_id = PRT_APPLY_ROWS) const int ROWS = 8; // of an invocation
 layout(constant_id = LIGHT_MAP_APPLY_DIELECTRIC) const bool HAS_DIELECTRIC = false;
 
 layout(push_constant, scalar) uniform push_block
@@ -31,7 +29,8 @@ layout(push_constant, scalar) uniform push_block
 prt_vertex_push push; // a copy, as FRAME_CONSTANTS_COPIED
 layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2) uniform sampler2D normal;
-layout(set = 0, binding = 3) uniform usampler2D id;                             // FRAME_ID
+layout(set = 0, binding = 3) uniform usampler2D id; // FRAME_ID
+#include "techniques/common/light_map/columns.glsl"
 layout(set = 0, binding = 6, rgba32ui) uniform readonly uimage2D prt_corners;   // [side][triangle]
 layout(set = 0, binding = 14, rgba32ui) uniform readonly uimage2D vertex_light; // [part][vertex]
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D irradiance;
@@ -108,16 +107,9 @@ void shade(ivec2 pixel)
 #endif
 }
 
-// A driver on a processor executes both sides of a branch for all pixels, but a loop only as often
-// as one of a few needs: an invocation has several rows, and a loop over pixels with a surface.
 void main()
 {
     frame = frame_block;
     push = push_of_all;
-    ivec2 first = ivec2(gl_GlobalInvocationID.xy) * ivec2(1, ROWS);
-    uint surfaces = 0u;
-    if (first.x >= int(frame.width)) return;
-    for (int row = 0; row < min(ROWS, int(frame.height) - first.y); row++)
-        if (texelFetch(depth, first + ivec2(0, row), 0).r > 0.0) surfaces |= 1u << row;
-    for (; surfaces != 0u; surfaces &= surfaces - 1u) shade(first + ivec2(0, findLSB(surfaces)));
+    shade_column(ivec2(frame.width, frame.height));
 }

@@ -11,14 +11,9 @@
 void prt_vertex_map_init(struct prt_vertex_map *out, struct host *host, struct gpu *gpu,
                          const struct prt_vertices *vertices)
 {
-    // Rows of pixels suit the caches of a processor, squares those of a GPU.
-    const bool rows = gpu_info(gpu)->type == GPU_CPU;
-    *out = (struct prt_vertex_map){ .host = host,
-                                    .gpu = gpu,
-                                    .vertices = vertices,
-                                    .width = rows ? 64 : 8,
-                                    .height = rows ? 1 : 8,
-                                    .rows = rows ? 16 : 1 };
+    *out = (struct prt_vertex_map){
+        .host = host, .gpu = gpu, .vertices = vertices, .columns = light_map_columns_for(gpu)
+    };
 }
 
 // ---- objects
@@ -29,20 +24,20 @@ static void list_pipelines(const struct prt_vertex_map *map, size_t base, bool s
                            struct gpu_objects *out)
 {
     const struct gpu_constant constants[LIGHT_MAP_CONSTANTS] = {
-        { LIGHT_MAP_APPLY_WIDTH, map->width },
-        { LIGHT_MAP_APPLY_HEIGHT, map->height },
+        { LIGHT_MAP_APPLY_WIDTH, map->columns.width },
+        { LIGHT_MAP_APPLY_HEIGHT, map->columns.height },
         { LIGHT_MAP_HAS_BACKS, map->vertices->count > map->vertices->front_count },
         { LIGHT_MAP_APPLY_DIELECTRIC, 0 },
         { LIGHT_MAP_APPLY_DIELECTRIC, 1 },
-        { LIGHT_MAP_HAS_MOVES, 0 }
+        { LIGHT_MAP_HAS_MOVES, 0 },
+        { LIGHT_MAP_APPLY_ROWS, map->columns.rows }
     };
-    const uint32_t moved = 7u | 1u << PRT_HAS_EMITTED_AT | 1u << PRT_APPLY_ROWS_AT;
+    const uint32_t moved = 7u | 1u << 6 | 1u << PRT_HAS_EMITTED_AT;
     const uint32_t still = moved | 1u << 5;
     const struct gpu_shader *apply =
         specular ? &shader_prt_vertex_apply_specular_comp : &shader_prt_vertex_apply_diffuse_comp;
     memcpy(out->constants, constants, sizeof constants);
     out->constants[PRT_HAS_EMITTED_AT] = (struct gpu_constant){ PRT_HAS_EMITTED, map->emits };
-    out->constants[PRT_APPLY_ROWS_AT] = (struct gpu_constant){ PRT_APPLY_ROWS, map->rows };
 #define PIPELINE(thing) #thing, MEMBER(thing)
     GPU_ADD(out, base,
             { GPU_PIPELINE, PIPELINE(apply[0][0]), .shader = apply, .consts = still | 1u << 3 },
@@ -139,15 +134,13 @@ bool prt_vertex_map_upload(struct prt_vertex_map *map, uint32_t instances, const
 void prt_vertex_map_record_apply(const struct prt_vertex_map *map, struct gpu_cmd *cmd,
                                  const struct frame_view *view)
 {
-    static const float NONE[4] = { 0, 0, 0, 1 }; // of pixels without a surface
     const gpu_image *layers = view->layers;
     const struct prt_vertex_push push = { 1.0f / (float)view->width, 1.0f / (float)view->height,
                                           map->vertices->count,
                                           (uint32_t)map->vertices->triangle_count,
                                           light_map_instances(&map->surfaces) };
     gpu_scope_begin(cmd, "apply");
-    gpu_clear_image(cmd, layers[FRAME_IRRADIANCE], NONE);
-    if (layers[FRAME_SPECULAR].id) gpu_clear_image(cmd, layers[FRAME_SPECULAR], NONE);
+    light_map_clear_pixels(cmd, view);
     gpu_dispatch(cmd, map->apply[map->surfaces.moves != NULL][layers[FRAME_DIELECTRIC].id != 0],
                  GPU_BIND(FRAME_SURFACE_BINDINGS(view), { .name = "id", .image = layers[FRAME_ID] },
                           LIGHT_MAP_SURFACE_BINDINGS(&map->surfaces, cmd),
@@ -155,7 +148,7 @@ void prt_vertex_map_record_apply(const struct prt_vertex_map *map, struct gpu_cm
                           { .name = "vertex_light", .image = map->light },
                           { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
                           { .name = "specular", .image = layers[FRAME_SPECULAR] }),
-                 &push, sizeof push, gpu_groups(view->width, map->width),
-                 gpu_groups(view->height, map->height * map->rows), 1);
+                 &push, sizeof push, gpu_groups(view->width, map->columns.width),
+                 gpu_groups(view->height, map->columns.height * map->columns.rows), 1);
     gpu_scope_end(cmd);
 }

@@ -16,16 +16,15 @@ struct prt_vertex_map {
     gpu_image corners;                  // [side][triangle] vertices whose light a triangle shows
     gpu_image light;                    // [part][vertex], the newest
     gpu_pipeline apply[2][2];           // [with moves][whether there is FRAME_DIELECTRIC]
-    uint32_t width, height;             // of their workgroups, in invocations
-    uint32_t rows;                      // of pixels, of an invocation
+    struct light_map_columns columns;
 };
 
 // vertices: stay where they are.
 void prt_vertex_map_init(struct prt_vertex_map *out, struct host *host, struct gpu *gpu,
                          const struct prt_vertices *vertices);
 // Adds the objects of a map with vertices at this offset of the state. The constants 0 …
-// LIGHT_MAP_CONSTANTS − 1 of the table are those of a light map; these are set too.
-enum { PRT_HAS_EMITTED_AT = LIGHT_MAP_CONSTANTS + 3, PRT_APPLY_ROWS_AT };
+// LIGHT_MAP_CONSTANTS − 1 of the table are those of a light map; this one is set too.
+enum { PRT_HAS_EMITTED_AT = LIGHT_MAP_CONSTANTS + 3 };
 void prt_vertex_map_list(const struct prt_vertex_map *map, size_t base, bool specular,
                          struct gpu_objects *out);
 // instances: of the scene. shown: [vertices] whose light each one shows. emitted: [vertices][3][4]

@@ -35,7 +35,7 @@ static double entry(const struct probes *p, size_t probe, size_t row, size_t num
     return (double)float_from_half(p->matrix[(probe * p->rows + row) * p->numbers + number]);
 }
 
-// Beside a small triangle nothing hides the sky: light arrives as it is sent.
+// Small surfaces occlude almost none of the sky: it arrives unchanged.
 TEST(matrices_of_an_open_scene_are_the_identity)
 {
     struct prt_fixture f;

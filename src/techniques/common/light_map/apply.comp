@@ -1,5 +1,6 @@
 // Irradiance of each pixel from the light map; SPECULAR: also the radiance that the specular lobe
 // reflects, REFLECTED: as texels reflect it. Alpha is 0 where the map has no light.
+// Pixels without a surface stay as they are.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -27,10 +28,6 @@ layout(constant_id = LIGHT_MAP_APPLY_MIRRORS) const bool MIRRORS = false;
 #include "techniques/common/light_map/mirror.glsl"
 #endif
 
-// A processor's caches fetch the next lines of memory ahead: there, a workgroup is wide, and each
-// invocation has a column of pixels.
-layout(constant_id = LIGHT_MAP_APPLY_ROWS) const uint ROWS = 1;
-layout(local_size_x_id = LIGHT_MAP_APPLY_WIDTH, local_size_y_id = LIGHT_MAP_APPLY_HEIGHT) in;
 layout(constant_id = LIGHT_MAP_APPLY_DIELECTRIC) const bool HAS_DIELECTRIC = false;
 
 layout(push_constant, scalar) uniform push_block
@@ -41,6 +38,7 @@ light_map_apply_push push; // a copy, as FRAME_CONSTANTS_COPIED
 layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2) uniform sampler2D normal;
 layout(set = 0, binding = 3) uniform usampler2D id; // FRAME_ID
+#include "techniques/common/light_map/columns.glsl"
 layout(set = 0, binding = 6) uniform sampler2DArray light_map;
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D irradiance;
 #if SPECULAR
@@ -85,15 +83,7 @@ vec3 reflected(ivec2 pixel, light_map_surface s, light_map_light light, vec3 pla
 }
 #endif
 
-void store(ivec2 pixel, vec3 light, vec3 radiance, bool mapped)
-{
-    imageStore(irradiance, pixel, vec4(light, mapped ? 1.0 : 0.0));
-#if SPECULAR
-    imageStore(specular, pixel, vec4(radiance, 1.0));
-#endif
-}
-
-void light_surface(ivec2 pixel)
+void shade(ivec2 pixel)
 {
     vec2 uv = (vec2(pixel) + 0.5) * vec2(push.per_view_width, push.per_view_height);
     float z = texelFetch(depth, pixel, 0).r;
@@ -103,34 +93,17 @@ void light_surface(ivec2 pixel)
     vec3 place = light_map_place_of(texelFetch(id, pixel, 0).rg, push.instances, s);
     vec2 per_size = vec2(push.per_width, push.per_height);
     light_map_light light = light_map_light(vec3(0.0), mat3(0.0));
-    vec3 radiance = vec3(0.0);
     bool mapped = place.z >= 0.0;
     if (mapped) light = light_map_lookup(light_map, per_size, place, s.normal);
+    imageStore(irradiance, pixel, vec4(light.irradiance, mapped ? 1.0 : 0.0));
 #if SPECULAR
-    radiance = reflected(pixel, s, light, place);
+    imageStore(specular, pixel, vec4(reflected(pixel, s, light, place), 1.0));
 #endif
-    store(pixel, light.irradiance, radiance, mapped);
 }
 
-// Pixels of a column without a surface cost a lookup of their depth, and where invocations side by
-// side have none, no more: a driver on a processor runs both sides of a branch, but no loop that no
-// invocation is in.
 void main()
 {
     frame = frame_block;
     push = push_of_all;
-    ivec2 first = ivec2(gl_GlobalInvocationID.xy) * ivec2(1, ROWS);
-    int rows = min(int(ROWS), int(frame.height) - first.y);
-    uint surfaces = 0u;
-    if (first.x >= int(frame.width)) return;
-    for (int row = 0; row < rows; row++) {
-        ivec2 pixel = first + ivec2(0, row);
-        bool surface = texelFetch(depth, pixel, 0).r > 0.0;
-        if (surface) surfaces |= 1u << row;
-        if (!surface) store(pixel, vec3(0.0), vec3(0.0), true);
-    }
-    while (surfaces != 0u) {
-        light_surface(first + ivec2(0, findLSB(surfaces)));
-        surfaces &= surfaces - 1u;
-    }
+    shade_column(ivec2(frame.width, frame.height));
 }

@@ -13,16 +13,11 @@
 void light_map_init(struct light_map *out, struct host *host, struct gpu *gpu,
                     const struct charts *charts, enum light_map_specular specular)
 {
-    enum { LOCAL_2D = 8 };
-    // Wide workgroups suit the caches of a processor, squares those of a GPU.
-    const bool wide = gpu_info(gpu)->type == GPU_CPU;
     *out = (struct light_map){ .host = host,
                                .gpu = gpu,
                                .charts = charts,
                                .specular = specular,
-                               .apply_width = wide ? 64 : LOCAL_2D,
-                               .apply_height = wide ? 1 : LOCAL_2D,
-                               .apply_rows = wide ? 8 : 1 };
+                               .columns = light_map_columns_for(gpu) };
 }
 
 #define MEMBER(thing) offsetof(struct light_map, thing)
@@ -43,9 +38,9 @@ static const struct gpu_shader *apply_shader(enum light_map_specular specular)
 static void list_pipelines(const struct light_map *map, size_t base, struct gpu_objects *out)
 {
     const struct gpu_constant constants[LIGHT_MAP_CONSTANTS] = {
-        { LIGHT_MAP_APPLY_WIDTH, map->apply_width },
-        { LIGHT_MAP_APPLY_HEIGHT, map->apply_height },
-        { LIGHT_MAP_APPLY_ROWS, map->apply_rows },
+        { LIGHT_MAP_APPLY_WIDTH, map->columns.width },
+        { LIGHT_MAP_APPLY_HEIGHT, map->columns.height },
+        { LIGHT_MAP_APPLY_ROWS, map->columns.rows },
         { LIGHT_MAP_HAS_BACKS, charts_sides(map->charts) == 2 },
         { LIGHT_MAP_APPLY_DIELECTRIC, 0 },
         { LIGHT_MAP_APPLY_DIELECTRIC, 1 },
@@ -174,7 +169,7 @@ bool light_map_upload(struct light_map *map, uint32_t instances, const uint32_t 
     const bool ok = find_rows(map, bake, seams.count, &rows) && upload_owners(map, shown) &&
                     upload_places(map, &seams) && upload_rows(map, &rows, shown) &&
                     upload_triangles(map, instances) &&
-                    (map->specular == LIGHT_MAP_DIFFUSE ||
+                    (map->specular != LIGHT_MAP_SPECULAR ||
                      light_map_upload_visible_sky(map->host, map->gpu, map->charts, &seams, &rows,
                                                   shown, sky, &map->visible_sky));
     charts_seams_finish(&seams);
@@ -283,6 +278,7 @@ void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
         1.0f / (float)view->width, 1.0f / (float)view->height, light_map_instances(&map->surfaces)
     };
     gpu_scope_begin(cmd, "apply");
+    light_map_clear_pixels(cmd, view);
     gpu_dispatch(
         cmd, apply_of(map, view),
         GPU_BIND(FRAME_SURFACE_BINDINGS(view), view->environment_binding,
@@ -293,7 +289,7 @@ void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
                  { .name = "visible_sky", .image = map->visible_sky, .sampler = map->linear },
                  { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
                  { .name = "specular", .image = layers[FRAME_SPECULAR] }),
-        &push, sizeof push, gpu_groups(view->width, map->apply_width),
-        gpu_groups(view->height, map->apply_height * map->apply_rows), 1);
+        &push, sizeof push, gpu_groups(view->width, map->columns.width),
+        gpu_groups(view->height, map->columns.height * map->columns.rows), 1);
     gpu_scope_end(cmd);
 }

@@ -2,6 +2,7 @@
 // texels, those beside seams weighted sums, and pixels look it up.
 #pragma once
 
+#include "techniques/common/light_map/columns.h"
 #include "techniques/common/light_map/surface.h"
 #include "techniques/common/light_map/table.h"
 
@@ -24,7 +25,7 @@ struct light_map {
     gpu_image owners;                 // places and the texels whose light they show
     gpu_image seam_places, seam_rows; // places beside seams and their sums
     uint32_t owner_count, seam_count; // of places
-    gpu_image visible_sky;            // if `specular` (visible_sky.h)
+    gpu_image visible_sky;            // with LIGHT_MAP_SPECULAR (visible_sky.h)
     gpu_image images[2];              // a map appears whole: one is shown, the other is written
     int shown;                        // of the images
     gpu_image reflected;              // with LIGHT_MAP_REFLECTED, of the newest view
@@ -32,7 +33,7 @@ struct light_map {
     gpu_pipeline show, seams;
     gpu_pipeline apply[2][2]; // [with moves][whether there is FRAME_DIELECTRIC]
     gpu_pipeline mirror[2];   // of `apply` if `specular`, and with the environment's map
-    uint32_t apply_width, apply_height, apply_rows; // of their workgroups, of an invocation
+    struct light_map_columns columns;
 };
 
 // charts: may be empty yet; made before the other functions are called.

@@ -39,7 +39,7 @@ static bool find_vectors(struct points *p, const struct bake_task *task)
     if (!direct) return false;
     p->direct = direct->data;
     p->dim = prt_dimension(&scene->options);
-    if (scene->options.transfer != PRT_INTERREFLECTED) return true;
+    if (!prt_has_bounces(&scene->options)) return true;
     const struct tensor *bounce = bake_task_input(task, PRT_BOUNCE);
     p->bounce = bounce ? bounce->data : NULL;
     return bounce != NULL;

@@ -28,11 +28,6 @@ struct work {
                      // bounces in that of the world
 };
 
-static bool has_bounces(const struct prt_scene *scene)
-{
-    return scene->options.transfer == PRT_INTERREFLECTED;
-}
-
 // ---- memory
 
 static bool work_init(struct work *w, const struct bake_task *task)
@@ -43,7 +38,7 @@ static bool work_init(struct work *w, const struct bake_task *task)
                         .task = task,
                         .texels = scene->charts.side_texel_count,
                         .coefficients = prt_coefficients(&scene->options),
-                        .planes = has_bounces(scene) ? 4 : 1,
+                        .planes = prt_has_bounces(&scene->options) ? 4 : 1,
                         .rays = scene->lobes.rays };
     if (!point) return false;
     w->point = point->data;
@@ -55,7 +50,7 @@ static bool work_init(struct work *w, const struct bake_task *task)
     for (size_t s = 0; s < w->rays; s++)
         sh_eval(prt_bands(&scene->options), scene->lobes.direction[s],
                 w->basis + s * w->coefficients);
-    return !has_bounces(scene) || prt_sent_init(&w->sent, task);
+    return !prt_has_bounces(&scene->options) || prt_sent_init(&w->sent, task);
 }
 
 static void work_finish(struct work *w)
@@ -123,7 +118,7 @@ static void trace(const struct work *w, const struct frame *frame, size_t s)
             out[i * w->planes] = w->basis[s * w->coefficients + i];
         return;
     }
-    if (!has_bounces(scene)) return;
+    if (!prt_has_bounces(&scene->options)) return;
     const struct texel_seen seen = texel_seen_at(scene->trace, &ray, &hit);
     const uint32_t texel = prt_sent_receiver(scene, &hit, &seen, 0.0f);
     if (texel != CHART_NONE) prt_sent_radiance(&w->sent, texel, out);

@@ -14,11 +14,6 @@
 enum { PROBES_PER_TASK = 16 };
 enum { OUT_MATRIX, OUT_EMITTED, OUT_PLACE, OUT_DEPTH, OUT_COUNT };
 
-static bool has_bounces(const struct prt_scene *scene)
-{
-    return scene->options.transfer == PRT_INTERREFLECTED;
-}
-
 static struct frame_probes grid_of(const struct prt_scene *scene)
 {
     return probe_grid_around(prt_receivers_bounds(&scene->receivers), scene->options.probe_spacing,
@@ -72,8 +67,9 @@ static void add_seen(struct work *w, const struct probe_ray *ray, const struct r
         add_emission(w, ray->direction, seen->emission,
                      1.0f / ray->solid_angle + (float)w->light_samples * seen->pdf);
     const float choice = rng_unit(pcg_hash(w->seed + w->seen++));
-    const uint32_t receiver =
-        has_bounces(w->scene) ? prt_sent_receiver(w->scene, hit, seen, choice) : CHART_NONE;
+    const uint32_t receiver = prt_has_bounces(&w->scene->options)
+                                  ? prt_sent_receiver(w->scene, hit, seen, choice)
+                                  : CHART_NONE;
     if (receiver == CHART_NONE) return;
     float radiance[4 * PRT_MAX_COEFFICIENTS];
     prt_sent_radiance(&w->sent, receiver, radiance);
@@ -149,8 +145,9 @@ static bool run(const struct bake_task *task)
     w->rows = prt_probe_rows(&scene->options);
     w->bands = scene->options.glossy ? PRT_OUTGOING_BANDS : 3;
     w->coefficients = prt_coefficients(&scene->options);
-    w->planes = has_bounces(scene) ? 4 : 1;
-    bool ok = !has_bounces(scene) || scene->receivers.count == 0 || prt_sent_init(&w->sent, task);
+    w->planes = prt_has_bounces(&scene->options) ? 4 : 1;
+    bool ok = !prt_has_bounces(&scene->options) || scene->receivers.count == 0 ||
+              prt_sent_init(&w->sent, task);
     for (uint64_t i = 0; ok && i < count; i++) {
         ok = !bake_task_cancelled(task);
         if (ok) make_probe(w, (uint32_t)(first + i), i);

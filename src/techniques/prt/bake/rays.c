@@ -11,11 +11,6 @@
 enum { RECEIVERS_PER_TASK = 128 };
 enum { OUT_ROWS, OUT_ALBEDO, OUT_SKY, OUT_EMITTED, OUT_POINT, OUT_HITS, OUT_COUNT };
 
-static bool has_bounces(const struct prt_scene *scene)
-{
-    return scene->options.transfer == PRT_INTERREFLECTED;
-}
-
 struct visit {
     const struct prt_scene *scene;
     uint32_t seed; // of the receiver
@@ -71,7 +66,8 @@ static void gather(const struct bake_task *task, const struct texel_receiver *re
                            .seed = receiver->seed,
                            .bands = prt_bands(&scene->options),
                            .row = bake_row(task, OUT_ROWS, row),
-                           .hits = has_bounces(scene) ? bake_row(task, OUT_HITS, row) : NULL };
+                           .hits = prt_has_bounces(&scene->options) ? bake_row(task, OUT_HITS, row)
+                                                                    : NULL };
     texel_gather(scene->trace, receiver, &(struct texel_visitor){ add_hit, add_miss, &visit },
                  light);
     for (int i = 0; i < SH_COUNT(visit.bands); i++) visit.row[i] *= GLM_PIf / (float)receiver->rays;
@@ -93,7 +89,7 @@ static void make_receiver(const struct bake_task *task, uint32_t i, uint64_t row
 {
     const struct prt_scene *scene = task->job;
     const struct texel_point point = prt_receiver_point(scene, i);
-    if (has_bounces(scene))
+    if (prt_has_bounces(&scene->options))
         memset(bake_row(task, OUT_HITS, row), 0xff, (size_t)scene->options.rays * sizeof(uint32_t));
     memcpy(bake_row(task, OUT_POINT, row), &point, sizeof point);
     if (point.share == 0.0f) return;
@@ -137,13 +133,14 @@ bool prt_add_rays(struct bake_plan *plan, const struct prt_scene *scene)
         { LIGHT_MAP_POINT, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { PRT_HITS, TENSOR_U32, 2, { texels, rays }, BAKE_ROWS, LAST_WAVE },
     };
-    return bake_plan_add(plan, &(struct bake_stage){
-                                   .name = "rays",
-                                   .wave = 0,
-                                   .task_count = tasks,
-                                   .run = run,
-                                   .outputs = out,
-                                   .output_count = has_bounces(scene) ? OUT_COUNT : OUT_HITS,
-                                   .rays = unshadowed ? 0 : (double)(texels * rays) / (double)tasks,
-                                   .texels = (double)texels / (double)tasks });
+    return bake_plan_add(
+        plan, &(struct bake_stage){
+                  .name = "rays",
+                  .wave = 0,
+                  .task_count = tasks,
+                  .run = run,
+                  .outputs = out,
+                  .output_count = prt_has_bounces(&scene->options) ? OUT_COUNT : OUT_HITS,
+                  .rays = unshadowed ? 0 : (double)(texels * rays) / (double)tasks,
+                  .texels = (double)texels / (double)tasks });
 }

@@ -7,11 +7,6 @@
 
 #include <math.h>
 
-static bool has_bounces(const struct prt_scene *scene)
-{
-    return scene->options.transfer == PRT_INTERREFLECTED;
-}
-
 static double series_cost(const struct prt_scene *scene)
 {
     return PRT_SERIES_COST * (double)scene->receivers.count * scene->options.rays *
@@ -51,11 +46,11 @@ static bool run_transfer(const struct bake_task *task)
     struct prt_series series = { 0 };
     uint64_t count, first = bake_task_rows(task, OUT_DIRECT, &count);
     if (!rows) return false;
-    bool ok = !has_bounces(scene) || prt_series_init(&series, task);
+    bool ok = !prt_has_bounces(&scene->options) || prt_series_init(&series, task);
     for (uint64_t k = 0; ok && k < count; k++) {
         const size_t coefficient = (size_t)(first + k);
         write_direct(scene, rows->data, coefficient, bake_row(task, OUT_DIRECT, k));
-        ok = !has_bounces(scene) ||
+        ok = !prt_has_bounces(&scene->options) ||
              write_bounce(&series, task, rows->data, coefficient, bake_row(task, OUT_BOUNCE, k));
     }
     prt_series_finish(&series);
@@ -66,7 +61,7 @@ static bool add_coefficients(struct bake_plan *plan, const struct prt_scene *sce
 {
     const uint64_t texels = light_map_rows(scene->receivers.count);
     const uint64_t coefficients = prt_coefficients(&scene->options);
-    const bool bounces = has_bounces(scene);
+    const bool bounces = prt_has_bounces(&scene->options);
     const int keep = prt_keep(&scene->options);
     const struct bake_output out[] = {
         { PRT_DIRECT, TENSOR_F16, 2, { coefficients, texels }, BAKE_ROWS, keep },
@@ -121,5 +116,6 @@ static bool add_emitted(struct bake_plan *plan, const struct prt_scene *scene)
 
 bool prt_add_transfer(struct bake_plan *plan, const struct prt_scene *scene)
 {
-    return add_coefficients(plan, scene) && (!has_bounces(scene) || add_emitted(plan, scene));
+    return add_coefficients(plan, scene) &&
+           (!prt_has_bounces(&scene->options) || add_emitted(plan, scene));
 }

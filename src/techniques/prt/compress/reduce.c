@@ -1,5 +1,5 @@
-// Points of many numbers in a subspace of fewer: that of the largest principal vectors of some of
-// them. Distances in it are those of the points but for what lies outside.
+// Points of many numbers, projected onto the largest principal vectors of a sample of them. The
+// projection changes distances by the variance outside of the subspace alone.
 #include "techniques/prt/compress/compress.h"
 
 #include "core/linalg.h"

@@ -72,18 +72,13 @@ static struct key key_of(const struct scene_pose *pose, int instance, uint32_t v
         struct key){ { p.x + 0.0f, p.y + 0.0f, p.z + 0.0f, n.x + 0.0f, n.y + 0.0f, n.z + 0.0f } };
 }
 
-// Normals go through the cofactor matrix, as in trace/trace_scene.c.
 static struct prt_vertex world_of(const struct scene_pose *pose, int instance, const struct key *k)
 {
     const vec3s p = vec3_of(k->at[0], k->at[1], k->at[2]);
     const vec3s n = vec3_of(k->at[3], k->at[4], k->at[5]);
     if (pose->deformed[instance].positions) return (struct prt_vertex){ instance, p, n };
     const mat4s m = pose_world_from_instance(pose, instance);
-    const vec3s x = vec3_xyz(m.col[0]), y = vec3_xyz(m.col[1]), z = vec3_xyz(m.col[2]);
-    vec3s normal = glms_vec3_scale(glms_vec3_cross(y, z), n.x);
-    normal = glms_vec3_muladds(glms_vec3_cross(z, x), n.y, normal);
-    normal = glms_vec3_muladds(glms_vec3_cross(x, y), n.z, normal);
-    if (pose_is_mirrored(pose, instance)) normal = glms_vec3_negate(normal);
+    vec3s normal = glms_mat3_mulv(mat4_normal_transform(m), n);
     const float length = glms_vec3_norm(normal);
     normal = length > 0.0f ? glms_vec3_divs(normal, length) : vec3_of(0, 1, 0);
     return (struct prt_vertex){ instance, mat4_point(m, p), normal };
