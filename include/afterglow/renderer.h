@@ -14,6 +14,40 @@ struct ag_renderer;
 struct ag_view;
 struct ag_view_frame;
 
+/// How a program's own G-buffer is encoded, where ag_gbuffer says something else. Images may be
+/// larger than the renderer: it reads the part from the left and the top. Formats, by VkFormat:
+///
+/// - depth: D16_UNORM, X8_D24_UNORM_PACK32, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT,
+///   R32_SFLOAT. Reversed or forward, with or without a far plane: it is the depth of
+///   ag_frame_desc.matrices, or without them that of ag_gbuffer
+/// - normal, octahedral: R16G16_SFLOAT, R32G32_SFLOAT, R16G16_SNORM, R16G16_UNORM and all of the
+///   others; x, y, z: R8G8B8A8_UNORM, R8G8B8A8_SNORM, A2B10G10R10_UNORM_PACK32,
+///   R16G16B16A16_UNORM, R16G16B16A16_SNORM, R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT
+/// - albedo: R8G8B8A8 and B8G8R8A8, SRGB or UNORM (then linear), A2B10G10R10_UNORM_PACK32,
+///   R16G16B16A16_UNORM, R16G16B16A16_SFLOAT, B10G11R11_UFLOAT_PACK32
+/// - material: R8G8_UNORM, R8G8B8A8_UNORM, B8G8R8A8_UNORM, R16G16_UNORM, R16G16_SFLOAT,
+///   R16G16B16A16_SFLOAT
+/// - dielectric: R8G8B8A8_UNORM, R16G16B16A16_UNORM, R16G16B16A16_SFLOAT
+/// - emissive: R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT, B10G11R11_UFLOAT_PACK32
+/// - motion: R16G16_SFLOAT, R32G32_SFLOAT, R16G16_SNORM, R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT
+/// - id: R32G32_UINT, at the renderer's size
+struct ag_gbuffer_layout {
+    bool normal_octahedral;    ///< two components, as ag_gbuffer; false: x, y, z; default true
+    bool normal_in_view_space; ///< of view_from_world; default false: world space
+    float normal_scale;        ///< components = sampled value × normal_scale + normal_bias; for
+    float normal_bias;         ///< UNORM formats 2 and −1; default 1, 0
+    bool albedo_alpha;         ///< as in ag_gbuffer; false: all surfaces are lit; default true
+    int roughness_channel;     ///< of material, 0…3; -1: none, roughness 1; default 0
+    int metallic_channel;      ///< likewise, none: 0; glTF's textures have 1 and 2; default 1
+    /// x and y of the layer motion = sampled value × motion_scale + ag_gbuffer.motion_offset.
+    /// Pixels from now to the last frame, +y down: −1/width, −1/height. Default 1, 1.
+    float motion_scale[2];
+    bool motion_distance; ///< z as in the layer motion; false: surfaces stand still along the axis;
+                          ///< default true; false for formats of two components
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
+};
+AG_API void ag_gbuffer_layout_default(struct ag_gbuffer_layout *layout);
+
 struct ag_renderer_desc {
     int width, height; ///< pixels, 1…16384; default 1280×720
     /// GI spec: "source+delta+visibility"; default "none"; see ag_technique_get. A visibility
@@ -35,7 +69,11 @@ struct ag_renderer_desc {
     /// Frames depend on scene and time alone: work that techniques do beside frames, as drt does
     /// after objects moved, is waited for, as with their option "update=wait"; default false.
     bool wait_for_updates;
-    uint64_t reserved[7]; ///< 0; see ABI in types.h
+    /// With host_gbuffer: formats and encodings of the program's own. NULL: those of ag_gbuffer,
+    /// which are read in place; others are converted in one pass (frame.gbuffer_convert) into
+    /// images of the renderer. Needed only during the call. Default NULL.
+    const struct ag_gbuffer_layout *gbuffer_layout;
+    uint64_t reserved[6]; ///< 0; see ABI in types.h
 };
 AG_API void ag_renderer_desc_default(struct ag_renderer_desc *desc);
 /// GPU memory of a renderer with these settings: bytes of buffers and texels, without the scene,
@@ -76,17 +114,31 @@ struct ag_layer_handle {
     float scale;
     uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
-/// A program's own G-buffer, in place of the renderer's: the surfaces that `camera` sees, at the
+/// A camera by its matrices, as an engine has them. Element [4 × column + row], for column vectors
+/// and Vulkan's clip space: x right, y down, depth 0…1. Reversed or forward depth, a far plane or
+/// none, sub-pixel jitter and an image off the axis follow from clip_from_view. The image is always
+/// rendered with reversed depth, and in a perspective without a far plane: geometry behind it is
+/// seen.
+struct ag_view_matrices {
+    float view_from_world[16]; ///< rotation and translation in m; left- or right-handed
+    float clip_from_view[16];  ///< perspective or orthographic, without an oblique near plane
+    bool y_up;            ///< clip space has +y up: viewports of negative height; default false
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
+};
+
+/// A program's own G-buffer, in place of the renderer's: the surfaces that the camera sees, at the
 /// renderer's size. The members are those of ag_layer_handle without the view; an image that is
-/// absent is zeroed. Formats, usage (at least SAMPLED) and layout (SHADER_READ_ONLY_OPTIMAL) are
-/// those of layer handles, so that handles of another renderer fit.
+/// absent is zeroed. Without ag_renderer_desc.gbuffer_layout, formats, usage (at least SAMPLED) and
+/// layout (SHADER_READ_ONLY_OPTIMAL) are those of layer handles, so that handles of another
+/// renderer fit.
 ///
 /// The images must live until the GPU has finished the frame. Before the frame's commands the
 /// program has written them: in the same or an earlier command buffer of the queue, without a
 /// barrier except for the layout; on another queue, with a semaphore. It may write them again after
 /// the frame: behind a barrier from ALL_COMMANDS. The library only reads, and keeps the layout.
 struct ag_gbuffer {
-    /// Required. D32_SFLOAT: near_m of the camera / distance along the view axis, 0: no surface.
+    /// Required. D32_SFLOAT: near_m of the camera / distance along the view axis, 0: no surface. In
+    /// orthographic views (far − distance) / (far − near).
     struct ag_layer_handle depth;
     /// Required. R16G16_SFLOAT: unit shading normal in world space, octahedral
     /// (src/frame/octahedral.glsl).
@@ -105,7 +157,10 @@ struct ag_gbuffer {
     /// R32G32_UINT: instance and triangle, each plus 1, 0: no surface; as the layer id. Without it
     /// probes light all surfaces of radiosity and the objects of drt.
     struct ag_layer_handle id;
-    uint64_t reserved[8]; ///< 0; see ABI in types.h
+    /// With a layout: added to motion, in image widths and heights. Where the program's own
+    /// excludes the jitter, that of this frame minus that of the last one. Default 0, 0.
+    float motion_offset[2];
+    uint64_t reserved[7]; ///< 0; see ABI in types.h
 };
 
 struct ag_frame_desc {
@@ -122,7 +177,8 @@ struct ag_frame_desc {
     const struct ag_gbuffer *gbuffer;  ///< with host_gbuffer: required; else NULL, the default
     const struct ag_view_frame *views; ///< further views of this frame, see view.h; default NULL
     int view_count;                    ///< default 0
-    uint64_t reserved[4];              ///< 0; see ABI in types.h
+    const struct ag_view_matrices *matrices; ///< in place of `camera`; NULL, the default: camera
+    uint64_t reserved[3];                    ///< 0; see ABI in types.h
 };
 /// Sets every member except `camera`; ag_scene_default_camera, ag_scene_camera and ag_scene_look_at
 /// return one.
@@ -183,7 +239,7 @@ AG_API enum ag_result ag_renderer_read(struct ag_renderer *renderer, const char 
 ///
 /// Values: radiance and irradiance are physical values × scale (1 for other layers). The scale is a
 /// power of two; it follows lights, sky and emission and is that of the newest recorded frame: ask
-/// again after each frame. Depth is reversed (near plane / distance, 0: no surface), normals are
+/// again after each frame. Depth is reversed and as in ag_gbuffer, normals are
 /// octahedral (src/frame/octahedral.glsl), albedo and display are sRGB-encoded; id has integers,
 /// each plus 1, 0: no surface.
 ///

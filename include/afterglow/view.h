@@ -19,13 +19,14 @@ AG_BEGIN
 
 /// Members as in ag_renderer_desc.
 struct ag_view_desc {
-    int width, height;    ///< pixels, 1…16384; default 1280×720
-    bool indirect_layer;  ///< default false
-    bool display_layer;   ///< default true
-    bool motion_layer;    ///< default false
-    bool host_gbuffer;    ///< default false
-    bool all_layers;      ///< keep every layer, in memory of its own; default false
-    uint64_t reserved[8]; ///< 0; see ABI in types.h
+    int width, height;   ///< pixels, 1…16384; default 1280×720
+    bool indirect_layer; ///< default false
+    bool display_layer;  ///< default true
+    bool motion_layer;   ///< default false
+    bool host_gbuffer;   ///< default false
+    bool all_layers;     ///< keep every layer, in memory of its own; default false
+    const struct ag_gbuffer_layout *gbuffer_layout; ///< default NULL
+    uint64_t reserved[7];                           ///< 0; see ABI in types.h
 };
 AG_API void ag_view_desc_default(struct ag_view_desc *desc);
 /// What a view adds to the GPU memory of a renderer, in bytes, as ag_renderer_estimate_memory
@@ -51,7 +52,8 @@ struct ag_view_frame {
     float exposure_ev;                ///< likewise
     bool camera_cut;                  ///< of this view; default false
     const struct ag_gbuffer *gbuffer; ///< with host_gbuffer: required; else NULL, the default
-    uint64_t reserved[4];             ///< 0; see ABI in types.h
+    const struct ag_view_matrices *matrices; ///< in place of `camera`; default NULL
+    uint64_t reserved[3];                    ///< 0; see ABI in types.h
 };
 /// Sets every member except `view` and `camera`.
 AG_API void ag_view_frame_default(struct ag_view_frame *frame);

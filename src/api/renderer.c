@@ -1,5 +1,6 @@
 // Renderers: creation, resizing, destruction.
 #include "api/renderer_bakes.h"
+#include "api/renderer_gbuffer.h"
 #include "api/renderer_state.h"
 
 #include "gpu/gpu.h"
@@ -56,7 +57,8 @@ struct frame_input renderer_wants(const struct ag_renderer_desc *desc)
         .want_motion_layer = desc->motion_layer,
         .want_id_layer = desc->id_layer,
         .want_display = desc->display_layer,
-        .gbuffer = desc->host_gbuffer ? &some : NULL,
+        // Converted ones have all images of the frame's own.
+        .gbuffer = desc->host_gbuffer && !desc->gbuffer_layout ? &some : NULL,
     };
 }
 
@@ -155,6 +157,9 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     enum ag_result checked = renderer_size_check(__func__, context, desc->width, desc->height);
     if (checked != AG_OK) return checked;
     checked = renderer_bakes_check(__func__, context, desc->bakes, desc->bake_count);
+    if (checked == AG_OK)
+        checked =
+            renderer_layout_check(__func__, context, desc->host_gbuffer, desc->gbuffer_layout);
     if (checked != AG_OK) return checked;
 
     struct ag_renderer *r = host_alloc(&context->host, 1, sizeof *r);
@@ -169,6 +174,8 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     r->main.motion_layer = desc->motion_layer;
     r->main.id_layer = desc->id_layer;
     r->main.host_gbuffer = desc->host_gbuffer;
+    r->main.has_layout = desc->gbuffer_layout;
+    if (desc->gbuffer_layout) r->main.layout = *desc->gbuffer_layout;
     r->wait_for_updates = desc->wait_for_updates;
     r->main.shown.layer = FRAME_COLOR;
     scene->renderers++;

@@ -2,6 +2,7 @@
 #include "api/renderer_gbuffer.h"
 #include "api/renderer_scene.h"
 #include "api/renderer_state.h"
+#include "api/view_matrices.h"
 
 #include "gpu/gpu.h"
 
@@ -24,10 +25,13 @@ void ag_frame_desc_default(struct ag_frame_desc *desc)
 struct shot {
     struct ag_view *view;
     const struct ag_camera *camera;
+    const struct ag_view_matrices *matrices; // in place of the camera; or NULL
+    struct api_view by_matrices;             // of them
     bool auto_exposure, camera_cut;
     float exposure_ev;
     const struct ag_gbuffer *gbuffer;
     struct frame_gbuffer images; // of gbuffer
+    struct gbuffer_encoding encoding;
     struct frame_input input;
 };
 struct shots {
@@ -41,6 +45,7 @@ static void list_shots(struct ag_renderer *r, const struct ag_frame_desc *desc, 
     out->count = 1 + desc->view_count;
     out->list[0] = (struct shot){ .view = &r->main,
                                   .camera = &desc->camera,
+                                  .matrices = desc->matrices,
                                   .auto_exposure = desc->auto_exposure,
                                   .camera_cut = desc->camera_cut,
                                   .exposure_ev = desc->exposure_ev,
@@ -49,6 +54,7 @@ static void list_shots(struct ag_renderer *r, const struct ag_frame_desc *desc, 
         const struct ag_view_frame *own = &desc->views[i];
         out->list[1 + i] = (struct shot){ .view = own->view,
                                           .camera = &own->camera,
+                                          .matrices = own->matrices,
                                           .auto_exposure = own->auto_exposure,
                                           .camera_cut = own->camera_cut,
                                           .exposure_ev = own->exposure_ev,
@@ -56,14 +62,19 @@ static void list_shots(struct ag_renderer *r, const struct ag_frame_desc *desc, 
     }
 }
 
-static enum ag_result shot_check(const char *function, const struct shot *shot)
+static enum ag_result shot_check(const char *function, struct shot *shot)
 {
     struct ag_context *context = view_context(shot->view);
     AG_REQUIRE_FOR(function, context, shot->view->sized, "the last resize failed");
     AG_REQUIRE_FOR(function, context, shot->auto_exposure || isfinite(shot->exposure_ev),
                    "exposure_ev is not finite");
     enum ag_result checked = renderer_gbuffer_check(function, shot->view, shot->gbuffer);
-    return checked != AG_OK ? checked : api_camera_check(context, function, shot->camera);
+    if (checked != AG_OK) return checked;
+    if (!shot->matrices) return api_camera_check(context, function, shot->camera);
+    checked = api_view_of_matrices(context, function, shot->matrices, &shot->by_matrices);
+    return checked != AG_OK || !shot->gbuffer
+               ? checked
+               : renderer_depth_check(function, shot->view, &shot->by_matrices);
 }
 
 static enum ag_result views_check(const char *function, const struct ag_renderer *r,
@@ -100,8 +111,9 @@ static enum ag_result pick_check(const char *function, const struct ag_renderer 
     return AG_OK;
 }
 
+// Lists the shots of a description that is right.
 static enum ag_result frame_check(const char *function, struct ag_renderer *r,
-                                  const struct ag_frame_desc *desc)
+                                  const struct ag_frame_desc *desc, struct shots *shots)
 {
     struct ag_context *context = renderer_context(r);
     AG_REQUIRE_FOR(function, context, desc, "desc is NULL");
@@ -113,10 +125,9 @@ static enum ag_result frame_check(const char *function, struct ag_renderer *r,
     enum ag_result checked = pick_check(function, r, desc);
     if (checked == AG_OK) checked = views_check(function, r, desc);
     if (checked != AG_OK) return checked;
-    struct shots shots;
-    list_shots(r, desc, &shots);
-    for (int i = 0; i < shots.count && checked == AG_OK; i++)
-        checked = shot_check(function, &shots.list[i]);
+    list_shots(r, desc, shots);
+    for (int i = 0; i < shots->count && checked == AG_OK; i++)
+        checked = shot_check(function, &shots->list[i]);
     return checked;
 }
 
@@ -124,9 +135,14 @@ static bool prepare_shot(struct shot *shot, const struct frame_input *common,
                          const struct frame_indirect *hook)
 {
     struct ag_view *view = shot->view;
-    if (!renderer_gbuffer_open(view, shot->gbuffer, &shot->images)) return false;
+    const struct api_view *by_matrices = shot->matrices ? &shot->by_matrices : NULL;
+    if (!renderer_gbuffer_open(view, shot->gbuffer, by_matrices, &shot->encoding, &shot->images))
+        return false;
     shot->input = *common;
-    shot->input.camera = api_camera(shot->camera);
+    if (by_matrices)
+        shot->input.projected = &by_matrices->camera;
+    else
+        shot->input.camera = api_camera(shot->camera);
     shot->input.auto_exposure = shot->auto_exposure;
     shot->input.exposure_ev = shot->exposure_ev;
     shot->input.camera_cut = shot->camera_cut;
@@ -196,27 +212,25 @@ static void count_shots(struct shots *shots)
     for (int i = 0; i < shots->count; i++) shots->list[i].view->rendered++;
 }
 
-// Into a caller's command buffer, or to be submitted if that is NULL. *cmd is NULL if recording has
-// not begun.
-static bool record(struct ag_renderer *r, const struct ag_frame_desc *desc, void *commands,
-                   struct gpu_cmd **cmd)
+// Shots have been checked. Into a caller's command buffer, or to be submitted if that is NULL. *cmd
+// is NULL if recording has not begun.
+static bool record(struct ag_renderer *r, const struct ag_frame_desc *desc, struct shots *shots,
+                   void *commands, struct gpu_cmd **cmd)
 {
     struct gpu *gpu = r->device->gpu;
     struct frame_indirect hook;
-    struct shots shots;
     *cmd = NULL;
-    list_shots(r, desc, &shots);
     renderer_enter(r);
-    bool ok = prepare(r, desc, &shots, &hook);
+    bool ok = prepare(r, desc, shots, &hook);
     if (ok) {
         *cmd = commands ? gpu_frame_begin_adopted(gpu, commands) : gpu_frame_begin(gpu);
-        if (*cmd) record_shots(&shots, *cmd, &hook);
+        if (*cmd) record_shots(shots, *cmd, &hook);
         ok = (*cmd && gpu_frame_end(gpu, *cmd)) || fail_lost(r);
     }
-    for (int i = 0; i < shots.count; i++)
-        renderer_gbuffer_finish(shots.list[i].view, &shots.list[i].images);
+    for (int i = 0; i < shots->count; i++)
+        renderer_gbuffer_finish(shots->list[i].view, &shots->list[i].images);
     renderer_leave(r);
-    if (ok || (*cmd && commands)) count_shots(&shots);
+    if (ok || (*cmd && commands)) count_shots(shots);
     return ok;
 }
 
@@ -224,11 +238,12 @@ enum ag_result ag_renderer_render(struct ag_renderer *r, const struct ag_frame_d
 {
     struct ag_context *context = renderer_context(r);
     AG_REQUIRE(context, r, "renderer is NULL");
-    enum ag_result checked = frame_check(__func__, r, desc);
+    struct shots shots;
+    enum ag_result checked = frame_check(__func__, r, desc, &shots);
     if (checked == AG_OK) checked = idle_check(__func__, r);
     if (checked != AG_OK) return checked;
     struct gpu_cmd *cmd;
-    bool ok = record(r, desc, NULL, &cmd);
+    bool ok = record(r, desc, &shots, NULL, &cmd);
     return api_done(context, ok);
 }
 
@@ -241,10 +256,11 @@ enum ag_result ag_renderer_record(struct ag_renderer *r, const struct ag_frame_d
     AG_REQUIRE(context, r, "renderer is NULL");
     AG_REQUIRE_POINTER(context, vk_command_buffer);
     AG_REQUIRE(context, r->device->adopted, "the device is not an adopted one");
-    enum ag_result checked = frame_check(__func__, r, desc);
+    struct shots shots;
+    enum ag_result checked = frame_check(__func__, r, desc, &shots);
     if (checked != AG_OK) return checked;
     struct gpu_cmd *cmd;
-    bool ok = record(r, desc, vk_command_buffer, &cmd);
+    bool ok = record(r, desc, &shots, vk_command_buffer, &cmd);
     if (!cmd) return api_done(context, ok);
     *frame = frame_number(r->main.frame);
     r->recorded[r->recorded_count++] = (struct recorded_frame){ cmd, *frame };

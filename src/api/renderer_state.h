@@ -18,6 +18,8 @@ struct ag_view {
     struct ag_renderer *renderer;
     struct frame *frame;
     bool indirect_layer, display_layer, motion_layer, id_layer, host_gbuffer;
+    struct ag_gbuffer_layout layout; // of the program's G-buffer
+    bool has_layout;
     bool all_layers;          // of a further view: keeps what nothing else asks for
     struct frame_shown shown; // by the layer "display"; its image is set for each frame
     bool shows_debug;         // the debug view, if one is set

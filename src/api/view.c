@@ -1,4 +1,5 @@
 // Further views of a renderer.
+#include "api/renderer_gbuffer.h"
 #include "api/renderer_state.h"
 
 void ag_view_desc_default(struct ag_view_desc *desc)
@@ -17,7 +18,8 @@ static struct frame_input view_wants(const struct ag_view_desc *desc)
         renderer_wants(&(struct ag_renderer_desc){ .indirect_layer = desc->indirect_layer,
                                                    .motion_layer = desc->motion_layer,
                                                    .display_layer = desc->display_layer,
-                                                   .host_gbuffer = desc->host_gbuffer });
+                                                   .host_gbuffer = desc->host_gbuffer,
+                                                   .gbuffer_layout = desc->gbuffer_layout });
     wants.keep_layers = desc->all_layers;
     return wants;
 }
@@ -96,6 +98,9 @@ enum ag_result ag_view_create(struct ag_renderer *r, const struct ag_view_desc *
     if (!desc) desc = &fallback;
     AG_REQUIRE_KNOWN(__func__, context, desc);
     enum ag_result checked = renderer_size_check(__func__, context, desc->width, desc->height);
+    if (checked == AG_OK)
+        checked =
+            renderer_layout_check(__func__, context, desc->host_gbuffer, desc->gbuffer_layout);
     if (checked != AG_OK) return checked;
 
     struct ag_view *v = host_alloc(&context->host, 1, sizeof *v);
@@ -105,8 +110,10 @@ enum ag_result ag_view_create(struct ag_renderer *r, const struct ag_view_desc *
                            .display_layer = desc->display_layer,
                            .motion_layer = desc->motion_layer,
                            .host_gbuffer = desc->host_gbuffer,
+                           .has_layout = desc->gbuffer_layout,
                            .all_layers = desc->all_layers,
                            .shown = { .layer = FRAME_COLOR } };
+    if (desc->gbuffer_layout) v->layout = *desc->gbuffer_layout;
     r->views++;
     const bool ok = create_frame(v) && resize(v, desc->width, desc->height);
     const enum ag_result result = api_done(context, ok);

@@ -72,6 +72,7 @@ static void finish_common(struct frame *f)
     direct_finish(&c->direct);
     rsm_finish(&c->rsm);
     shadow_finish(&c->shadow);
+    gbuffer_convert_finish(&c->convert);
     gbuffer_finish(&c->gbuffer);
     emitters_finish(&c->emitters);
     scene_gpu_finish(&c->scene);
@@ -205,7 +206,9 @@ static bool check_gbuffer(struct frame *f)
 {
     const uint32_t needed =
         FRAME_LEAST_GBUFFER | (f->needs & FRAME_NEEDS_MOTION ? 1u << FRAME_MOTION : 0);
-    const uint32_t missing = needed & ~f->imported;
+    uint32_t missing = 0;
+    for (int l = 0; l < FRAME_LAYER_COUNT; l++)
+        if (needed >> l & 1u && !f->gbuffer->layers[l].id) missing |= 1u << l;
     if (!missing) return true;
     return host_fail(f->host, FAIL_ARGUMENT, "gbuffer has no image of the layer %s%s",
                      missing >> FRAME_DEPTH & 1u    ? "depth"
@@ -258,8 +261,8 @@ static bool prepare_composite(struct frame *f, const struct frame_input *input)
 
 static uint32_t direct_features(const struct frame *f)
 {
-    const bool emission = f->imported
-                              ? f->imported >> FRAME_EMISSIVE & 1u
+    const bool emission = f->gbuffer
+                              ? f->gbuffer->layers[FRAME_EMISSIVE].id != 0
                               : f->common->scene.max_emissive > 0 || f->common->scene.has_unlit;
     return (f->layers[FRAME_DIELECTRIC].id ? DIRECT_DIELECTRIC : 0) |
            (f->common->options.shadow_filter > 0 ? DIRECT_FILTERED : 0) |
@@ -283,6 +286,9 @@ static bool prepare_direct(struct frame *f, const struct frame_input *input)
     int suns = 0;
     for (int i = 0; i < input->light_count; i++) suns += input->lights[i].type == LIGHT_SUN;
     f->direct_variant = direct_variant(suns, input->light_count - suns, direct_features(f));
+    // The variant of one sun takes all sight lines to begin at the camera.
+    if (input->projected && input->projected->orthographic)
+        f->direct_variant &= ~(1u << DIRECT_CONSTANT_ONE_SUN);
     return direct_prepare(&f->common->direct, f->direct_variant, most_pixels(f->common));
 }
 
@@ -303,6 +309,17 @@ static bool prepare_maps(struct frame *f, const struct frame_input *input)
            rsm_prepare(&c->rsm, rsm_faces, c->scene.variants_used);
 }
 
+// The images that a caller's G-buffer is converted into, and a pipeline for that.
+static bool prepare_conversion(struct frame *f, uint32_t written, uint32_t kept)
+{
+    const bool dielectrics = f->gbuffer->layers[FRAME_DIELECTRIC].id;
+    const uint32_t own = frame_gbuffer_layers(f->needs & ~(uint32_t)FRAME_NEEDS_ID, dielectrics);
+    const uint32_t optional = (f->needs & FRAME_NEEDS_MOTION ? GBUFFER_MOTION : 0) |
+                              (dielectrics ? GBUFFER_DIELECTRIC : 0);
+    return frame_make_layers(f, written | own | f->imported, kept) &&
+           gbuffer_convert_prepare(&f->common->convert, f->gpu, optional);
+}
+
 // The images of the frame, and the pipelines of its own G-buffer.
 static bool prepare_layers(struct frame *f, const struct frame_input *input, uint32_t kept)
 {
@@ -312,9 +329,10 @@ static bool prepare_layers(struct frame *f, const struct frame_input *input, uin
                               (dielectrics ? GBUFFER_DIELECTRIC : 0);
     const uint32_t written = frame_image_layers(input, f->needs);
     frame_import_gbuffer(f, input->gbuffer);
+    if (input->gbuffer && !check_gbuffer(f)) return false;
+    if (input->gbuffer && input->gbuffer->encoding) return prepare_conversion(f, written, kept);
     if (input->gbuffer)
-        return check_gbuffer(f) &&
-               frame_make_layers(f, written | f->imported, kept | 1u << FRAME_MATERIAL);
+        return frame_make_layers(f, written | f->imported, kept | 1u << FRAME_MATERIAL);
     return frame_make_layers(f, written | frame_gbuffer_layers(f->needs, dielectrics), kept) &&
            gbuffer_prepare(&f->common->gbuffer, f->gpu, f->common->scene.variants_used, optional);
 }
@@ -358,9 +376,28 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
 
 // ---- Passes -------------------------------------------------------------------------------------
 
+static void convert_gbuffer(struct frame *f, struct gpu_cmd *cmd,
+                            const struct gbuffer_targets *targets)
+{
+    const gpu_image *from = f->gbuffer->layers;
+    const struct gbuffer_sources sources = {
+        .depth = from[FRAME_DEPTH],
+        .normal = from[FRAME_NORMAL],
+        .albedo = from[FRAME_ALBEDO],
+        .material = from[FRAME_MATERIAL],
+        .emissive = from[FRAME_EMISSIVE],
+        .motion = from[FRAME_MOTION],
+        .dielectric = from[FRAME_DIELECTRIC],
+    };
+    struct gbuffer_targets own = *targets;
+    own.id = (gpu_image){ 0 };
+    gbuffer_convert_record(&f->common->convert, cmd, &sources, f->gbuffer->encoding, &own,
+                           f->constants_binding);
+}
+
 static void record_gbuffer(struct frame *f, struct gpu_cmd *cmd)
 {
-    if (f->imported) return;
+    if (f->gbuffer && !f->gbuffer->encoding) return;
     struct gbuffer_targets targets = {
         .depth = f->layers[FRAME_DEPTH],
         .normal = f->layers[FRAME_NORMAL],
@@ -373,8 +410,11 @@ static void record_gbuffer(struct frame *f, struct gpu_cmd *cmd)
         .width = f->width,
         .height = f->height,
     };
-    gbuffer_record(&f->common->gbuffer, cmd, &f->common->scene, &targets,
-                   f->constants.clip_from_world, f->constants_binding);
+    if (f->gbuffer)
+        convert_gbuffer(f, cmd, &targets);
+    else
+        gbuffer_record(&f->common->gbuffer, cmd, &f->common->scene, &targets,
+                       f->constants.clip_from_world, f->constants_binding);
 }
 
 // The maps of the only sun as this view sees them. Whether it can use their blocks.

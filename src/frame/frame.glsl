@@ -52,18 +52,37 @@ vec3 frame_world_position(vec2 uv, float depth)
 }
 
 // World direction through a screen position, of length 1 along the view axis: the surface is at
-// camera_position + frame_view_distance · ray.
+// frame_ray_origin + frame_view_distance · ray.
 vec3 frame_view_ray(vec2 uv)
 {
     vec2 clip = uv * 2.0 - 1.0;
-    return frame.world_from_clip[0].xyz * clip.x + frame.world_from_clip[1].xyz * clip.y +
-           frame.world_from_clip[3].xyz;
+    return frame.ray_x * clip.x + frame.ray_y * clip.y + frame.ray;
+}
+
+// camera_position, but for orthographic views.
+vec3 frame_ray_origin(vec2 uv)
+{
+    vec2 clip = uv * 2.0 - 1.0;
+    return frame.origin_x * clip.x + frame.origin_y * clip.y + frame.origin;
 }
 
 // Metres along the view axis of a depth > 0.
 float frame_view_distance(float depth)
 {
-    return frame.near_m / depth;
+    vec4 m = frame.distance_of_depth;
+    return (m.x + m.y * depth) / (m.z + m.w * depth);
+}
+
+// From a point to the viewer: not of length 1.
+vec3 frame_to_viewer(vec3 position)
+{
+    return frame.viewer.xyz - frame.viewer.w * position;
+}
+
+// A surface relative to the camera, along the axes of the world.
+vec3 frame_from_camera(vec2 uv, float view_distance)
+{
+    return frame_ray_origin(uv) - frame.camera_position + view_distance * frame_view_ray(uv);
 }
 
 #endif

@@ -12,7 +12,9 @@
 #include "gpu/gpu.h"
 #include "scene/pose.h"
 
+#include "frame/frame_camera.h"
 #include "frame/frame_shared.h"
+#include "frame/gbuffer/gbuffer_encoding.h"
 
 struct frame;
 struct scene_gpu;
@@ -88,7 +90,7 @@ struct frame_view {
     const struct scene_pose *pose;
     const struct environment *environment; // physical units
     const struct scene_gpu *scene;         // triangles and materials on the GPU (frame/scene_gpu.h)
-    struct world_camera camera;
+    struct frame_camera camera;
     struct box3 bounds; // of the scene, world space; empty for an empty scene
     bool camera_cut, geometry_moved, lights_changed; // since the previous frame
     uint64_t environment_key; // of the environment in this moment (scene/environment.h)
@@ -182,30 +184,34 @@ struct frame_shown {
     gpu_image image; // not empty: shown instead; RGBA16F of the frame's size, scaled radiance
 };
 
-// A G-buffer in place of the frame's own, in the formats of enum frame_layer: images that live
+// A G-buffer in place of the frame's own: images that live
 // until the frame is recorded. Depth, normal and albedo are required, motion if a technique or the
 // caller needs it. Without the others: roughness 1, metallic 0, the default dielectric, no
 // emission.
 struct frame_gbuffer {
     gpu_image layers[FRAME_LAYER_COUNT]; // others than those of the G-buffer are ignored
     float emissive_scale;                // values = cd/m² × emissive_scale
+    // In other formats, encodings or sizes: converted into the frame's own G-buffer, but for
+    // FRAME_ID. NULL: as in enum frame_layer.
+    const struct gbuffer_encoding *encoding;
 };
 
 struct frame_input {
     const struct scene_pose *pose;
     struct world_camera camera;
-    const struct world_light *lights; // physical units
-    int light_count;                  // ≤ FRAME_MAX_LIGHTS
-    struct environment environment;   // of the scene
-    float painted;                    // largest painted irradiance, lux
-    bool auto_exposure;               // from the frame's radiance, see image/exposure.h
-    float exposure_ev;                // used if auto_exposure is false
-    bool camera_cut;                  // invalidate history
-    bool want_indirect_layer;         // fill FRAME_INDIRECT
-    bool want_motion_layer;           // fill FRAME_MOTION even without FRAME_NEEDS_MOTION
-    bool want_id_layer;               // fill FRAME_ID
-    bool keep_layers;                 // of a further view, also those that nothing else asks for
-    bool pick;                        // report the FRAME_ID of a pixel, below the size
+    const struct frame_camera *projected; // in place of `camera`; NULL: its perspective
+    const struct world_light *lights;     // physical units
+    int light_count;                      // ≤ FRAME_MAX_LIGHTS
+    struct environment environment;       // of the scene
+    float painted;                        // largest painted irradiance, lux
+    bool auto_exposure;                   // from the frame's radiance, see image/exposure.h
+    float exposure_ev;                    // used if auto_exposure is false
+    bool camera_cut;                      // invalidate history
+    bool want_indirect_layer;             // fill FRAME_INDIRECT
+    bool want_motion_layer;               // fill FRAME_MOTION even without FRAME_NEEDS_MOTION
+    bool want_id_layer;                   // fill FRAME_ID
+    bool keep_layers; // of a further view, also those that nothing else asks for
+    bool pick;        // report the FRAME_ID of a pixel, below the size
     uint32_t pick_x, pick_y;
     bool want_display;                   // fill FRAME_DISPLAY
     const struct frame_shown *shown;     // by FRAME_DISPLAY; NULL: FRAME_COLOR

@@ -2,7 +2,6 @@
 #include "frame/frame_state.h"
 
 #include "frame/frame_scale.h"
-#include "frame/projection.h"
 
 #include "core/hash.h"
 #include "scene/unlit.h"
@@ -42,19 +41,19 @@ static void begin_lights(struct frame *f, const struct frame_input *input, float
     f->light_count = count;
 }
 
+// A change between perspective and orthographic is a cut, too.
 static void begin_camera(struct frame *f, const struct frame_input *input)
 {
     struct frame_constants *c = &f->constants;
-    mat4s previous = c->clip_from_world;
-    f->camera = input->camera;
-    f->camera_cut = input->camera_cut || f->index == 0;
-    c->clip_from_world = projection_of_camera(&input->camera, f->width, f->height);
-    c->world_from_clip = projection_inverse(c->clip_from_world);
-    c->previous_clip_from_world = f->camera_cut ? c->clip_from_world : previous;
-    c->view_from_world =
-        projection_view_from_world(input->camera.eye, input->camera.forward, input->camera.up);
-    c->camera_position = input->camera.eye;
-    c->near_m = input->camera.near_m;
+    const mat4s previous_clip = c->clip_from_world;
+    const struct frame_camera previous = f->camera;
+    f->camera =
+        input->projected ? *input->projected : frame_camera_of(&input->camera, f->width, f->height);
+    f->camera_cut =
+        input->camera_cut || f->index == 0 || previous.orthographic != f->camera.orthographic;
+    frame_camera_constants(&f->camera, c);
+    c->previous_clip_from_world = f->camera_cut ? c->clip_from_world : previous_clip;
+    c->previous_axis = f->camera_cut ? c->axis : frame_camera_axis(&previous);
 }
 
 static uint64_t light_hash(const struct frame *f)
@@ -117,8 +116,7 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
     f->light_hash = light_hash(f);
     shadow_place(&f->common->shadow, f->lights, f->light_count,
                  &(struct shadow_view){
-                     .camera = input->camera,
-                     .aspect = (float)f->width / (float)f->height,
+                     .camera = f->camera,
                      .bounds = input->pose->bounds,
                      .cascade_blend = f->common->options.cascade_blend,
                      .filter_radius = f->common->options.shadow_filter,

@@ -95,8 +95,11 @@ bool frame_layer_is_gbuffer(enum frame_layer layer)
 void frame_import_gbuffer(struct frame *frame, const struct frame_gbuffer *gbuffer)
 {
     frame_forget_gbuffer(frame);
+    frame->gbuffer = gbuffer;
     for (int l = 0; gbuffer && l < FRAME_LAYER_COUNT; l++) {
-        if (!gbuffer->layers[l].id || !frame_layer_is_gbuffer((enum frame_layer)l)) continue;
+        const bool converted = gbuffer->encoding && l != FRAME_ID;
+        if (converted || !gbuffer->layers[l].id || !frame_layer_is_gbuffer((enum frame_layer)l))
+            continue;
         gpu_image_destroy(frame->gpu, &frame->layers[l]);
         frame->layers[l] = gbuffer->layers[l];
         frame->imported |= 1u << l;
@@ -108,6 +111,7 @@ void frame_forget_gbuffer(struct frame *frame)
     for (int l = 0; l < FRAME_LAYER_COUNT; l++)
         if (frame->imported >> l & 1u) frame->layers[l] = (gpu_image){ 0 };
     frame->imported = 0;
+    frame->gbuffer = NULL;
 }
 
 // Of a further view: its image has the memory that it should have.

@@ -52,16 +52,11 @@ static void divide_by_scale(const struct frame *f, float *pixels, size_t count)
     for (size_t i = 0; i < count; i++) pixels[i] *= inverse;
 }
 
-// Metres along the view axis; 0: no surface.
-static float distance_of(const struct frame *f, float depth)
-{
-    return depth > 0.0f ? f->camera.near_m / depth : 0.0f;
-}
-
 static bool read_depth(struct frame *f, float *pixels)
 {
     if (!download(f, FRAME_DEPTH, pixels, 1)) return false;
-    for (size_t i = 0; i < (size_t)f->width * f->height; i++) pixels[i] = distance_of(f, pixels[i]);
+    for (size_t i = 0; i < (size_t)f->width * f->height; i++)
+        pixels[i] = frame_camera_distance(&f->camera, pixels[i]);
     return true;
 }
 
@@ -73,16 +68,12 @@ static bool read_position(struct frame *f, float *pixels)
         host_free(f->host, depth);
         return false;
     }
-    const struct world_camera *c = &f->camera;
-    float tan_y = tanf(c->vertical_fov_rad * 0.5f);
-    float tan_x = tan_y * (float)f->width / (float)f->height;
-    vec3s right = glms_vec3_cross(c->forward, c->up);
     for (size_t i = 0; i < count; i++) {
         float x = 2.0f * ((float)(i % f->width) + 0.5f) / (float)f->width - 1.0f;
-        float y = 1.0f - 2.0f * ((float)(i / f->width) + 0.5f) / (float)f->height;
-        vec3s along = glms_vec3_muladds(right, x * tan_x, c->forward);
-        along = glms_vec3_muladds(c->up, y * tan_y, along);
-        vec3s p = glms_vec3_muladds(along, distance_of(f, depth[i]), c->eye);
+        float y = 2.0f * ((float)(i / f->width) + 0.5f) / (float)f->height - 1.0f;
+        const struct frame_sight sight = frame_camera_sight(&f->camera, x, y);
+        vec3s p = glms_vec3_muladds(sight.direction, frame_camera_distance(&f->camera, depth[i]),
+                                    sight.origin);
         for (int k = 0; k < 3; k++) pixels[3 * i + (size_t)k] = depth[i] > 0.0f ? p.raw[k] : 0.0f;
     }
     host_free(f->host, depth);

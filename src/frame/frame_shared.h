@@ -19,12 +19,19 @@
 
 // Uniform block "frame_constants".
 struct frame_constants {
-    mat4s clip_from_world; // reversed Z, infinite far: depth 1 at the near plane, 0 at infinity
+    mat4s clip_from_world; // reversed Z: depth 1 at the near plane, see frame_camera.h
     mat4s world_from_clip;
     mat4s previous_clip_from_world; // of the previous frame
     mat4s view_from_world;
+    vec4s viewer;            // homogeneous: the position, or minus the axis of an orthographic view
+    vec4s distance_of_depth; // distance = (x + y · depth) / (z + w · depth)
+    // Distance along the view axis, and that of the previous frame: xyz · position + w.
+    vec4s axis, previous_axis;
     vec3s camera_position; // world, m
     float near_m;
+    // The sight line through a point (x, y) of clip space: origin + distance · ray, each with its
+    // parts by x and y. World space, m; rays have the length 1 along the view axis.
+    vec3s origin, origin_x, origin_y, ray, ray_x, ray_y;
     vec3s sky;                  // scaled radiance, mean of the environment: environment.glsl
     float radiance_scale;       // scaled = physical × radiance_scale
     float previous_scale_ratio; // radiance_scale / previous radiance_scale: a factor for history
@@ -38,7 +45,7 @@ struct frame_constants {
     float environment_cos, environment_sin; // of the map's rotation about +y
     float environment_side;                 // texels of the map's finest level
     vec3s environment_sh[9]; // coefficients of the environment's scaled radiance (core/sh.h)
-    uint32_t padding[3];     // mat4s is aligned to 16 bytes in C
+    uint32_t padding;        // mat4s is aligned to 16 bytes in C
 };
 
 // Storage block "frame_lights".
@@ -87,7 +94,7 @@ struct frame_probes {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct frame_constants) == 4 * 64 + 52 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct frame_constants) == 4 * 64 + 84 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_light) == 64, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_emitter) == 9 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_probes) == 8 * 4, "layout is shared with GLSL");

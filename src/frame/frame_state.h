@@ -9,6 +9,7 @@
 #include "frame/direct/direct.h"
 #include "frame/emitters.h"
 #include "frame/environment_map.h"
+#include "frame/gbuffer/convert.h"
 #include "frame/gbuffer/gbuffer.h"
 #include "frame/rsm/rsm.h"
 #include "frame/scene_gpu.h"
@@ -32,6 +33,7 @@ struct frame_common {
     bool has_scene;
     bool viewed; // further views of the frame being recorded have used shared layers
     struct gbuffer gbuffer;
+    struct gbuffer_convert convert;
     struct shadow shadow;
     struct rsm rsm;
     struct direct direct;
@@ -51,8 +53,9 @@ struct frame {
 
     struct exposure exposure;
     gpu_image layers[FRAME_LAYER_COUNT];
-    uint32_t imported;  // bit l: layer l is the caller's, until the frame is recorded
-    uint32_t pinned;    // bit l: layer l, by frame_pin_layer
+    uint32_t imported; // bit l: layer l is the caller's, until the frame is recorded
+    const struct frame_gbuffer *gbuffer; // the caller's, until the frame is recorded; or NULL
+    uint32_t pinned;                     // bit l: layer l, by frame_pin_layer
     uint32_t unwritten; // set by frame_prepare: kept layers that no pass or technique writes
     uint32_t neutral;   // those of them that have their neutral value
     uint32_t own;       // set by frame_prepare: of a further view, what it keeps
@@ -72,7 +75,7 @@ struct frame {
     int light_count;
     uint64_t lights_hash, light_hash; // of the physical lights; of struct frame_view
     uint64_t environment_key;
-    struct world_camera camera;
+    struct frame_camera camera;
     vec3s emitted_irradiance; // scaled lux
     float fallback_luminance; // scaled, see frame_fallback_luminance
     bool camera_cut, lights_changed;

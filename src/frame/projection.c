@@ -41,15 +41,6 @@ mat4s projection_orthographic(float half_m, float near_m, float far_m)
     return m;
 }
 
-mat4s projection_of_camera(const struct world_camera *camera, uint32_t width, uint32_t height)
-{
-    float tan_y = tanf(camera->vertical_fov_rad * 0.5f);
-    mat4s clip_from_view =
-        projection_perspective(tan_y * (float)width / (float)height, tan_y, camera->near_m);
-    return glms_mat4_mul(clip_from_view,
-                         projection_view_from_world(camera->eye, camera->forward, camera->up));
-}
-
 vec3s projection_cube_forward(int face)
 {
     vec3s v = vec3_of(0, 0, 0);

@@ -10,7 +10,6 @@ mat4s projection_perspective(float tan_half_x, float tan_half_y, float near_m);
 // half_m: half the edge of the square in metres. Depth is 1 at near_m along the axis and 0 at
 // far_m.
 mat4s projection_orthographic(float half_m, float near_m, float far_m);
-mat4s projection_of_camera(const struct world_camera *camera, uint32_t width, uint32_t height);
 
 // The six faces of a cube map, +x −x +y −y +z −z.
 vec3s projection_cube_forward(int face);

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-static const struct format formats[GPU_FORMAT_COUNT] = {
+static const struct format formats[GPU_IMPORT_FORMAT_COUNT] = {
     [GPU_FORMAT_NONE] = { VK_FORMAT_UNDEFINED, 0, 0, "none" },
     [GPU_R8] = { VK_FORMAT_R8_UNORM, 1, 1, "r8" },
     [GPU_RG8] = { VK_FORMAT_R8G8_UNORM, 2, 2, "rg8" },
@@ -23,16 +23,51 @@ static const struct format formats[GPU_FORMAT_COUNT] = {
     [GPU_RGBA32U] = { VK_FORMAT_R32G32B32A32_UINT, 16, 4, "rgba32u" },
     [GPU_B10G11R11F] = { VK_FORMAT_B10G11R11_UFLOAT_PACK32, 4, 3, "b10g11r11f" },
     [GPU_D32F] = { VK_FORMAT_D32_SFLOAT, 4, 1, "d32f" },
+    [GPU_RG16] = { VK_FORMAT_R16G16_UNORM, 4, 2, "rg16" },
+    [GPU_RGBA16] = { VK_FORMAT_R16G16B16A16_UNORM, 8, 4, "rgba16" },
+    [GPU_RGBA16_SNORM] = { VK_FORMAT_R16G16B16A16_SNORM, 8, 4, "rgba16_snorm" },
+    [GPU_A2B10G10R10] = { VK_FORMAT_A2B10G10R10_UNORM_PACK32, 4, 4, "a2b10g10r10" },
+    [GPU_BGRA8] = { VK_FORMAT_B8G8R8A8_UNORM, 4, 4, "bgra8" },
+    [GPU_BGRA8_SRGB] = { VK_FORMAT_B8G8R8A8_SRGB, 4, 4, "bgra8_srgb" },
+    [GPU_D16] = { VK_FORMAT_D16_UNORM, 2, 1, "d16" },
+    [GPU_D24] = { VK_FORMAT_X8_D24_UNORM_PACK32, 4, 1, "d24" },
+    [GPU_D24_S8] = { VK_FORMAT_D24_UNORM_S8_UINT, 4, 1, "d24_s8" },
+    [GPU_D32F_S8] = { VK_FORMAT_D32_SFLOAT_S8_UINT, 5, 1, "d32f_s8" },
 };
 
 const struct format *format_of(enum gpu_format format)
 {
-    return &formats[(unsigned)format < GPU_FORMAT_COUNT ? format : GPU_FORMAT_NONE];
+    return &formats[(unsigned)format < GPU_IMPORT_FORMAT_COUNT ? format : GPU_FORMAT_NONE];
 }
 
 int gpu_format_bytes(enum gpu_format format)
 {
     return format_of(format)->bytes;
+}
+
+int gpu_format_channels(enum gpu_format format)
+{
+    return format_of(format)->channels;
+}
+
+const char *gpu_format_name(enum gpu_format format)
+{
+    return format_of(format)->name;
+}
+
+enum gpu_format gpu_format_of_vk(uint32_t vk_format)
+{
+    for (int f = GPU_FORMAT_NONE + 1; f < GPU_IMPORT_FORMAT_COUNT; f++)
+        if ((uint32_t)formats[f].vk == vk_format) return (enum gpu_format)f;
+    return GPU_FORMAT_NONE;
+}
+
+VkImageAspectFlags format_aspects(enum gpu_format format)
+{
+    const bool stencil = format == GPU_D24_S8 || format == GPU_D32F_S8;
+    const bool depth = stencil || format == GPU_D32F || format == GPU_D16 || format == GPU_D24;
+    return (depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT) |
+           (stencil ? VK_IMAGE_ASPECT_STENCIL_BIT : 0u);
 }
 
 // An unsigned float with `exponent` bits, biased by 2^(exponent−1)−1, and `mantissa` bits, with

@@ -127,9 +127,24 @@ enum gpu_format {
     GPU_RGBA32U,
     GPU_B10G11R11F,
     GPU_D32F,
-    GPU_FORMAT_COUNT
+    GPU_FORMAT_COUNT,
+    // Formats of a caller's images alone (gpu_image_import).
+    GPU_RG16 = GPU_FORMAT_COUNT,
+    GPU_RGBA16,
+    GPU_RGBA16_SNORM,
+    GPU_A2B10G10R10,
+    GPU_BGRA8,
+    GPU_BGRA8_SRGB,
+    GPU_D16,
+    GPU_D24,
+    GPU_D24_S8,
+    GPU_D32F_S8,
+    GPU_IMPORT_FORMAT_COUNT
 };
 int gpu_format_bytes(enum gpu_format format); // per texel
+int gpu_format_channels(enum gpu_format format);
+const char *gpu_format_name(enum gpu_format format);
+enum gpu_format gpu_format_of_vk(uint32_t vk_format); // GPU_FORMAT_NONE: none of them
 
 enum gpu_dimension { GPU_2D, GPU_2D_ARRAY, GPU_3D, GPU_CUBE, GPU_CUBE_ARRAY };
 

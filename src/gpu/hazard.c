@@ -105,8 +105,8 @@ static void batch_layout(struct gpu_cmd *cmd, const struct image *image, const s
         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .image = image->handle,
-        .subresourceRange = { image->aspect, range->mip, range->mip_count, range->layer,
-                              range->layer_count },
+        .subresourceRange = { format_aspects(image->desc.format), range->mip, range->mip_count,
+                              range->layer, range->layer_count },
     };
 }
 

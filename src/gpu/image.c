@@ -77,7 +77,7 @@ static bool check_desc(struct gpu *gpu, const struct gpu_image_desc *d)
     if (!d->name || !d->name[0])
         return host_fail(gpu->host, FAIL_ARGUMENT, "gpu image: it has no name");
     if ((unsigned)d->dimension > GPU_CUBE_ARRAY || d->format <= GPU_FORMAT_NONE ||
-        d->format >= GPU_FORMAT_COUNT || d->usage & ~usages) {
+        d->format >= GPU_IMPORT_FORMAT_COUNT || d->usage & ~usages) {
         return host_fail(gpu->host, FAIL_ARGUMENT,
                          "gpu image %s: unknown dimension, format or usage", d->name);
     }
@@ -156,7 +156,7 @@ static struct image *image_new(struct gpu *gpu, const struct gpu_image_desc *des
     image->desc.name = image->name;
     image->desc.alias = NULL;
     image->layers = d.dimension == GPU_3D ? 1 : d.depth;
-    image->aspect = d.format == GPU_D32F ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+    image->aspect = format_aspects(d.format) & ~(VkImageAspectFlags)VK_IMAGE_ASPECT_STENCIL_BIT;
     image->whole = true;
     image->hazards = host_alloc(gpu->host, (size_t)d.mips * image->layers, sizeof *image->hazards);
     if (!image->hazards) {
@@ -193,6 +193,9 @@ static bool create_handle(struct gpu *gpu, struct image *image, const char *alia
 bool gpu_image_create(struct gpu *gpu, const struct gpu_image_desc *desc, gpu_image *out)
 {
     out->id = 0;
+    if (desc->format >= GPU_FORMAT_COUNT)
+        return host_fail(gpu->host, FAIL_ARGUMENT, "gpu image %s: its format cannot be created",
+                         desc->name ? desc->name : "");
     deferred_delete_collect(gpu);
     struct image *image = image_new(gpu, desc);
     if (!image) return false;

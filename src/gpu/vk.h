@@ -158,9 +158,9 @@ struct image {
     struct gpu_image_desc desc; // with defaults filled in; desc.name is `name`
     char name[NAME_SIZE];
     VkImage handle;
-    VkImageAspectFlags aspect;
-    uint32_t layers;   // 1 for 3D images
-    bool wrapped;      // the caller's VkImage
+    VkImageAspectFlags aspect; // that shaders sample
+    uint32_t layers;           // 1 for 3D images
+    bool wrapped;              // the caller's VkImage
     bool shared;       // the caller may use it between frames: wrapped, or its handle was queried
     bool zero_pending; // not yet cleared
     bool whole;        // hazards[0] is the state of all subresources
@@ -217,6 +217,7 @@ struct format {
     uint8_t bytes, channels;
     const char *name;
 };
+VkImageAspectFlags format_aspects(enum gpu_format format); // all that an image has
 const struct format *format_of(enum gpu_format format);
 void format_to_float(enum gpu_format format, const void *texel, float out[4]);
 VkClearColorValue format_clear(enum gpu_format format, const float value[4]);

@@ -90,7 +90,8 @@ static const struct {
     AT(ag_renderer_desc, id_layer, 56),
     AT(ag_renderer_desc, host_gbuffer, 57),
     AT(ag_renderer_desc, wait_for_updates, 58),
-    AT(ag_renderer_desc, reserved, 64),
+    AT(ag_renderer_desc, gbuffer_layout, 64),
+    AT(ag_renderer_desc, reserved, 72),
     SIZE(ag_frame_desc, 136),
     AT(ag_frame_desc, camera, 0),
     AT(ag_frame_desc, time_s, 48),
@@ -102,7 +103,8 @@ static const struct {
     AT(ag_frame_desc, gbuffer, 80),
     AT(ag_frame_desc, views, 88),
     AT(ag_frame_desc, view_count, 96),
-    AT(ag_frame_desc, reserved, 104),
+    AT(ag_frame_desc, matrices, 104),
+    AT(ag_frame_desc, reserved, 112),
     SIZE(ag_view_desc, 80),
     AT(ag_view_desc, width, 0),
     AT(ag_view_desc, height, 4),
@@ -110,7 +112,8 @@ static const struct {
     AT(ag_view_desc, display_layer, 9),
     AT(ag_view_desc, motion_layer, 10),
     AT(ag_view_desc, host_gbuffer, 11),
-    AT(ag_view_desc, reserved, 16),
+    AT(ag_view_desc, gbuffer_layout, 16),
+    AT(ag_view_desc, reserved, 24),
     SIZE(ag_view_frame, 104),
     AT(ag_view_frame, view, 0),
     AT(ag_view_frame, camera, 8),
@@ -118,7 +121,8 @@ static const struct {
     AT(ag_view_frame, exposure_ev, 56),
     AT(ag_view_frame, camera_cut, 60),
     AT(ag_view_frame, gbuffer, 64),
-    AT(ag_view_frame, reserved, 72),
+    AT(ag_view_frame, matrices, 72),
+    AT(ag_view_frame, reserved, 80),
     SIZE(ag_pick, 56),
     AT(ag_pick, frame, 0),
     AT(ag_pick, x, 8),
@@ -135,7 +139,8 @@ static const struct {
     AT(ag_gbuffer, emissive, 360),
     AT(ag_gbuffer, motion, 432),
     AT(ag_gbuffer, id, 504),
-    AT(ag_gbuffer, reserved, 576),
+    AT(ag_gbuffer, motion_offset, 576),
+    AT(ag_gbuffer, reserved, 584),
     SIZE(ag_finished_frame, 64),
     AT(ag_finished_frame, frame, 0),
     AT(ag_finished_frame, exposure_ev, 8),
@@ -508,14 +513,14 @@ TEST(reserved_members_are_zero_by_default_and_refused_otherwise)
     memset(&renderer, 0xff, sizeof renderer);
     ag_renderer_desc_default(&renderer);
     assert_int_equal(ag_renderer_estimate_memory(context, &renderer, 0, &bytes), AG_OK);
-    renderer.reserved[6] = 1;
+    renderer.reserved[5] = 1;
     assert_int_equal(ag_renderer_estimate_memory(context, &renderer, 0, &bytes), AG_ERROR_ARGUMENT);
 
     struct ag_view_desc view;
     memset(&view, 0xff, sizeof view);
     ag_view_desc_default(&view);
     assert_int_equal(ag_view_estimate_memory(context, NULL, &view, &bytes), AG_OK);
-    view.reserved[7] = 1;
+    view.reserved[6] = 1;
     assert_int_equal(ag_view_estimate_memory(context, NULL, &view, &bytes), AG_ERROR_ARGUMENT);
 
     struct ag_compare_desc compare;

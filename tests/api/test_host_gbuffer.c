@@ -226,7 +226,7 @@ TEST(what_is_missing_or_has_another_form_is_named)
     bad.emissive.scale = 0;
     check_refused(&s, hosted, &bad, "gbuffer.emissive: its scale");
     bad = good;
-    bad.reserved[7] = 1;
+    bad.reserved[6] = 1;
     check_refused(&s, hosted, &bad, "reserved");
 
     struct ag_frame_desc frame = s.frame;

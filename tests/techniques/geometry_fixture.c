@@ -91,6 +91,7 @@ void geometry_scatter(struct rsm_fixture *rsm, struct gpu *gpu)
     rsm_fixture_show_wall(rsm, vec3_of(-2, 0.5f, 1.5f), vec3_of(3.5f, 0.2f, 0.1f),
                           vec3_of(0.1f, 0.3f, 3), vec3_of(0.2f, 0.9f, 0.1f));
     rsm->constants.camera_position = vec3_of(0.1f, 3, 2.5f);
+    rsm->constants.viewer = vec4_of(rsm->constants.camera_position, 1.0f);
     rsm_fixture_upload(rsm);
 }
 

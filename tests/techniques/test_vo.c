@@ -205,7 +205,7 @@ TEST_GPU(a_new_size_ends_the_history)
         }
         fixture_render(&s);
         assert_int_equal(ao->number, frame % 3);
-        assert_int_equal(ao->params.previous_near_m > 0.0f, frame % 3 > 0);
+        assert_int_equal((int)ao->params.has_history, frame % 3 > 0);
     }
     vo_fixture_destroy(&fixture);
     fixture_finish(&s);

@@ -116,7 +116,7 @@ surface read_surface(ivec2 pixel, float depth, vec3 albedo)
     surface s;
     s.ray = frame_view_ray(frame_uv(uvec2(pixel)));
     s.view_distance = frame_view_distance(depth);
-    s.position = frame.camera_position + s.view_distance * s.ray;
+    s.position = frame_ray_origin(frame_uv(uvec2(pixel))) + s.view_distance * s.ray;
     s.normal = octahedral_decode(texelFetch(normal_layer, pixel, 0).rg);
     s.to_viewer = -normalize(s.ray);
     if (FILTERED) s.geometric_normal = geometric_normal(pixel, depth, s.position, s.to_viewer);

@@ -7,6 +7,21 @@
 
 enum { BASE_COLORS = 4 }; // normal, albedo, material, emissive
 
+struct gpu_graphics_desc gbuffer_pipeline_desc(uint32_t layers)
+{
+    struct gpu_graphics_desc desc = {
+        .color_formats = { GPU_RG16F, GPU_RGBA8_SRGB, GPU_RG8, GPU_RGBA16F },
+        .depth_format = GPU_D32F,
+        .depth_compare = GPU_GREATER,
+        .depth_write = true,
+    };
+    int count = BASE_COLORS;
+    if (layers & GBUFFER_DIELECTRIC) desc.color_formats[count++] = GPU_RGBA8;
+    if (layers & GBUFFER_MOTION) desc.color_formats[count++] = GPU_RGBA16F;
+    if (layers & GBUFFER_ID) desc.color_formats[count++] = GPU_RG32U;
+    return desc;
+}
+
 static bool make_pipeline(struct gbuffer *g, uint32_t variant, uint32_t layers)
 {
     static const struct gpu_shader *const vertex[GBUFFER_LAYER_SETS] = {
@@ -31,21 +46,12 @@ static bool make_pipeline(struct gbuffer *g, uint32_t variant, uint32_t layers)
     };
     struct gpu_constant constants[SCENE_CONSTANT_COUNT];
     gpu_constants_of_bits(variant, constants, SCENE_CONSTANT_COUNT);
-    struct gpu_graphics_desc desc = {
-        .name = "frame.gbuffer",
-        .vertex = vertex[layers],
-        .fragment = fragment[layers],
-        .constants = constants,
-        .constant_count = SCENE_CONSTANT_COUNT,
-        .color_formats = { GPU_RG16F, GPU_RGBA8_SRGB, GPU_RG8, GPU_RGBA16F },
-        .depth_format = GPU_D32F,
-        .depth_compare = GPU_GREATER,
-        .depth_write = true,
-    };
-    int count = BASE_COLORS;
-    if (layers & GBUFFER_DIELECTRIC) desc.color_formats[count++] = GPU_RGBA8;
-    if (layers & GBUFFER_MOTION) desc.color_formats[count++] = GPU_RGBA16F;
-    if (layers & GBUFFER_ID) desc.color_formats[count++] = GPU_RG32U;
+    struct gpu_graphics_desc desc = gbuffer_pipeline_desc(layers);
+    desc.name = "frame.gbuffer";
+    desc.vertex = vertex[layers];
+    desc.fragment = fragment[layers];
+    desc.constants = constants;
+    desc.constant_count = SCENE_CONSTANT_COUNT;
     return gpu_graphics_pipeline_create(g->gpu, &desc, &g->pipelines[layers][variant]);
 }
 
@@ -59,8 +65,8 @@ bool gbuffer_prepare(struct gbuffer *g, struct gpu *gpu, uint32_t variants, uint
     return true;
 }
 
-static void begin(struct gpu_cmd *cmd, const struct scene_gpu *scene,
-                  const struct gbuffer_targets *t)
+void gbuffer_begin(struct gpu_cmd *cmd, const struct gbuffer_targets *t,
+                   const struct gpu_binding *reads, int read_count)
 {
     struct gpu_render_desc desc = {
         .color = { { .image = t->normal },
@@ -71,8 +77,8 @@ static void begin(struct gpu_cmd *cmd, const struct scene_gpu *scene,
         .depth = { .image = t->depth },
         .width = t->width,
         .height = t->height,
-        .reads = scene->reads,
-        .read_count = scene->read_count,
+        .reads = reads,
+        .read_count = read_count,
     };
     if (t->dielectric.id) desc.color[desc.color_count++].image = t->dielectric;
     if (t->motion.id) desc.color[desc.color_count++].image = t->motion;
@@ -122,15 +128,19 @@ static void record_draw(const struct gbuffer *g, struct gpu_cmd *cmd, const stru
         scene_gpu_draw(scene, cmd, &call);
 }
 
+uint32_t gbuffer_layers_of(const struct gbuffer_targets *targets)
+{
+    return (targets->motion.id ? GBUFFER_MOTION : 0) |
+           (targets->dielectric.id ? GBUFFER_DIELECTRIC : 0) | (targets->id.id ? GBUFFER_ID : 0);
+}
+
 void gbuffer_record(const struct gbuffer *g, struct gpu_cmd *cmd, const struct scene_gpu *scene,
                     const struct gbuffer_targets *targets, mat4s clip_from_world,
                     struct gpu_binding constants)
 {
-    const uint32_t layers = (targets->motion.id ? GBUFFER_MOTION : 0) |
-                            (targets->dielectric.id ? GBUFFER_DIELECTRIC : 0) |
-                            (targets->id.id ? GBUFFER_ID : 0);
+    const uint32_t layers = gbuffer_layers_of(targets);
     gpu_scope_begin(cmd, "gbuffer");
-    begin(cmd, scene, targets);
+    gbuffer_begin(cmd, targets, scene->reads, scene->read_count);
     for (int i = 0; i < scene->draw_count; i++) {
         const struct scene_draw *draw = &scene->draws[i];
         if (projection_may_see(clip_from_world, draw->bounds))

@@ -22,6 +22,12 @@ struct gbuffer_targets {
     uint32_t width, height;
 };
 
+// Formats, depth test and rendering of all passes that write a G-buffer.
+struct gpu_graphics_desc gbuffer_pipeline_desc(uint32_t layers);
+uint32_t gbuffer_layers_of(const struct gbuffer_targets *targets);
+void gbuffer_begin(struct gpu_cmd *cmd, const struct gbuffer_targets *targets,
+                   const struct gpu_binding *reads, int read_count);
+
 // Creates missing pipelines for these variants (bit v: variant v).
 bool gbuffer_prepare(struct gbuffer *gbuffer, struct gpu *gpu, uint32_t variants, uint32_t layers);
 void gbuffer_record(const struct gbuffer *gbuffer, struct gpu_cmd *cmd,

@@ -5,6 +5,7 @@
 #define GBUFFER_FRAGMENT
 #define SCENE_FRAGMENT
 #include "frame/frame.glsl"
+#include "frame/gbuffer/gbuffer_targets.glsl"
 #include "frame/gbuffer/gbuffer_varyings.glsl"
 #include "frame/octahedral.glsl"
 #include "frame/scene.glsl"
@@ -12,26 +13,9 @@
 layout(set = 0, binding = 10) uniform sampler2D normal_map;
 layout(set = 0, binding = 11) uniform sampler2D emissive_map;
 
-layout(location = 0) out vec2 out_normal;
-layout(location = 1) out vec4 out_albedo;
-layout(location = 2) out vec2 out_material;
-layout(location = 3) out vec4 out_emissive;
 #ifdef GBUFFER_DIELECTRIC
 layout(set = 0, binding = 12) uniform sampler2D specular_map;
 layout(set = 0, binding = 13) uniform sampler2D specular_color_map;
-layout(location = 4) out vec4 out_dielectric; // see FRAME_DIELECTRIC
-#define MOTION_LOCATION 5
-#else
-#define MOTION_LOCATION 4
-#endif
-#ifdef GBUFFER_MOTION
-layout(location = MOTION_LOCATION) out vec4 out_motion; // see FRAME_MOTION
-#define ID_LOCATION (MOTION_LOCATION + 1)
-#else
-#define ID_LOCATION MOTION_LOCATION
-#endif
-#ifdef GBUFFER_ID
-layout(location = ID_LOCATION) out uvec2 out_id; // see FRAME_ID
 #endif
 
 // glTF 2.0, sec. 3.9.3: the bitangent is cross(normal, tangent) · w. Back faces of double-sided
@@ -85,9 +69,11 @@ void main()
     out_id = uvec2(push.draw.instance, vary_triangle) + 1u;
 #endif
 #ifdef GBUFFER_MOTION
-    vec2 current = vary_current.xy / vary_current.z;
+    vec2 current = vary_current.xy / mix(1.0, vary_current.z, frame.viewer.w);
     // A point behind the previous camera has no previous position: the largest motion marks it.
-    vec2 previous = vary_previous.z > 0.0 ? vary_previous.xy / vary_previous.z : vec2(-HALF_MAX);
+    vec2 previous = vary_previous.z > 0.0
+                        ? vary_previous.xy / mix(1.0, vary_previous.z, frame.viewer.w)
+                        : vec2(-HALF_MAX);
     float depth_change = max(vary_previous.z, 0.0) / vary_current.z - 1.0;
     out_motion =
         vec4(clamp(vec3((current - previous) * 0.5, depth_change), -HALF_MAX, HALF_MAX), 1.0);

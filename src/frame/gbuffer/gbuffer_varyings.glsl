@@ -14,8 +14,8 @@ layout(location = 4) VARY vec2 vary_metallic_roughness_uv;
 layout(location = 5) VARY vec2 vary_normal_uv;
 layout(location = 6) VARY vec2 vary_emissive_uv;
 #ifdef GBUFFER_MOTION
-// Clip-space x, y, w of this frame and the previous one. Both are interpolated alike, so that
-// static surfaces have a motion of exactly 0.
+// Clip-space x and y, and the distance along the axis, of this frame and the previous one. Both are
+// interpolated alike, so that static surfaces have a motion of exactly 0.
 layout(location = 7) VARY vec3 vary_current;
 layout(location = 8) VARY vec3 vary_previous;
 #endif

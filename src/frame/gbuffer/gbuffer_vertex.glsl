@@ -51,9 +51,13 @@ void main()
 #endif
     vary_color = unpackUnorm4x8(surface.color);
 #ifdef GBUFFER_MOTION
-    vec4 previous =
-        frame.previous_clip_from_world * vec4(scene_previous_world_position(vertex), 1.0);
+    vec4 before = vec4(scene_previous_world_position(vertex), 1.0);
+    vec4 previous = frame.previous_clip_from_world * before;
     vary_current = clip.xyw;
     vary_previous = previous.xyw;
+    if (frame.viewer.w == 0.0) { // orthographic
+        vary_current.z = dot(frame.axis, vec4(world, 1.0));
+        vary_previous.z = dot(frame.previous_axis, before);
+    }
 #endif
 }

@@ -2,6 +2,7 @@
 // points and spots their surroundings; the latter have half the size, since a point light has six.
 #pragma once
 
+#include "frame/frame_camera.h"
 #include "frame/frame_shared.h"
 #include "frame/cached_map.h"
 #include "frame/shadow/shadow_casters.h"
@@ -29,8 +30,7 @@ struct shadow {
 
 // Inputs of the layout of sun cascades.
 struct shadow_view {
-    struct world_camera camera;
-    float aspect;       // width / height
+    struct frame_camera camera;
     struct box3 bounds; // of the scene
     float cascade_blend;
     int filter_radius; // texels

@@ -100,15 +100,11 @@ static void depth_range(const struct shadow_view *view, float *near_m, float *fa
 static struct light_rect slice_rect(const struct sun_space *space, const struct shadow_view *view,
                                     float near_m, float far_m)
 {
-    const struct world_camera *c = &view->camera;
-    float tan_y = tanf(c->vertical_fov_rad * 0.5f), tan_x = tan_y * view->aspect;
-    vec3s right = glms_vec3_cross(c->forward, c->up);
     struct light_rect r = { { INFINITY, INFINITY }, { -INFINITY, -INFINITY } };
     for (int i = 0; i < 8; i++) {
-        float t = i & 4 ? far_m : near_m;
-        vec3s p = glms_vec3_muladds(c->forward, t, c->eye);
-        p = glms_vec3_muladds(right, (i & 1 ? t : -t) * tan_x, p);
-        p = glms_vec3_muladds(c->up, (i & 2 ? t : -t) * tan_y, p);
+        const struct frame_sight sight =
+            frame_camera_sight(&view->camera, i & 1 ? 1.0f : -1.0f, i & 2 ? -1.0f : 1.0f);
+        vec3s p = glms_vec3_muladds(sight.direction, i & 4 ? far_m : near_m, sight.origin);
         p = mat4_direction(space->light_from_world, p);
         for (int k = 0; k < 2; k++) {
             r.min[k] = fminf(r.min[k], p.raw[k]);

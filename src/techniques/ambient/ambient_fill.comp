@@ -45,7 +45,7 @@ vec3 reflected(ivec2 pixel, float z, vec3 n, vec3 irradiance)
     brdf_material m =
         brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, coat);
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
-    vec3 to_viewer = normalize(frame.camera_position - position);
+    vec3 to_viewer = normalize(frame_to_viewer(position));
     float alpha = brdf_alpha(m.roughness);
     vec3 lobe = environment_lobe(lobe_mean(n, to_viewer, alpha), lobe_deviation(alpha));
     vec3 radiance = mix(lobe, INV_PI * irradiance, lobe_roughness(m.roughness));

@@ -66,40 +66,61 @@ void screen_ao_objects(const struct screen_ao_options *o, size_t base, uint32_t 
 
 // ---- a frame
 
+// Pixels per unit of the angle's tangent, or per metre in orthographic views.
+static float focal_px(const struct frame_camera *camera, const struct frame_view *view)
+{
+    return 1.0f / frame_camera_pixel(camera, view->width, view->height);
+}
+
+static vec4s scale_of(const struct frame_camera *camera, float focal)
+{
+    if (camera->orthographic)
+        return (vec4s){ { focal, 0.0f, focal * (camera->far_m - camera->near_m), 0.0f } };
+    return (vec4s){ { 0.0f, focal / camera->near_m, 0.0f, focal } };
+}
+
 // A new size begins with a cut of the camera.
 static void use_history(struct screen_ao *ao, const struct frame_view *view)
 {
     struct screen_ao_params *p = &ao->params;
-    const bool known = ao->previous_near_m > 0.0f && !view->camera_cut && view->index > 0;
-    p->previous_near_m = known ? ao->previous_near_m : 0.0f;
+    const bool known = ao->has_history && !view->camera_cut && view->index > 0;
     ao->number = known ? ao->number + 1 : 0;
     // The golden-ratio sequence of rotations continues from frame to frame.
     p->rotation = fmodf(0.61803399f * (float)(ROTATIONS * (ao->number % ROTATIONS)), 1.0f);
-    ao->previous_near_m = view->camera.near_m;
+    p->has_history = known;
+    if (known) {
+        p->previous_scale = scale_of(&ao->previous, focal_px(&ao->previous, view));
+        p->previous_depth_of_distance = frame_camera_depth_of_distance(&ao->previous);
+    }
+    ao->previous = view->camera;
+    ao->has_history = true;
     ao->newest = 1 - ao->newest;
 }
 
 void screen_ao_invalidate(struct screen_ao *ao)
 {
-    ao->previous_near_m = 0.0f;
+    ao->has_history = false;
 }
 
 void screen_ao_begin(struct screen_ao *ao, struct screen_ao_options options,
                      const struct frame_view *view, float radius_m, float reach)
 {
-    const struct world_camera *camera = &view->camera;
+    const struct frame_camera *camera = &view->camera;
     const float width = (float)view->width, height = (float)view->height;
+    const float focal = focal_px(camera, view);
     ao->options = options;
     ao->params = (struct screen_ao_params){
-        .right = glms_vec3_cross(camera->forward, camera->up),
+        .distance_of_depth = frame_camera_distance_of_depth(camera),
+        .right = frame_camera_right(camera),
         .down = glms_vec3_negate(camera->up),
         .forward = camera->forward,
-        .focal_px = 0.5f * height / tanf(0.5f * camera->vertical_fov_rad),
-        .near_m = camera->near_m,
+        .scale = scale_of(camera, focal),
+        .focal_px = focal,
+        .perspective = camera->orthographic ? 0.0f : 1.0f,
         .radius_m = radius_m,
         .max_radius_px = reach * height,
-        .center_x = 0.5f * width,
-        .center_y = 0.5f * height,
+        .center_x = width * camera->left / (camera->left - camera->right),
+        .center_y = height * camera->top / (camera->top - camera->bottom),
         .width = view->width,
         .height = view->height,
         .work_width = work_size(&options, view->width),

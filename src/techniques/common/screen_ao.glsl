@@ -4,7 +4,8 @@
 // units of the focal length, x right and y down. A projective map undoes the perspective and maps
 // planes to planes: a point at the offset o pixels from P and the distance dᵢ has the lateral
 // position q = o d/f and the depth δ = d (1 − d/dᵢ), which is exact to first order near P. The
-// depth buffer's D = n/dᵢ is linear in δ, so no distance is computed.
+// depth buffer's D = n/dᵢ is linear in δ, so no distance is computed. In orthographic views m = 0
+// and δ = dᵢ − d, in which D is linear, too.
 //
 // The sphere of radius R around P, to first order in R/d: with ℓ = |w| and B = I + m mᵀ/(ℓ + 1),
 // which stretches along m by ℓ, the point s of the unit disk lies at q = R B s, the midpoint of its
@@ -38,25 +39,44 @@ struct screen_sphere {
     vec2 m, bend;      // bend: m/(ℓ + 1)
     float l;           // ℓ
     float radius_px;   // at the image center
-    float z_per_depth; // z per difference of D: ℓ f / (radius in pixels · D at P)
+    float z_per_depth; // z per difference of D: ℓ f / (radius in pixels · D at P) in perspective
 };
+
+// See scale of struct screen_ao_params.
+float screen_pixels_per_m(vec4 scale, float depth)
+{
+    return scale.x + scale.y * depth;
+}
+
+float screen_pixels_per_depth(vec4 scale, float depth)
+{
+    return scale.z + scale.w / depth;
+}
 
 // Radius in pixels of a sphere around a point with the depth buffer value D.
 float screen_radius_px(float radius_m, float depth)
 {
-    return clamp(radius_m * (view.focal_px / view.near_m) * depth, MIN_RADIUS_PX,
+    return clamp(radius_m * screen_pixels_per_m(view.scale, depth), MIN_RADIUS_PX,
                  view.max_radius_px);
+}
+
+// Metres along the view axis.
+float screen_distance(float depth)
+{
+    vec4 m = view.distance_of_depth;
+    return (m.x + m.y * depth) / (m.z + m.w * depth);
 }
 
 screen_sphere screen_sphere_at(ivec2 pixel, float depth, float radius_m)
 {
     screen_sphere p;
     p.depth = depth;
-    p.m = (vec2(pixel) + 0.5 - vec2(view.center_x, view.center_y)) * (1.0 / view.focal_px);
+    p.m = (vec2(pixel) + 0.5 - vec2(view.center_x, view.center_y)) *
+          (view.perspective / view.focal_px);
     p.l = sqrt(1.0 + dot(p.m, p.m));
     p.bend = p.m / (p.l + 1.0);
     p.radius_px = screen_radius_px(radius_m, depth);
-    p.z_per_depth = p.l * view.focal_px / (p.radius_px * depth);
+    p.z_per_depth = p.l * screen_pixels_per_depth(view.scale, depth) / p.radius_px;
     return p;
 }
 

@@ -18,8 +18,9 @@ struct screen_ao {
     gpu_image scratch;                // RG32F
     gpu_image history[2]; // RGBA32F: visibility, depth, frame count; previous and current alternate
     int newest;           // index into history
-    float previous_near_m; // of the previous camera; 0: no valid history
-    uint32_t number;       // of the frame, from the beginning of the history
+    struct frame_camera previous; // of the frame before
+    bool has_history;
+    uint32_t number; // of the frame, from the beginning of the history
     gpu_pipeline temporal, blur_x, blur_y, upsample;
     struct screen_ao_params params; // of the frame being recorded
 };

@@ -12,20 +12,26 @@
 
 // Uniform block "screen_ao".
 struct screen_ao_params {
+    vec4s distance_of_depth;          // see struct frame_constants
+    vec4s previous_depth_of_distance; // depth = (x + y · distance) / (z + w · distance)
+    // x + y · D: pixels per metre across the view axis at the depth D. z + w / D: pixels of δ
+    // (screen_ao.glsl) per difference of D.
+    vec4s scale, previous_scale;
     vec3s right, down, forward; // image axes in world space, unit
-    float focal_px;             // pixels per unit of the angle's tangent
-    float near_m;
-    float radius_m;                   // of the sphere
+    float focal_px;    // pixels per unit of the angle's tangent, or per metre in orthographic views
+    float perspective; // 1; 0: orthographic
+    float radius_m;    // of the sphere
     float max_radius_px;              // largest radius of the sphere on the screen
     float rotation;                   // of the frame's pattern, 0…1 is a full turn
-    float center_x, center_y;         // of the image, pixels
+    float center_x, center_y;         // pixel on the view axis
     uint32_t width, height;           // of the frame, pixels
     uint32_t work_width, work_height; // of the estimate, pixels
-    float previous_near_m;            // of the previous camera; 0: no valid history
+    uint32_t has_history;             // bool
+    uint32_t padding[3];              // vec4s is aligned to 16 bytes in C
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct screen_ao_params) == 21 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct screen_ao_params) == 40 * 4, "layout is shared with GLSL");
 #endif
 
 #endif

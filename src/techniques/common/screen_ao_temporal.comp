@@ -21,9 +21,9 @@ const float MAX_FRAMES = 16.0;
 // Visibility and frame count at a position in pixels of the estimate; (0, 0): no history.
 vec2 history_at(vec2 position, float depth)
 {
-    float radius_px = clamp(view.radius_m * view.focal_px * depth / view.previous_near_m,
+    float radius_px = clamp(view.radius_m * screen_pixels_per_m(view.previous_scale, depth),
                             MIN_RADIUS_PX, view.max_radius_px);
-    float per_depth = EDGE * view.focal_px / (radius_px * depth);
+    float per_depth = EDGE * screen_pixels_per_depth(view.previous_scale, depth) / radius_px;
     vec2 sum = vec2(0.0);
     float weights = 0.0;
     for (int i = 0; i < 4; i++) {
@@ -46,13 +46,15 @@ void main()
     if (any(greaterThanEqual(work, ivec2(view.work_width, view.work_height)))) return;
     vec2 now = texelFetch(estimate, work, 0).rg;
     vec2 past = vec2(0.0);
-    if (now.y > 0.0 && view.previous_near_m > 0.0) {
+    if (now.y > 0.0 && view.has_history != 0u) {
         ivec2 pixel = work * SCREEN_AO_STEP;
         vec4 moved = texelFetch(motion, pixel, 0);
         vec2 position =
             reproject_place(moved, pixel, vec2(view.width, view.height)) / float(SCREEN_AO_STEP);
-        float distance_m = reproject_distance(moved, view.near_m / now.y);
-        if (distance_m > 0.0) past = history_at(position, view.previous_near_m / distance_m);
+        float distance_m = reproject_distance(moved, screen_distance(now.y));
+        vec4 m = view.previous_depth_of_distance;
+        float before = (m.x + m.y * distance_m) / (m.z + m.w * distance_m);
+        if (distance_m > 0.0 && before > 0.0) past = history_at(position, before);
     }
     float frames = min(past.y + 1.0, MAX_FRAMES);
     imageStore(target, work, vec4(mix(past.x, now.x, 1.0 / frames), now.y, frames, 0.0));

@@ -82,14 +82,12 @@ void read_quad(ivec2 first, vec4 z, out pixel_quad q)
 #else
     uvec4 instance = uvec4(~0u);
 #endif
-    vec3 ray = frame_view_ray((vec2(first) + 0.5) * pixel_uv);
-    vec3 ray_x = frame.world_from_clip[0].xyz * (2.0 * pixel_uv.x);
-    vec3 ray_y = frame.world_from_clip[1].xyz * (2.0 * pixel_uv.y);
     [[unroll]] for (int i = 0; i < 4; i++)
     {
-        vec3 to = ray + float(CORNER[i].x) * ray_x + float(CORNER[i].y) * ray_y;
+        vec2 uv = (vec2(first + ivec2(CORNER[i])) + 0.5) * pixel_uv;
         q.counts[i] = z[i] > 0.0;
-        q.position[i] = frame.camera_position + frame_view_distance(max(z[i], 1e-12)) * to;
+        q.position[i] =
+            frame_ray_origin(uv) + frame_view_distance(max(z[i], 1e-12)) * frame_view_ray(uv);
         q.normal[i] = octahedral_decode(vec2(x[i], y[i]));
         q.instance[i] = instance[i];
         q.change[i] = vec3(0.0);

@@ -35,9 +35,10 @@ static struct rectangle rectangle_of(const struct frame_view *view,
     const mat3s axes = glms_quat_mat3((versors){ .raw = { q[0], q[1], q[2], q[3] } });
     int behind = 0;
     for (int k = 0; k < 8; k++) {
-        const vec4s clip = glms_mat4_mulv(view->constants->clip_from_world,
-                                          vec4_of(corner_of(object, axes, half, k), 1));
-        if (!(clip.w > view->constants->near_m)) {
+        const vec3s corner = corner_of(object, axes, half, k);
+        const vec4s clip = glms_mat4_mulv(view->constants->clip_from_world, vec4_of(corner, 1));
+        if (!(glms_vec3_dot(glms_vec3_sub(corner, view->camera.eye), view->camera.forward) >
+              view->camera.near_m)) {
             behind++;
             continue;
         }

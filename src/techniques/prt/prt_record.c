@@ -67,8 +67,7 @@ void prt_record_update(struct prt *s, struct gpu_cmd *cmd, const struct frame_vi
 void prt_record_reflect(struct prt *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const uint32_t texels = s->receivers.count, rows = prt_codebook_rows(&s->options);
-    const struct prt_reflect_push push = { view->constants->camera_position, texels,
-                                           rows > 0 ? rows : texels, emitters(s, view),
+    const struct prt_reflect_push push = { texels, rows > 0 ? rows : texels, emitters(s, view),
                                            prt_coefficients(&s->options) };
     gpu_scope_begin(cmd, "reflect");
     gpu_dispatch(cmd, s->pipelines.reflect,

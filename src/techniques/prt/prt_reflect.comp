@@ -116,7 +116,7 @@ void main()
     if (i >= push.texels) return;
     vec4 normal = texel_part(i, TEXEL_NORMAL);
     vec3 shading = texel_part(i, TEXEL_SHADING).xyz;
-    vec3 to_viewer = normalize(push.camera - texel_part(i, TEXEL_POSITION).xyz);
+    vec3 to_viewer = normalize(frame_to_viewer(texel_part(i, TEXEL_POSITION).xyz));
     float basis[PRT_OUTGOING];
     sh25_eval(to_viewer * basis_of(shading), basis);
     vec4 reflected = texel_reflected(i, basis);

@@ -54,7 +54,6 @@ struct prt_rows_push {
 
 // Outgoing radiance towards the camera. rows: of the codebook, or texels.
 struct prt_reflect_push {
-    vec3s camera; // world, m
     uint32_t texels, rows;
     float emitters;
     uint32_t coefficients; // of distant light
@@ -75,7 +74,7 @@ struct prt_vertex_push {
 _Static_assert(sizeof(struct prt_light) == 2 * PRT_MAX_COEFFICIENTS * 16, "layout is shared with "
                                                                           "GLSL");
 _Static_assert(sizeof(struct prt_rows_push) == 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct prt_reflect_push) == 28, "layout is shared with GLSL");
+_Static_assert(sizeof(struct prt_reflect_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct prt_light_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct prt_vertex_push) == 24, "layout is shared with GLSL");
 #endif

@@ -81,7 +81,7 @@ vec3 reflected(ivec2 pixel, light_map_surface s, light_map_light light)
     if (HAS_DIELECTRIC) lobe = texelFetch(dielectric, pixel, 0);
     brdf_material m =
         brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
-    vec3 n = s.normal, to_viewer = unit(s.camera - s.position);
+    vec3 n = s.normal, to_viewer = unit(s.to_viewer);
     vec3 radiance = light_map_radiance(light, n, to_viewer, brdf_alpha(m.roughness));
     return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
            clamp(radiance, vec3(0.0), vec3(HALF_MAX));
@@ -93,9 +93,9 @@ void shade(ivec2 pixel)
     float z = texelFetch(depth, pixel, 0).r;
     light_map_light light = light_map_light(vec3(0.0), mat3(0.0));
     vec2 uv = (vec2(pixel) + 0.5) * vec2(push.per_view_width, push.per_view_height);
-    vec3 position = frame.camera_position + frame_view_distance(z) * frame_view_ray(uv);
+    vec3 position = frame_ray_origin(uv) + frame_view_distance(z) * frame_view_ray(uv);
     vec3 n = unit(octahedral_direction(texelFetch(normal, pixel, 0).rg));
-    light_map_surface s = light_map_surface(position, n, frame.camera_position);
+    light_map_surface s = light_map_surface(position, n, frame_to_viewer(position));
     uvec2 ids = texelFetch(id, pixel, 0).rg;
     uint triangle = light_map_scene_triangle(ids, push.instances);
     vec3 place = light_map_place_in(triangle, ids, push.instances, s);

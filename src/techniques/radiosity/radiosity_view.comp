@@ -63,9 +63,9 @@ void main()
     if (z > 0.0) {
         vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
         vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-        light_map_surface s = light_map_surface(position, n, frame.camera_position);
+        light_map_surface s = light_map_surface(position, n, frame_to_viewer(position));
         vec3 at = light_map_place_of(texelFetch(id, pixel, 0).rg, push.instances, s);
-        float facing = abs(dot(n, normalize(frame.camera_position - position)));
+        float facing = abs(dot(n, normalize(frame_to_viewer(position))));
         colour = (at.z < 0.0 ? NONE : colour_at(at)) * (0.5 + 0.5 * facing);
     }
     imageStore(target, pixel, vec4(colour, 1.0));

@@ -23,16 +23,17 @@ const float NEAREST = 1.0e-3;
 // Distance in radii along the view axis of a surface in front of `distance_m`.
 float in_front(float surface, float distance_m, float radius_m)
 {
-    return surface > 0.0 ? (distance_m - view.near_m / surface) / radius_m : -1.0e9;
+    return surface > 0.0 ? (distance_m - screen_distance(surface)) / radius_m : -1.0e9;
 }
 
 float visible(screen_point receiver, screen_sphere sphere, screen_plane plane, vec3 point)
 {
-    float distance_m = view.near_m / receiver.depth;
-    float radius_m = sphere.radius_px * distance_m / view.focal_px; // bounded by `reach`
+    float distance_m = screen_distance(receiver.depth);
+    // Bounded by `reach`.
+    float radius_m = sphere.radius_px / screen_pixels_per_m(view.scale, receiver.depth);
     vec3 at = vec3(sphere.m, 1.0) * distance_m + radius_m * point;
     at.z = max(at.z, NEAREST * distance_m);
-    vec2 offset = view.focal_px * (at.xy / at.z - sphere.m);
+    vec2 offset = view.focal_px * (at.xy / mix(1.0, at.z, view.perspective) - sphere.m);
     ivec2 there =
         clamp(receiver.pixel + ivec2(round(offset)), ivec2(0), ivec2(view.width, view.height) - 1);
     float surface = texelFetch(depth, there, 0).r, tolerance = 0.0;

@@ -187,9 +187,10 @@ void main()
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
     vec4 before = (push.march & VCT_MARCH_FIRST) != 0u ? vec4(0.0) : imageLoad(result_image, pixel);
     if (before.a > 0.0) return;
-    vec3 through = frame_world_position(frame_uv(uvec2(pixel)), 1.0), colour = vec3(0.0);
-    bool hit = march(vct_voxels_from_world(frame.camera_position),
-                     normalize(through - frame.camera_position), colour);
+    vec2 uv = frame_uv(uvec2(pixel));
+    vec3 colour = vec3(0.0);
+    bool hit =
+        march(vct_voxels_from_world(frame_ray_origin(uv)), normalize(frame_view_ray(uv)), colour);
     bool done = hit || (push.march & VCT_MARCH_LAST) != 0u;
     imageStore(result_image, pixel,
                vec4(hit ? clamp(colour, 0.0, HALF_MAX) : vec3(0.0), done ? 1.0 : 0.0));

@@ -2,8 +2,6 @@
 #include "framework/test.h"
 #include "techniques/dnrt/dnrt_state.h"
 
-#include "frame/projection.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -30,13 +28,15 @@ static void place(struct tile_fixture *f, vec3s centre, float half_m, float fov_
     *f = (struct tile_fixture){
         .gpu_object = { .centre = centre, .half_m = half_m, .rotation = { 0, 0, 0, 1 } }
     };
-    f->constants.clip_from_world = projection_of_camera(&camera, PIXELS, PIXELS);
-    f->constants.near_m = camera.near_m;
+    const struct frame_camera projected = frame_camera_of(&camera, PIXELS, PIXELS);
+    frame_camera_constants(&projected, &f->constants);
     f->state.options = (struct dnrt_options){ .fade = 2, .reach = 2 };
     f->state.objects.at = &f->object;
     f->state.objects.count = 1;
     f->state.gpu_objects = &f->gpu_object;
-    f->view = (struct frame_view){ .width = PIXELS, .height = PIXELS, .constants = &f->constants };
+    f->view = (struct frame_view){
+        .width = PIXELS, .height = PIXELS, .constants = &f->constants, .camera = projected
+    };
     memset(f->words, 0x5a, sizeof f->words);
 }
 

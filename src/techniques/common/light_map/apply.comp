@@ -65,7 +65,7 @@ vec3 reflected(ivec2 pixel, light_map_surface s, light_map_light light, vec3 pla
     if (HAS_DIELECTRIC) lobe = texelFetch(dielectric, pixel, 0);
     brdf_material m =
         brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
-    vec3 n = s.normal, to_viewer = unit(s.camera - s.position);
+    vec3 n = s.normal, to_viewer = unit(s.to_viewer);
 #if REFLECTED
     vec2 uv = place.xy * vec2(push.per_width, push.per_height);
     vec3 radiance =
@@ -87,9 +87,9 @@ void shade(ivec2 pixel)
 {
     vec2 uv = (vec2(pixel) + 0.5) * vec2(push.per_view_width, push.per_view_height);
     float z = texelFetch(depth, pixel, 0).r;
-    vec3 position = frame.camera_position + frame_view_distance(z) * frame_view_ray(uv);
+    vec3 position = frame_ray_origin(uv) + frame_view_distance(z) * frame_view_ray(uv);
     vec3 n = unit(octahedral_direction(texelFetch(normal, pixel, 0).rg));
-    light_map_surface s = light_map_surface(position, n, frame.camera_position);
+    light_map_surface s = light_map_surface(position, n, frame_to_viewer(position));
     vec3 place = light_map_place_of(texelFetch(id, pixel, 0).rg, push.instances, s);
     vec2 per_size = vec2(push.per_width, push.per_height);
     light_map_light light = light_map_light(vec3(0.0), mat3(0.0));

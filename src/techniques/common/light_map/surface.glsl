@@ -23,7 +23,8 @@ layout(set = 0, binding = LIGHT_MAP_MOVES_BINDING, scalar) readonly buffer light
 
 // A point of a surface when the map was made.
 struct light_map_surface {
-    vec3 position, normal, camera;
+    vec3 position, normal;
+    vec3 to_viewer; // not of length 1
 };
 
 light_map_surface light_map_surface_moved(light_map_surface s, light_map_move move)
@@ -31,7 +32,7 @@ light_map_surface light_map_surface_moved(light_map_surface s, light_map_move mo
     mat3 turn = mat3(move.x, move.y, move.z);
     s.normal = turn * s.normal;
     s.normal /= max(length(s.normal), 1e-20);
-    return light_map_surface(turn * s.position + move.by, s.normal, turn * s.camera + move.by);
+    return light_map_surface(turn * s.position + move.by, s.normal, turn * s.to_viewer);
 }
 
 // A triangle of the scene, in triangle_table. ids: of FRAME_ID.
@@ -58,7 +59,7 @@ vec3 light_map_place_in(uint triangle, uvec2 ids, light_map_instances instances,
     }
     bool back = false;
     if (HAS_BACKS && t.front != LIGHT_MAP_ONE_SIDED)
-        back = dot(octahedral_direction(unpackSnorm2x16(t.front)), s.camera - s.position) < 0.0;
+        back = dot(octahedral_direction(unpackSnorm2x16(t.front)), s.to_viewer) < 0.0;
     return vec3(dot(u, vec4(s.position, 1.0)), dot(v, vec4(s.position, 1.0)), back ? 1.0 : 0.0);
 }
 

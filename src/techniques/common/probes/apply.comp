@@ -118,7 +118,7 @@ vec3 reflected(ivec2 pixel, vec3 position, vec3 n)
     if (push.has_dielectric != 0u) lobe = texelFetch(dielectric, pixel, 0);
     brdf_material m =
         brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
-    vec3 to_viewer = normalize(frame.camera_position - position);
+    vec3 to_viewer = normalize(frame_to_viewer(position));
     vec3 radiance = mean_over_lobe(position, n, to_viewer, brdf_alpha(m.roughness));
     return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
            clamp(radiance, vec3(0.0), vec3(HALF_MAX));

@@ -78,7 +78,7 @@ void main()
                  probes_irradiance(probes, push.grid, position + 0.5 * push.grid.spacing_m * n, n);
     }
     float unit = float(push.every) * push.grid.spacing_m;
-    vec3 from = (frame.camera_position - push.grid.first_m) / unit + 0.5,
+    vec3 from = (frame_ray_origin(frame_uv(pixel)) - push.grid.first_m) / unit + 0.5,
          to = (position - push.grid.first_m) / unit + 0.5;
     ivec3 spheres =
         (ivec3(push.grid.count_x, push.grid.count_y, push.grid.count_z) + push.every - 1) /

@@ -31,7 +31,7 @@ void add(inout lpv_surfel_run run, ivec2 pixel)
              frame_world_position(uv - vec2(half_pixel.x, 0.0), z);
     vec3 v = frame_world_position(uv + vec2(0.0, half_pixel.y), z) -
              frame_world_position(uv - vec2(0.0, half_pixel.y), z);
-    vec3 offset = frame.camera_position - position;
+    vec3 offset = frame_to_viewer(position);
     vec3 to_viewer = offset * inversesqrt(max(dot(offset, offset), 1e-20));
     float across = abs(dot(cross(u, v), to_viewer)); // |u × v| cos θ
     lpv_surfel_run_add(

@@ -30,20 +30,13 @@ const int RINGS = 4;
 const int TILE = VCT_BLUR_TILE * VCT_LOCAL_2D; // pixels along the side of a workgroup
 shared uint listed_count, listed[TILE * TILE];
 
-// View space: x right, y down, z forward.
-vec3 position_of(ivec2 pixel, float z)
-{
-    vec2 from_centre = vec2(pixel) + 0.5 - 0.5 * vec2(frame.width, frame.height);
-    return frame_view_distance(z) * vec3(set.pixel * from_centre, 1.0);
-}
-
 // Weight of a neighbour: its squared fraction of the cone set, times similarity of normal and
 // position.
 float weight_of(ivec2 neighbour, vec3 position, vec3 n, float fraction, float per_texel_m)
 {
     float z = texelFetch(depth, neighbour, 0).r;
     if (z <= 0.0) return 0.0;
-    vec3 offset = position_of(neighbour, z) - position;
+    vec3 offset = frame_from_camera(frame_uv(uvec2(neighbour)), frame_view_distance(z)) - position;
     float cosine = max(dot(n, octahedral_decode(texelFetch(normal, neighbour, 0).rg)), 0.0);
     float near = clamp(1.0 - length(offset) * per_texel_m, 0.0, 1.0);
     float c4 = cosine * cosine * cosine * cosine;
@@ -53,7 +46,8 @@ float weight_of(ivec2 neighbour, vec3 position, vec3 n, float fraction, float pe
 vec3 blurred(ivec2 pixel)
 {
     float z = texelFetch(depth, pixel, 0).r;
-    vec3 position = position_of(pixel, z), world = frame_world_position(frame_uv(uvec2(pixel)), z);
+    vec3 position = frame_from_camera(frame_uv(uvec2(pixel)), frame_view_distance(z));
+    vec3 world = frame.camera_position + position;
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
     float texel_m = set.texel_m * vct_texel_at((world - clips.origin_m) / set.texel_m);
     vec4 own = texelFetch(gathered, pixel, 0), sum = own.a * own.a * vec4(own.rgb, 1.0);

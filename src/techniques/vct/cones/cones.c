@@ -39,7 +39,6 @@ static struct vct_cone_params params_of(const struct vct *vct, const struct fram
         .texel_m = 2.0f * vct->clips[vct->clip_count - 1].grid.cell_m,
         .last_mip = vct_volume_mips(options) - 1,
         .environment_sigma = 0.5f * atanf(0.5f * vct_cone_width(choice)),
-        .pixel = 2.0f * tanf(0.5f * view->camera.vertical_fov_rad) / (float)view->height,
     };
 }
 

@@ -22,14 +22,13 @@ struct vct_cone_params {
     float gain;
     float texel_m; // of the finest level
     uint32_t last_mip;
-    float pixel;             // width of a pixel at distance 1
     float environment_sigma; // of the lobes of the environment, rad (frame/environment_map.glsl)
     uint32_t columns;        // of the grid of strata, for rays
     uint32_t new_sets;       // whose records are not of this frame's voxels: 1 static, 2 dynamic
     uint32_t in_turns;       // bool, bounces: only parts whose turn it is gather
     uint32_t frame;          // number of the frame
     vec3s set_axes[3];       // axes of the strata of pixels, world space
-    uint32_t padding[3];     // vec4s is aligned to 16 bytes in C
+    uint32_t padding[4];     // vec4s is aligned to 16 bytes in C
 };
 
 // Storage block "vct_small_emitters".
@@ -60,16 +59,18 @@ struct vct_specular_params {
 #define VCT_FOLLOW_EXPECTED 2 // by the last known difference
 #define VCT_SETTLE          3 // the last bounces follow: with less weight
 
-// Uniform block "vct_history": the image plane of the previous frame. The view ray of pixel (x, y)
-// is forward + x · right + y · down at distance 1 along the view axis; world space.
+// Uniform block "vct_history": the view of the previous frame. The surface in pixel (x, y) at the
+// distance d is, relative to the camera, at d · forward + s · (corner + x · right + y · down), with
+// s = d, or 1 in orthographic views; world space, m.
 struct vct_history_params {
-    vec3s right, down, forward;
-    float pixel;     // width of a pixel at distance 1
-    float most;      // maximum weight of the history, frames
-    float clamp;     // standard deviations; 0: off
-    float scale;     // radiance scale of this frame over that of the previous one
-    uint32_t known;  // bool: the history is valid
-    uint32_t follow; // VCT_KEEP, …
+    vec3s right, down, corner, forward;
+    float pixel;       // width of a pixel: times s
+    float perspective; // 1; 0: orthographic
+    float most;        // maximum weight of the history, frames
+    float clamp;       // standard deviations; 0: off
+    float scale;       // radiance scale of this frame over that of the previous one
+    uint32_t known;    // bool: the history is valid
+    uint32_t follow;   // VCT_KEEP, …
 };
 
 #ifndef AG_GLSL
@@ -78,7 +79,7 @@ _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 28 * 4,
 _Static_assert(sizeof(struct vct_small_emitter) == (2 + 9 * VCT_EMITTER_POINTS) * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_specular_params) == 7 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_history_params) == 15 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_history_params) == 19 * 4, "layout is shared with GLSL");
 #endif
 
 #endif

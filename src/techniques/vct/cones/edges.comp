@@ -27,21 +27,19 @@ layout(set = 0, binding = 6, rg16f) uniform writeonly image2D cone_normal;
 
 const float LEAST_COSINE = 0.4; // of adjacent normals on one surface: 66 degrees
 
-// View space: x right, y down, z forward.
 struct point {
     bool valid;
-    vec3 position; // m
-    vec3 normal;   // world space
+    vec3 position; // relative to the camera, m
+    vec3 normal;
 };
 
 point point_at(ivec2 pixel)
 {
     pixel = int(set.step) * clamp(pixel, ivec2(0), ivec2(set.width, set.height) - 1);
     float z = texelFetch(depth, pixel, 0).r;
-    vec2 from_centre = vec2(pixel) + 0.5 - 0.5 * vec2(frame.width, frame.height);
     point p;
     p.valid = z > 0.0;
-    p.position = frame_view_distance(max(z, 1e-12)) * vec3(set.pixel * from_centre, 1.0);
+    p.position = frame_from_camera(frame_uv(uvec2(pixel)), frame_view_distance(max(z, 1e-12)));
     p.normal = octahedral_decode(texelFetch(normal, pixel, 0).rg);
     return p;
 }
@@ -55,17 +53,12 @@ float texel_at(ivec2 pixel)
     return set.texel_m * vct_texel_at((position - clips.origin_m) / set.texel_m);
 }
 
-vec3 to_view_space(vec3 world)
-{
-    return mat3(frame.view_from_world) * world * vec3(1.0, -1.0, -1.0);
-}
-
 // A point more than half a texel of the light volume off the plane is on another surface: closer
 // ones have the same light.
-bool discontinuous(point here, vec3 view_normal, point there, float texel_m)
+bool discontinuous(point here, point there, float texel_m)
 {
     return !here.valid || !there.valid || dot(here.normal, there.normal) < LEAST_COSINE ||
-           abs(dot(view_normal, there.position - here.position)) > 0.5 * texel_m;
+           abs(dot(here.normal, there.position - here.position)) > 0.5 * texel_m;
 }
 
 // Weight of a neighbour's normal in the mean. 0 from about 96 degrees on, where the surfaces face
@@ -96,11 +89,9 @@ void main()
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(set.width, set.height)))) return;
     point here = point_at(pixel);
-    vec3 view_normal = to_view_space(here.normal);
     float texel_m = texel_at(pixel);
-    float bits =
-        discontinuous(here, view_normal, point_at(pixel + ivec2(1, 0)), texel_m) ? 1.0 : 0.0;
-    bits += discontinuous(here, view_normal, point_at(pixel + ivec2(0, 1)), texel_m) ? 2.0 : 0.0;
+    float bits = discontinuous(here, point_at(pixel + ivec2(1, 0)), texel_m) ? 1.0 : 0.0;
+    bits += discontinuous(here, point_at(pixel + ivec2(0, 1)), texel_m) ? 2.0 : 0.0;
     imageStore(edges, pixel, vec4(bits / 255.0));
     vec2 up = here.valid ? octahedral_encode(cone_normal_at(pixel, here, texel_m)) : vec2(0.0);
     imageStore(cone_normal, pixel, vec4(up, 0.0, 0.0));

@@ -58,7 +58,7 @@ vec3 reflected_radiance(ivec2 pixel, float z)
 {
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg),
-         to_viewer = normalize(frame.camera_position - position);
+         to_viewer = normalize(frame_to_viewer(position));
     vec2 roughness_metallic = texelFetch(material, pixel, 0).rg;
     vec3 at = (position - clips.origin_m) / set.texel_m;
     float tan_half = tan_half_angle(brdf_alpha(roughness_metallic.x));

@@ -32,29 +32,20 @@ void vct_temporal_invalidate(struct vct_temporal *t)
 
 // ---- A frame ------------------------------------------------------------------------------------
 
-static bool same(vec3s a, vec3s b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
-static bool same_camera(const struct world_camera *a, const struct world_camera *b)
-{
-    return same(a->eye, b->eye) && same(a->forward, b->forward) && same(a->up, b->up) &&
-           a->vertical_fov_rad == b->vertical_fov_rad && a->near_m == b->near_m;
-}
-
-// The image plane of the previous frame: the point at distance d along the view axis behind pixel
-// (x, y), whole numbers for centres, is d · (forward + x · right + y · down) from the camera.
-static void previous_image_plane(const struct world_camera *camera, uint32_t width, uint32_t height,
+// The previous frame's: see struct vct_history_params.
+static void previous_image_plane(const struct frame_camera *camera, uint32_t width, uint32_t height,
                                  struct vct_history_params *out)
 {
-    const float pixel = 2.0f * tanf(0.5f * camera->vertical_fov_rad) / (float)height;
-    out->right = glms_vec3_scale(glms_vec3_cross(camera->forward, camera->up), pixel);
-    out->down = glms_vec3_scale(camera->up, -pixel);
+    const vec3s right = frame_camera_right(camera);
+    const float pixel_x = (camera->right - camera->left) / (float)width;
+    const float pixel_y = (camera->top - camera->bottom) / (float)height;
+    out->right = glms_vec3_scale(right, pixel_x);
+    out->down = glms_vec3_scale(camera->up, -pixel_y);
+    out->corner = glms_vec3_muladds(right, camera->left + 0.5f * pixel_x,
+                                    glms_vec3_scale(camera->up, camera->top - 0.5f * pixel_y));
     out->forward = camera->forward;
-    out->forward = glms_vec3_muladds(out->right, -0.5f * (float)(width - 1), out->forward);
-    out->forward = glms_vec3_muladds(out->down, -0.5f * (float)(height - 1), out->forward);
-    out->pixel = pixel;
+    out->pixel = frame_camera_pixel(camera, width, height);
+    out->perspective = camera->orthographic ? 0.0f : 1.0f;
 }
 
 // After ten times `most` frames a fraction e⁻¹⁰ of the light before the last change is left. From
@@ -81,8 +72,9 @@ void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, i
     kept_update(&t->kept, view, view->light_hash);
     const bool known = t->kept.follows && !view->camera_cut;
     const bool moves = known && !(t->unlit ? t->kept.still : t->kept.same);
-    t->still =
-        known && !moves && !settles && same_camera(&t->camera, &view->camera) ? t->still + 1 : 0;
+    t->still = known && !moves && !settles && frame_camera_equals(&t->camera, &view->camera)
+                   ? t->still + 1
+                   : 0;
     t->params = (struct vct_history_params){ .known = known, .clamp = clamp };
     t->params.scale = t->unlit ? 1.0f : view->constants->previous_scale_ratio;
     t->params.most = history_weight(t->still, most);

@@ -60,10 +60,17 @@ vec3 unpacked_normal(float bits)
     return octahedral_decode(vec2(bits - NORMAL_STEPS * y, y) / (NORMAL_STEPS - 1.0) * 2.0 - 1.0);
 }
 
+// Size of the image plane at a distance, in units of vct_history_params.
+float previous_scale(float distance_m)
+{
+    return mix(1.0, distance_m, set.perspective);
+}
+
 // Point relative to the previous camera.
 vec3 previous_point(vec2 pixel, float distance_m)
 {
-    return distance_m * (set.forward + pixel.x * set.right + pixel.y * set.down);
+    return distance_m * set.forward +
+           previous_scale(distance_m) * (set.corner + pixel.x * set.right + pixel.y * set.down);
 }
 
 float normal_similarity(vec3 a, vec3 b)
@@ -80,7 +87,7 @@ struct history_sample {
 history_sample sample_history(vec2 history_pixel, float distance_m, vec3 n)
 {
     vec3 expected = previous_point(history_pixel, distance_m);
-    float per_metre = 1.0 / (TOLERANCE_PX * set.pixel * distance_m), weights = 0.0;
+    float per_metre = 1.0 / (TOLERANCE_PX * set.pixel * previous_scale(distance_m)), weights = 0.0;
     history_sample sum = history_sample(vec4(0.0), vec3(0.0), vec3(0.0));
     for (int i = 0; i < 4; i++) {
         ivec2 at = reproject_tap(history_pixel, i);
@@ -198,7 +205,7 @@ void main()
                                      distance_before, n);
         if (set.clamp > 0.0 && history.light.w > 0.0)
             history.light.rgb = clamped(history.light.rgb, pixel, position(pixel, z), n,
-                                        TOLERANCE_PX * set.pixel * distance_m);
+                                        TOLERANCE_PX * set.pixel * previous_scale(distance_m));
         bool moves = moved.xyz != vec3(0.0);
         vec4 old = vec4(history.light.rgb, min(history.light.w, set.most));
         float added = 1.0; // frames

@@ -16,7 +16,7 @@ struct vct_temporal {
     uint32_t number;            // rotations since the history began
     int held;                   // frames with the rotation of this one before it
     uint32_t still;             // frames since anything changed
-    struct world_camera camera; // of the previous frame
+    struct frame_camera camera; // of the previous frame
     struct vct_history_params params; // of the frame being recorded
 };
 
