@@ -40,11 +40,12 @@ AG_API enum ag_result ag_bake_technique_in_file(struct ag_context *context, cons
 AG_API enum ag_result ag_bake_file_technique(struct ag_context *context, const char *path,
                                              char name[32]);
 
-/// Nothing is computed yet. The scene must outlive the bake; until then only its lights and sky may
-/// change. desc NULL: the defaults. AG_ERROR_ARGUMENT where no technique of the spec bakes.
+/// Nothing is computed yet. Until the bake is destroyed, only lights and sky of the scene may
+/// change; the scene may be destroyed before. desc NULL: the defaults. AG_ERROR_ARGUMENT where no
+/// technique of the spec bakes.
 AG_API enum ag_result ag_bake_create(struct ag_scene *scene, const char *gi,
                                      const struct ag_bake_desc *desc, struct ag_bake **out);
-/// Not before the renderers created with it have been created; they keep nothing of it.
+/// Also before renderers that were created with it: they keep nothing of it.
 AG_API void ag_bake_destroy(struct ag_bake *bake);
 
 struct ag_bake_estimate {

@@ -36,7 +36,8 @@ AG_API void ag_context_desc_default(struct ag_context_desc *desc);
 /// desc NULL: the defaults. *out is NULL on failure.
 AG_API enum ag_result ag_context_create(const struct ag_context_desc *desc,
                                         struct ag_context **out);
-/// Destroy all objects of the context first.
+/// The context stays, and its callbacks are called, until all of its objects are destroyed, images
+/// and probes too: a program that leaks none knows then that it may unload the callbacks.
 AG_API void ag_context_destroy(struct ag_context *context);
 /// Sentence of the last error, "" if there was none. Valid until the next call with the context.
 AG_API const char *ag_context_last_error(const struct ag_context *context);

@@ -52,7 +52,7 @@ struct ag_memory_callbacks {
 
 /// A caller's Vulkan handles. The device must have enabled Vulkan 1.3, VK_KHR_push_descriptor and
 /// the features of ag_device_required_features; <afterglow/vulkan.h> fills them in. The handles
-/// must stay valid until ag_device_destroy.
+/// must stay valid until the device is destroyed (ag_device_destroy).
 struct ag_device_adopt {
     void *instance, *physical_device, *device, *queue;
     uint32_t queue_family;
@@ -64,7 +64,7 @@ struct ag_device_adopt {
     const void *vk_enabled_features;
     const struct ag_memory_callbacks *memory; ///< NULL: the library allocates device memory
     /// VkAllocationCallbacks for the host memory of all Vulkan objects of the library; its
-    /// pUserData must stay valid until ag_device_destroy. NULL: the driver's.
+    /// pUserData must stay valid as long as the handles. NULL: the driver's.
     const void *vk_allocation_callbacks;
     uint64_t reserved[2]; ///< 0; see ABI in types.h
 };
@@ -85,6 +85,8 @@ AG_API void ag_device_desc_default(struct ag_device_desc *desc);
 /// desc NULL: the defaults.
 AG_API enum ag_result ag_device_create(struct ag_context *context,
                                        const struct ag_device_desc *desc, struct ag_device **out);
+/// A device that renderers use stays until the last of them is destroyed, and what it adopted must
+/// stay valid until then; a warning says so.
 AG_API void ag_device_destroy(struct ag_device *device);
 AG_API void ag_device_get_info(const struct ag_device *device, struct ag_device_info *out);
 /// Vulkan features that an adopted device must enable, one name per line; a static string.

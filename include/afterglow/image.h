@@ -16,6 +16,7 @@ struct ag_image {
 /// A black image. width and height 1…16384, channels 1…4.
 AG_API enum ag_result ag_image_create(struct ag_context *context, int width, int height,
                                       int channels, struct ag_image **out);
+/// context: that of the image; it may be destroyed already, and NULL.
 AG_API void ag_image_destroy(struct ag_context *context, struct ag_image *image);
 
 struct ag_image_layer {

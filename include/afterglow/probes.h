@@ -21,6 +21,7 @@ struct ag_probes {
 /// technique publishes probes; the message names the option to set. The copy is independent of the
 /// renderer.
 AG_API enum ag_result ag_renderer_read_probes(struct ag_renderer *renderer, struct ag_probes **out);
+/// context as for ag_image_destroy.
 AG_API void ag_probes_destroy(struct ag_context *context, struct ag_probes *probes);
 /// Irradiance (3 values, lux, ≥ 0) at a world position for a unit normal, by trilinear
 /// interpolation; positions outside the grid are clamped to it. A diffuse surface reflects the

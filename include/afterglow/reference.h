@@ -33,8 +33,8 @@ struct ag_reference_desc {
 /// Sets every member except `camera`.
 AG_API void ag_reference_desc_default(struct ag_reference_desc *desc);
 
-/// Copies what it needs of the scene at that moment; later changes have no effect. The scene must
-/// outlive the reference.
+/// Copies what it needs of the scene at that moment; later changes have no effect. The scene may be
+/// destroyed before the reference.
 AG_API enum ag_result ag_reference_create(struct ag_scene *scene,
                                           const struct ag_reference_desc *desc,
                                           struct ag_reference **out);

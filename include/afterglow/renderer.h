@@ -83,11 +83,12 @@ AG_API void ag_renderer_desc_default(struct ag_renderer_desc *desc);
 AG_API enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
                                                   const struct ag_renderer_desc *desc,
                                                   int light_count, uint64_t *bytes);
-/// The scene must outlive the renderer; until then only its lights and sky may change. desc NULL:
-/// the defaults.
+/// Renderers follow changes of the scene: each frame shows it as it is then. Device and scene may
+/// be destroyed before the renderer, which keeps them. desc NULL: the defaults.
 AG_API enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *scene,
                                          const struct ag_renderer_desc *desc,
                                          struct ag_renderer **out);
+/// A renderer with views stays, with its GPU memory, until the last of them is destroyed.
 AG_API void ag_renderer_destroy(struct ag_renderer *renderer);
 /// Discards the newest frame and the history of techniques. If it fails, only a successful resize
 /// allows further frames.

@@ -37,6 +37,8 @@ AG_API enum ag_result ag_scene_load_memory(struct ag_context *context,
                                            struct ag_scene **out);
 /// An empty scene; fill it with ag_scene_add_….
 AG_API enum ag_result ag_scene_create(struct ag_context *context, struct ag_scene **out);
+/// A scene that renderers, references, bakes or light maps use stays until the last of them is
+/// destroyed: a program that changes it no more may destroy it once they are created.
 AG_API void ag_scene_destroy(struct ag_scene *scene);
 /// Moves a scene to another context, for renderers there: load or build it on another thread in a
 /// context of that thread, while this one renders. Neither context may be used by another thread

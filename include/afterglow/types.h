@@ -1,7 +1,10 @@
 /// Results, versions and rules for all functions.
 ///
-/// Ownership: ag_X_destroy destroys what ag_X_create or another function returned in `out`, before
-/// the object it was created from; all destroy functions accept NULL.
+/// Ownership: ag_X_destroy gives back what ag_X_create or another function returned in `out`; the
+/// program does not use it afterwards. All destroy functions accept NULL, and objects are destroyed
+/// in any order: one that others use stays, with its memory, until the last of them is destroyed. A
+/// renderer uses a device and a scene, a view its renderer, a bake, reference or light map a scene,
+/// and each of them and devices, scenes, environments, images and probes their context.
 /// Descriptions: ag_X_desc_default fills a struct ag_X_desc with the defaults. It and all pointers
 /// in it are needed only during the call.
 /// Strings: UTF-8; arguments are copied.

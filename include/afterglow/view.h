@@ -35,8 +35,7 @@ AG_API void ag_view_desc_default(struct ag_view_desc *desc);
 AG_API enum ag_result ag_view_estimate_memory(struct ag_context *context,
                                               const struct ag_renderer_desc *renderer,
                                               const struct ag_view_desc *desc, uint64_t *bytes);
-/// Adds a view; a renderer has at most seven. Destroy it before the renderer. desc NULL: the
-/// defaults.
+/// Adds a view; a renderer has at most seven. desc NULL: the defaults.
 AG_API enum ag_result ag_view_create(struct ag_renderer *renderer, const struct ag_view_desc *desc,
                                      struct ag_view **out);
 AG_API void ag_view_destroy(struct ag_view *view);

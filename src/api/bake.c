@@ -198,7 +198,7 @@ enum ag_result ag_bake_create(struct ag_scene *scene, const char *gi,
     if (!b) return api_done(context, false);
     b->context = context;
     b->scene = scene;
-    scene->bakes++;
+    api_scene_use(scene, &scene->bakes);
     const bool ok = build(b, gi, desc);
     enum ag_result result = api_done(context, ok);
     if (ok)
@@ -212,13 +212,14 @@ void ag_bake_destroy(struct ag_bake *b)
 {
     if (!b) return;
     struct host *host = &b->context->host;
+    struct ag_scene *scene = b->scene;
     report_destroy(b->report);
     bake_destroy(b->bake);
     pose_finish(&b->pose);
     gi_spec_finish(&b->spec);
     host_free(host, b->checkpoint);
-    b->scene->bakes--;
     host_free(host, b);
+    api_scene_release(scene, &scene->bakes);
 }
 
 // ---- work

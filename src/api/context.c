@@ -126,15 +126,34 @@ enum ag_result ag_context_create(const struct ag_context_desc *desc, struct ag_c
     return AG_OK;
 }
 
-void ag_context_destroy(struct ag_context *context)
+static void free_context(struct ag_context *context)
 {
-    if (!context) return;
     host_free(&context->host, context->shader_dir);
     host_free(&context->host, context->no_links_in);
     host_free(&context->host, context->importer);
     struct ag_context last = *context; // context_reallocate reads it while freeing the context
     last.host.user = &last;
     host_free(&last.host, context);
+}
+
+void api_context_use(struct ag_context *context)
+{
+    lifetime_use(&context->life);
+}
+
+void api_context_release(struct ag_context *context)
+{
+    if (lifetime_release(&context->life)) free_context(context);
+}
+
+void ag_context_destroy(struct ag_context *context)
+{
+    if (!context) return;
+    if (lifetime_destroy(&context->life))
+        free_context(context);
+    else
+        host_log(&context->host, LOG_DEBUG,
+                 "ag_context_destroy: objects still use the context (%d)", context->life.users);
 }
 
 const char *ag_context_last_error(const struct ag_context *context)

@@ -156,6 +156,7 @@ enum ag_result ag_device_create(struct ag_context *context, const struct ag_devi
                                  .pipeline_cache = desc->pipeline_cache,
                                  .pipeline_cache_bytes = desc->pipeline_cache_bytes };
     device->context = context;
+    api_context_use(context);
     device->adopted = desc->adopt != NULL;
     device->gpu = gpu_create(&context->host, &gpu_desc);
     if (!device->gpu) {
@@ -166,11 +167,30 @@ enum ag_result ag_device_create(struct ag_context *context, const struct ag_devi
     return api_done(context, true);
 }
 
+static void free_device(struct ag_device *device)
+{
+    struct ag_context *context = device->context;
+    if (device->gpu) gpu_destroy(device->gpu);
+    host_free(&context->host, device);
+    api_context_release(context);
+}
+
+void api_device_release(struct ag_device *device)
+{
+    if (lifetime_release(&device->life)) free_device(device);
+}
+
 void ag_device_destroy(struct ag_device *device)
 {
     if (!device) return;
-    if (device->gpu) gpu_destroy(device->gpu);
-    host_free(&device->context->host, device);
+    if (lifetime_destroy(&device->life))
+        free_device(device);
+    else if (device->adopted)
+        host_log(
+            &device->context->host, LOG_WARNING,
+            "ag_device_destroy: renderers still use the device (%d); its Vulkan handles must stay "
+            "valid until they are destroyed",
+            device->life.users);
 }
 
 void ag_device_get_info(const struct ag_device *device, struct ag_device_info *out)

@@ -20,6 +20,7 @@ static enum ag_result give(struct ag_context *context, struct environment_map *m
 {
     struct ag_environment *made = map ? host_alloc(&context->host, 1, sizeof *made) : NULL;
     if (made) *made = (struct ag_environment){ context, map };
+    if (made) api_context_use(context);
     if (!made) environment_map_release(map);
     *out = made;
     return api_done(context, made);
@@ -89,8 +90,10 @@ enum ag_result ag_environment_from_sun_sky(struct ag_context *context,
 void ag_environment_destroy(struct ag_environment *environment)
 {
     if (!environment) return;
+    struct ag_context *context = environment->context;
     environment_map_release(environment->map);
-    host_free(&environment->context->host, environment);
+    host_free(&context->host, environment);
+    api_context_release(context);
 }
 
 enum ag_result ag_environment_get_info(const struct ag_environment *environment,
@@ -153,6 +156,7 @@ enum ag_result ag_scene_get_environment(const struct ag_scene *scene, struct ag_
     struct ag_environment *made = host_alloc(&scene->context->host, 1, sizeof *made);
     if (!made) return api_done(scene->context, NULL);
     environment_map_retain(environment->map);
+    api_context_use(scene->context);
     *made = (struct ag_environment){ scene->context, environment->map };
     *out = made;
     return AG_OK;

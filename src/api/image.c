@@ -30,16 +30,24 @@ static bool is_whole(const struct ag_image *image)
            image->channels <= 4;
 }
 
+// An image keeps its context, which its memory comes from.
+struct owned_image {
+    struct ag_image image; // first: programs have its address
+    struct ag_context *context;
+};
+
 enum ag_result api_give_image(struct ag_context *context, bool ok, struct image *image,
                               struct ag_image **out)
 {
-    struct ag_image *given = ok ? host_alloc(&context->host, 1, sizeof *given) : NULL;
+    struct owned_image *given = ok ? host_alloc(&context->host, 1, sizeof *given) : NULL;
     if (!given) {
         image_finish(image, &context->host);
         return api_done(context, false);
     }
-    *given = (struct ag_image){ image->width, image->height, image->channels, image->pixels };
-    *out = given;
+    *given = (struct owned_image){ { image->width, image->height, image->channels, image->pixels },
+                                   context };
+    api_context_use(context);
+    *out = &given->image;
     return api_done(context, true);
 }
 
@@ -60,9 +68,13 @@ enum ag_result ag_image_create(struct ag_context *context, int width, int height
 
 void ag_image_destroy(struct ag_context *context, struct ag_image *image)
 {
-    if (!context || !image) return;
-    host_free(&context->host, image->pixels);
-    host_free(&context->host, image);
+    (void)context; // may be destroyed, or another one with the same allocator
+    if (!image) return;
+    struct owned_image *own = (struct owned_image *)image;
+    struct ag_context *owner = own->context;
+    host_free(&owner->host, image->pixels);
+    host_free(&owner->host, own);
+    api_context_release(owner);
 }
 
 static bool layers_are_whole(const struct ag_image_layer *layers, int count)

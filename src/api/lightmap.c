@@ -69,7 +69,7 @@ static enum ag_result begin(const char *function, struct ag_scene *scene,
     l->scene = scene;
     l->facts.punctual = !desc->indirect_only;
     l->no_light = desc->no_light;
-    scene->bakes++;
+    api_scene_use(scene, &scene->bakes);
     *out = l;
     return AG_OK;
 }
@@ -183,10 +183,11 @@ enum ag_result ag_lightmap_from_renderer(struct ag_renderer *r, const struct ag_
 void ag_lightmap_destroy(struct ag_lightmap *l)
 {
     if (!l) return;
+    struct ag_scene *scene = l->scene;
     lightmap_finish(&l->map);
     host_free(&l->context->host, l->gi);
-    l->scene->bakes--;
     host_free(&l->context->host, l);
+    api_scene_release(scene, &scene->bakes);
 }
 
 // ---- results

@@ -4,6 +4,7 @@
 
 #include <afterglow/afterglow.h>
 
+#include "api/lifetime.h"
 #include "core/host.h"
 #include "scene/pose.h"
 
@@ -22,6 +23,7 @@ struct ag_context {
     char *shader_dir;       // AFTERGLOW_SHADER_DIR, NULL: embedded shaders
     char *importer;         // path of the importer program, NULL: none
     bool warned_layer_name; // a former layer name was used
+    struct lifetime life;   // its users are all objects that have no other owner
     char last_error[API_MESSAGE_SIZE];
 };
 
@@ -31,6 +33,7 @@ struct ag_device {
     struct gpu *gpu;
     bool adopted;
     struct ag_memory_callbacks memory; // zero: none
+    struct lifetime life;              // its users are renderers
 };
 
 struct ag_scene {
@@ -44,8 +47,18 @@ struct ag_scene {
         double time_s;
     } pose_moment;                        // of `pose`
     struct named_camera *cameras_by_name; // sorted; NULL until the first lookup
-    int renderers, references, bakes;     // that use it
+    struct lifetime life;
+    int renderers, references, bakes; // its users; light maps count as bakes
 };
+
+// Objects that a context is the owner of: it stays until they are gone.
+void api_context_use(struct ag_context *context);
+void api_context_release(struct ag_context *context);
+// A renderer of the device has gone.
+void api_device_release(struct ag_device *device);
+// `users`: the member of the scene that counts users of that kind.
+void api_scene_use(struct ag_scene *scene, int *users);
+void api_scene_release(struct ag_scene *scene, int *users);
 
 // The path of the importer program, owned by the caller; NULL: not found, or out of memory.
 char *api_find_importer(struct host *host);

@@ -41,17 +41,29 @@ static void unpack(const struct ag_probes *probes, const float *texels,
                 }
 }
 
-static struct ag_probes *create(struct host *host, const struct probe_volume *volume)
+// Probes keep their context, which their memory comes from.
+struct owned_probes {
+    struct ag_probes probes; // first: programs have its address
+    struct ag_context *context;
+};
+
+static struct ag_probes *create(struct ag_context *context, const struct probe_volume *volume)
 {
-    struct ag_probes *probes = host_alloc(host, 1, sizeof *probes);
-    if (!probes) return NULL;
+    struct host *host = &context->host;
+    struct owned_probes *own = host_alloc(host, 1, sizeof *own);
+    if (!own) return NULL;
+    struct ag_probes *probes = &own->probes;
     grid_of(volume, probes->first, &probes->spacing, probes->counts);
     size_t count =
         (size_t)probes->counts[0] * (size_t)probes->counts[1] * (size_t)probes->counts[2];
     probes->coefficients = host_alloc(host, count, NUMBERS * sizeof *probes->coefficients);
-    if (probes->coefficients) return probes;
-    host_free(host, probes);
-    return NULL;
+    if (!probes->coefficients) {
+        host_free(host, own);
+        return NULL;
+    }
+    own->context = context;
+    api_context_use(context);
+    return probes;
 }
 
 static bool download(struct ag_renderer *r, const struct probe_volume *volume,
@@ -76,7 +88,7 @@ enum ag_result ag_renderer_read_probes(struct ag_renderer *r, struct ag_probes *
     enum ag_result result = find(__func__, r, &volume);
     if (result == AG_OK) result = ag_renderer_wait(r);
     if (result != AG_OK) return result;
-    struct ag_probes *probes = create(&context->host, &volume);
+    struct ag_probes *probes = create(context, &volume);
     if (!probes || !download(r, &volume, probes)) {
         result = api_done(context, false);
         ag_probes_destroy(context, probes);
@@ -88,9 +100,13 @@ enum ag_result ag_renderer_read_probes(struct ag_renderer *r, struct ag_probes *
 
 void ag_probes_destroy(struct ag_context *context, struct ag_probes *probes)
 {
-    if (!context || !probes) return;
-    host_free(&context->host, probes->coefficients);
-    host_free(&context->host, probes);
+    (void)context; // may be destroyed
+    if (!probes) return;
+    struct owned_probes *own = (struct owned_probes *)probes;
+    struct ag_context *owner = own->context;
+    host_free(&owner->host, probes->coefficients);
+    host_free(&owner->host, own);
+    api_context_release(owner);
 }
 
 // Trilinear interpolation: the eight probes around a point and their weights.

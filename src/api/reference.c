@@ -89,7 +89,7 @@ enum ag_result ag_reference_create(struct ag_scene *scene, const struct ag_refer
     if (!r) return api_done(context, false);
     r->context = context;
     r->scene = scene;
-    scene->references++;
+    api_scene_use(scene, &scene->references);
     bool ok = build(r, scene, desc);
     enum ag_result result = api_done(context, ok);
     if (ok)
@@ -102,9 +102,10 @@ enum ag_result ag_reference_create(struct ag_scene *scene, const struct ag_refer
 void ag_reference_destroy(struct ag_reference *r)
 {
     if (!r) return;
+    struct ag_scene *scene = r->scene;
     reference_destroy(r->reference);
-    r->scene->references--;
     host_free(&r->context->host, r);
+    api_scene_release(scene, &scene->references);
 }
 
 enum ag_result ag_reference_render(struct ag_reference *r, int samples,

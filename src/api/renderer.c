@@ -178,7 +178,8 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     if (desc->gbuffer_layout) r->main.layout = *desc->gbuffer_layout;
     r->wait_for_updates = desc->wait_for_updates;
     r->main.shown.layer = FRAME_COLOR;
-    scene->renderers++;
+    lifetime_use(&device->life);
+    api_scene_use(scene, &scene->renderers);
     r->client = gpu_client_add(device->gpu);
     renderer_enter(r);
     bool ok = r->client && build(r, desc);
@@ -191,9 +192,10 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     return result;
 }
 
-void ag_renderer_destroy(struct ag_renderer *r)
+static void free_renderer(struct ag_renderer *r)
 {
-    if (!r) return;
+    struct ag_device *device = r->device;
+    struct ag_scene *scene = r->scene;
     renderer_recordings_done(r, UINT64_MAX);
     if (r->gi) gi_destroy(r->gi);
     frame_destroy(r->main.frame);
@@ -201,9 +203,20 @@ void ag_renderer_destroy(struct ag_renderer *r)
     gi_spec_finish(&r->spec);
     host_free(renderer_host(r), r->gi_text);
     host_free(renderer_host(r), r->bake_folder);
-    gpu_client_remove(r->device->gpu, r->client);
-    r->scene->renderers--;
+    gpu_client_remove(device->gpu, r->client);
     host_free(renderer_host(r), r);
+    api_scene_release(scene, &scene->renderers);
+    api_device_release(device);
+}
+
+void renderer_release(struct ag_renderer *r)
+{
+    if (lifetime_release(&r->life)) free_renderer(r);
+}
+
+void ag_renderer_destroy(struct ag_renderer *r)
+{
+    if (r && lifetime_destroy(&r->life)) free_renderer(r);
 }
 
 enum ag_result ag_renderer_resize(struct ag_renderer *r, int width, int height)

@@ -81,8 +81,9 @@ static enum ag_result views_check(const char *function, const struct ag_renderer
                                   const struct ag_frame_desc *desc)
 {
     struct ag_context *context = renderer_context(r);
-    AG_REQUIRE_FOR(function, context, desc->view_count >= 0 && desc->view_count <= r->views,
-                   "view_count is %d, and the renderer has %d views", desc->view_count, r->views);
+    AG_REQUIRE_FOR(function, context, desc->view_count >= 0 && desc->view_count <= r->life.users,
+                   "view_count is %d, and the renderer has %d views", desc->view_count,
+                   r->life.users);
     AG_REQUIRE_FOR(function, context, desc->view_count == 0 || desc->views, "views is NULL");
     for (int i = 0; i < desc->view_count; i++) {
         const struct ag_view *view = desc->views[i].view;

@@ -46,7 +46,7 @@ struct ag_renderer {
     uint64_t created_surfaces; // hash of the surfaces that techniques were created with
     bool wait_for_updates;     // as in ag_renderer_desc
     bool said_limit;           // the warning about too many lights was logged
-    int views;                 // besides the first
+    struct lifetime life;      // its users are the further views
 };
 
 static inline struct ag_context *renderer_context(const struct ag_renderer *renderer)
@@ -83,6 +83,7 @@ static inline void renderer_leave(const struct ag_renderer *renderer)
 }
 
 // renderer.c
+void renderer_release(struct ag_renderer *renderer);              // a view of it has gone
 void renderer_warn_of_source(const struct ag_renderer *renderer); // that was added to the spec
 void renderer_warn_of_darkness(const struct ag_renderer *renderer);
 // "" and NULL: the defaults.

@@ -91,6 +91,7 @@ static enum ag_result give(struct ag_context *context, struct scene *made, struc
         if (made) scene_destroy(made);
         return api_done(context, false);
     }
+    api_context_use(context);
     scene->context = context;
     scene->scene = made;
     *out = scene;
@@ -131,13 +132,31 @@ enum ag_result ag_scene_create(struct ag_context *context, struct ag_scene **out
     return give(context, scene_create(&context->host, "scene"), out);
 }
 
+static void free_scene(struct ag_scene *scene)
+{
+    struct ag_context *context = scene->context;
+    pose_finish(&scene->pose);
+    host_free(&context->host, scene->cameras_by_name);
+    scene_destroy(scene->scene);
+    host_free(&context->host, scene);
+    api_context_release(context);
+}
+
+void api_scene_use(struct ag_scene *scene, int *users)
+{
+    lifetime_use(&scene->life);
+    (*users)++;
+}
+
+void api_scene_release(struct ag_scene *scene, int *users)
+{
+    (*users)--;
+    if (lifetime_release(&scene->life)) free_scene(scene);
+}
+
 void ag_scene_destroy(struct ag_scene *scene)
 {
-    if (!scene) return;
-    pose_finish(&scene->pose);
-    host_free(host_of(scene), scene->cameras_by_name);
-    scene_destroy(scene->scene);
-    host_free(host_of(scene), scene);
+    if (scene && lifetime_destroy(&scene->life)) free_scene(scene);
 }
 
 // Blocks of the one are freed through the other.
@@ -151,7 +170,7 @@ enum ag_result ag_scene_transfer(struct ag_scene *scene, struct ag_context *to)
     struct ag_context *from = context_of(scene);
     AG_REQUIRE_POINTER(from, scene);
     AG_REQUIRE_POINTER(from, to);
-    AG_REQUIRE(from, scene->renderers + scene->references + scene->bakes == 0,
+    AG_REQUIRE(from, scene->life.users == 0,
                "the scene is in use by %d renderers, %d references and %d bakes", scene->renderers,
                scene->references, scene->bakes);
     AG_REQUIRE(from, same_memory(from, to), "the contexts have different allocators");
@@ -164,8 +183,10 @@ enum ag_result ag_scene_transfer(struct ag_scene *scene, struct ag_context *to)
     pose_finish(&scene->pose); // made again by the next query
     scene->pose = (struct scene_pose){ 0 };
     scene->pose_moment = (struct moment){ 0 };
+    api_context_use(to);
     scene->context = to;
     scene_set_host(scene->scene, &to->host);
+    api_context_release(from);
     return AG_OK;
 }
 

@@ -114,7 +114,7 @@ enum ag_result ag_view_create(struct ag_renderer *r, const struct ag_view_desc *
                            .all_layers = desc->all_layers,
                            .shown = { .layer = FRAME_COLOR } };
     if (desc->gbuffer_layout) v->layout = *desc->gbuffer_layout;
-    r->views++;
+    lifetime_use(&r->life);
     const bool ok = create_frame(v) && resize(v, desc->width, desc->height);
     const enum ag_result result = api_done(context, ok);
     if (ok)
@@ -130,8 +130,8 @@ void ag_view_destroy(struct ag_view *v)
     struct ag_renderer *r = v->renderer;
     if (v->frame) gi_resize_view(r->gi, frame_view_number(v->frame), &r->pose, 0, 0);
     frame_destroy(v->frame);
-    r->views--;
     host_free(renderer_host(r), v);
+    renderer_release(r);
 }
 
 enum ag_result ag_view_resize(struct ag_view *v, int width, int height)
