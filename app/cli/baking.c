@@ -162,12 +162,12 @@ static enum status estimate(struct baking *b, bool shard)
     const long long mib = b->session->arguments->max_memory_mib;
     struct ag_bake_estimate needs;
     char texels[32], rays[32];
-    enum ag_result result = ag_bake_estimate(b->bake, false, &needs);
+    enum ag_result result = ag_bake_estimate_cost(b->bake, false, &needs);
     // Refused before the probe, which takes memory too.
     if (result == AG_OK && mib > 0 && needs.peak_memory_bytes > (uint64_t)mib << 20)
         return fail_bake(b, ag_bake_run(b->bake, NULL, NULL));
     if (result == AG_OK && !shard && check_disk(b, needs.file_bytes) != DONE) return FAILED;
-    if (result == AG_OK) result = ag_bake_estimate(b->bake, true, &needs);
+    if (result == AG_OK) result = ag_bake_estimate_cost(b->bake, true, &needs);
     if (result != AG_OK) return fail_bake(b, result);
     b->estimate_seconds = needs.seconds;
     print_count(needs.texels, texels);

@@ -33,7 +33,7 @@ static void find_light_map(struct session *session, double time_s, struct ag_bak
     desc.time_s = time_s;
     *out = (struct ag_bake_estimate){ 0 };
     if (ag_bake_create(session->scene, LIGHT_MAP_GI, &desc, &bake) == AG_OK)
-        ag_bake_estimate(bake, false, out);
+        ag_bake_estimate_cost(bake, false, out);
     ag_bake_destroy(bake);
 }
 

@@ -297,7 +297,7 @@ static enum ag_result measure_bake(const struct dnrt_bench *b, struct ag_scene *
     ag_bake_desc_default(&desc);
     desc.technique = "dnrt";
     enum ag_result result = ag_bake_create(scene, gi, &desc, &bake);
-    if (result == AG_OK) result = ag_bake_estimate(bake, false, &estimate);
+    if (result == AG_OK) result = ag_bake_estimate_cost(bake, false, &estimate);
     const double wall = seconds(CLOCK_MONOTONIC), cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
     if (result == AG_OK) result = ag_bake_run(bake, NULL, NULL);
     const double processor = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;

@@ -59,8 +59,14 @@ struct ag_bake_estimate {
 };
 /// What ag_bake_run will need. probe: run a few tasks, about a second, to estimate the time; their
 /// results are kept.
-AG_API enum ag_result ag_bake_estimate(struct ag_bake *bake, bool probe,
-                                       struct ag_bake_estimate *out);
+AG_API enum ag_result ag_bake_estimate_cost(struct ag_bake *bake, bool probe,
+                                            struct ag_bake_estimate *out);
+#ifndef __cplusplus
+/// Former name of ag_bake_estimate_cost, which hid the struct in C++; the next minor version is
+/// without it.
+AG_API AG_DEPRECATED enum ag_result ag_bake_estimate(struct ag_bake *bake, bool probe,
+                                                     struct ag_bake_estimate *out);
+#endif
 
 /// A file that keeps finished tasks, also while running; ag_bake_run resumes it, ag_bake_save
 /// and ag_bake_save_partial remove it. NULL: none, as at first.

@@ -33,6 +33,15 @@ struct ag_context_desc {
 };
 
 AG_API void ag_context_desc_default(struct ag_context_desc *desc);
+
+/// The symbol of ag_context_create has the minor version in its name, as ag_context_create_0_1, so
+/// that headers and a library of different binary interfaces do not link. dlsym takes
+/// AG_CONTEXT_CREATE_SYMBOL, a string.
+#define AG_JOIN(name, major, minor) name##_##major##_##minor
+#define AG_NAME(name, major, minor) AG_JOIN(name, major, minor)
+#define AG_VERSIONED(name)          AG_NAME(name, AG_VERSION_MAJOR, AG_VERSION_MINOR)
+#define ag_context_create           AG_VERSIONED(ag_context_create)
+#define AG_CONTEXT_CREATE_SYMBOL    AG_STRING(ag_context_create)
 /// desc NULL: the defaults. *out is NULL on failure.
 AG_API enum ag_result ag_context_create(const struct ag_context_desc *desc,
                                         struct ag_context **out);

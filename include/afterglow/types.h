@@ -12,7 +12,8 @@
 /// transferred from the context of a loading thread to that of a renderer (ag_scene_transfer).
 /// ABI: structs with `reserved` keep their size; new members take its place, and 0 is what they
 /// were without. A description whose reserved words are not 0 is refused: the program needs a newer
-/// library. ag_X_desc_default sets them.
+/// library. ag_X_desc_default sets them. A program links only with a library of the same minor
+/// version (ag_context_create).
 /// Errors: on failure *out is NULL, and ag_context_last_error() has one sentence.
 #ifndef AFTERGLOW_TYPES_H
 #define AFTERGLOW_TYPES_H
@@ -29,15 +30,30 @@
 #define AG_END
 #endif
 
+/// Of functions that the next minor version is without.
+#if defined(AG_BUILD)
+#define AG_DEPRECATED
+#else
+#define AG_DEPRECATED __attribute__((deprecated))
+#endif
+
 #if defined(AG_BUILD)
 #define AG_API __attribute__((visibility("default")))
 #else
 #define AG_API
 #endif
 
+/// Version of the headers. Within 0.x a minor version may change the binary interface; a patch only
+/// adds to it.
 #define AG_VERSION_MAJOR 0
 #define AG_VERSION_MINOR 1
 #define AG_VERSION_PATCH 0
+/// Of the same form as ag_version().
+#define AG_VERSION         (AG_VERSION_MAJOR * 10000 + AG_VERSION_MINOR * 100 + AG_VERSION_PATCH)
+#define AG_STRING_OF(text) #text
+#define AG_STRING(text)    AG_STRING_OF(text)
+#define AG_VERSION_STRING                                                                          \
+    AG_STRING(AG_VERSION_MAJOR) "." AG_STRING(AG_VERSION_MINOR) "." AG_STRING(AG_VERSION_PATCH)
 
 AG_BEGIN
 

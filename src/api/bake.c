@@ -14,12 +14,9 @@ enum { TECHNIQUE_NAME = 32, MOST_SAMPLES = 1000000 };
 // Versions of the charts, in that of a light map.
 enum { LIGHTMAP_VERSIONS = 10000 };
 
-#define TEXT_OF(x) #x
-#define TEXT(x)    TEXT_OF(x)
-
 const char *api_program(void)
 {
-    return TEXT(AG_VERSION_MAJOR) "." TEXT(AG_VERSION_MINOR) "." TEXT(AG_VERSION_PATCH);
+    return AG_VERSION_STRING;
 }
 
 static struct ag_context *context_of(const struct ag_bake *b)
@@ -224,7 +221,7 @@ void ag_bake_destroy(struct ag_bake *b)
 
 // ---- work
 
-enum ag_result ag_bake_estimate(struct ag_bake *b, bool probe, struct ag_bake_estimate *out)
+enum ag_result ag_bake_estimate_cost(struct ag_bake *b, bool probe, struct ag_bake_estimate *out)
 {
     struct ag_context *context = context_of(b);
     AG_REQUIRE(context, b, "bake is NULL");
@@ -239,6 +236,11 @@ enum ag_result ag_bake_estimate(struct ag_bake *b, bool probe, struct ag_bake_es
                                       .charts = estimate.light_map.charts,
                                       .texels_per_m = estimate.light_map.texels_per_m };
     return api_done(context, ok);
+}
+
+enum ag_result ag_bake_estimate(struct ag_bake *b, bool probe, struct ag_bake_estimate *out)
+{
+    return ag_bake_estimate_cost(b, probe, out);
 }
 
 struct listener {

@@ -28,7 +28,7 @@ const char *ag_result_string(enum ag_result result)
 
 int ag_version(void)
 {
-    return AG_VERSION_MAJOR * 10000 + AG_VERSION_MINOR * 100 + AG_VERSION_PATCH;
+    return AG_VERSION;
 }
 
 size_t ag_printable(const char *text, char *out, size_t size)

@@ -4,7 +4,7 @@
 set -eu
 cd "$1"
 bad=0
-functions=$(cat include/afterglow/*.h | tr '\n' ' ' | sed 's/AG_API/\nAG_API/g' | grep '^AG_API ' | grep -v '__attribute__' |
+functions=$(cat include/afterglow/*.h | tr '\n' ' ' | sed 's/AG_API/\nAG_API/g' | sed 's/;.*//' | grep '^AG_API ' | grep -v '__attribute__' |
     grep -o '^[^(;]*(' | grep -o 'ag_[a-z_]*($' | tr -d '(' | sort -u)
 [ -n "$functions" ] || { echo "no functions found"; exit 1; }
 for name in $functions; do

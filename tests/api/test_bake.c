@@ -72,7 +72,7 @@ TEST(bake_functions_refuse_missing_arguments)
     assert_int_equal(ag_bake_create(s.scene, "lpvv", NULL, &bake), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_bake_technique(s.context, "none", -1, &text), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_bake_file_technique(s.context, "", name), AG_ERROR_ARGUMENT);
-    assert_int_equal(ag_bake_estimate(NULL, false, &estimate), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_bake_estimate_cost(NULL, false, &estimate), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_bake_run(NULL, NULL, NULL), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_bake_save(NULL, "a", false), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_bake_load(NULL, "a"), AG_ERROR_ARGUMENT);

@@ -57,9 +57,9 @@ TEST(bake_is_created_estimated_run_saved_and_loaded)
     CHECK_STRING(name, "sample");
     assert_int_equal(ag_bake_technique(s.context, "sample", 1, &name), AG_OK);
     CHECK(name == NULL);
-    assert_int_equal(ag_bake_estimate(bake, false, &estimate), AG_OK);
+    assert_int_equal(ag_bake_estimate_cost(bake, false, &estimate), AG_OK);
     CHECK(isnan(estimate.seconds) && estimate.rays == 12000.0 && estimate.peak_memory_bytes > 0);
-    assert_int_equal(ag_bake_estimate(bake, true, &estimate), AG_OK);
+    assert_int_equal(ag_bake_estimate_cost(bake, true, &estimate), AG_OK);
     CHECK(estimate.seconds >= 0.0 && estimate.seconds < 60.0);
     assert_int_equal(ag_bake_report(bake, &report), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_bake_save(bake, path, false), AG_ERROR_ARGUMENT);
@@ -304,7 +304,7 @@ static enum ag_result bake_with(struct ag_scene *scene, const char *checkpoint, 
     desc.threads = 2;
     enum ag_result result = ag_bake_create(scene, "sample:rows=3", &desc, &bake);
     if (result == AG_OK) result = ag_bake_set_checkpoint(bake, checkpoint);
-    if (result == AG_OK) result = ag_bake_estimate(bake, true, &estimate);
+    if (result == AG_OK) result = ag_bake_estimate_cost(bake, true, &estimate);
     if (result == AG_OK) result = ag_bake_run(bake, NULL, NULL);
     if (result == AG_OK) result = ag_bake_report(bake, &report);
     if (result == AG_OK) result = ag_bake_save(bake, path, false);

@@ -56,7 +56,26 @@ if(NOT AFTERGLOW_SANITIZE)
   add_test(NAME api.subproject
     COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/subproject.sh ${CMAKE_SOURCE_DIR} ${CMAKE_C_COMPILER} ${CMAKE_CXX_COMPILER}
       "${CMAKE_C_COMPILER_LAUNCHER}")
-  set_tests_properties(api.exports api.install api.subproject PROPERTIES TIMEOUT 300 LABELS api)
+  add_test(NAME api.versions
+    COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/versions.sh $<TARGET_FILE:afterglow_shared> ${CMAKE_SOURCE_DIR}/include ${CMAKE_C_COMPILER}
+      ${CMAKE_CXX_COMPILER})
+  set_tests_properties(api.exports api.install api.subproject api.versions PROPERTIES TIMEOUT 300 LABELS api)
 endif()
+
+# The binary interface is that of abi.txt; the target abi_write replaces it.
+file(GLOB abi_headers CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/include/afterglow/*.h)
+set(abi_rows ${CMAKE_CURRENT_BINARY_DIR}/api/abi_rows.inc)
+add_custom_command(OUTPUT ${abi_rows}
+  COMMAND awk -f ${CMAKE_CURRENT_LIST_DIR}/abi_rows.awk ${abi_headers} > ${abi_rows}
+  DEPENDS ${CMAKE_CURRENT_LIST_DIR}/abi_rows.awk ${abi_headers} VERBATIM)
+file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/api)
+add_executable(abi_list ${CMAKE_CURRENT_LIST_DIR}/abi_list.c ${abi_rows})
+target_include_directories(abi_list PRIVATE ${CMAKE_SOURCE_DIR}/include ${CMAKE_CURRENT_BINARY_DIR}/api ${Vulkan_INCLUDE_DIRS})
+set_target_properties(abi_list PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+set(abi sh ${CMAKE_CURRENT_LIST_DIR}/abi.sh)
+set(abi_arguments $<TARGET_FILE:abi_list> ${CMAKE_CURRENT_LIST_DIR}/abi.txt)
+add_test(NAME api.abi_list COMMAND ${abi} check ${abi_arguments})
+add_custom_target(abi_write COMMAND ${abi} write ${abi_arguments} VERBATIM)
+set_tests_properties(api.abi_list PROPERTIES LABELS api SKIP_RETURN_CODE 77)
 add_test(NAME api.documented COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/documented.sh ${CMAKE_SOURCE_DIR})
 set_tests_properties(api.documented PROPERTIES LABELS api)
