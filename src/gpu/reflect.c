@@ -1,8 +1,8 @@
-// Shader reflection with SPIRV-Cross: bindings (name, type, read or written), push constants,
-// specialization constants. Only variables that the entry point uses are listed.
+// Shader reflection: bindings (name, type, read or written), push constants, specialization
+// constants. Only variables that the entry point uses are listed.
+#include "gpu/spirv.h"
 #include "gpu/vk.h"
 
-#include <spirv_cross_c.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -10,10 +10,15 @@ struct reader {
     struct gpu *gpu;
     const char *what;
     VkShaderStageFlagBits stage;
-    spvc_context context;
-    spvc_compiler compiler;
-    spvc_resources resources;
+    struct spirv module;
     struct reflection *out;
+};
+
+// A variable of the entry point.
+struct variable {
+    uint32_t id, block; // block: its type behind the pointer and arrays
+    bool is_array;
+    VkDescriptorType type; // MAX_ENUM: not supported
 };
 
 static bool refuse(const struct reader *r, const char *name, const char *why)
@@ -21,7 +26,7 @@ static bool refuse(const struct reader *r, const char *name, const char *why)
     return host_fail(r->gpu->host, FAIL_FORMAT, "gpu shader %s: \"%s\" %s", r->what, name, why);
 }
 
-// Checks the instruction lengths, which SPIRV-Cross and drivers trust.
+// Checks the instruction lengths, which spirv.c and drivers trust.
 static bool check_words(struct gpu *gpu, const uint32_t *words, size_t count, const char *what)
 {
     enum { HEADER = 5, MAGIC = 0x07230203, OP_ENTRY_POINT = 15, OP_FUNCTION_END = 56 };
@@ -60,39 +65,54 @@ static VkPipelineStageFlags2 pipeline_stage(VkShaderStageFlagBits stage)
     }
 }
 
-static bool view_type(spvc_type type, VkImageViewType *out)
+// Dimensions of images (specification, section 3.8).
+enum { DIMENSION_2D = 1, DIMENSION_3D = 2, DIMENSION_CUBE = 3, DIMENSION_SUBPASS = 6 };
+enum {
+    IMAGE_DIMENSION = 3,
+    IMAGE_ARRAYED = 5,
+    IMAGE_MULTISAMPLED = 6,
+    IMAGE_SAMPLED = 7
+}; // operands
+enum { SAMPLED_STORAGE = 2 };
+
+// The image of an image or of a combined image and sampler.
+static size_t find_image(const struct spirv *m, uint32_t type)
 {
-    bool arrayed = spvc_type_get_image_arrayed(type);
-    switch (spvc_type_get_image_dimension(type)) {
-    case SpvDim2D:
+    const size_t at = spirv_find(m, type);
+    if (spirv_op_at(m, at) == SPIRV_TYPE_SAMPLED_IMAGE)
+        return spirv_find(m, spirv_operand(m, at, 2));
+    return at;
+}
+
+static bool view_type(const struct spirv *m, uint32_t type, VkImageViewType *out)
+{
+    const size_t at = find_image(m, type);
+    const bool arrayed = spirv_operand(m, at, IMAGE_ARRAYED) == 1;
+    switch (spirv_operand(m, at, IMAGE_DIMENSION)) {
+    case DIMENSION_2D:
         *out = arrayed ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
         break;
-    case SpvDimCube:
+    case DIMENSION_CUBE:
         *out = arrayed ? VK_IMAGE_VIEW_TYPE_CUBE_ARRAY : VK_IMAGE_VIEW_TYPE_CUBE;
         break;
-    case SpvDim3D:
+    case DIMENSION_3D:
         *out = VK_IMAGE_VIEW_TYPE_3D;
         break;
     default:
         return false;
     }
-    return !spvc_type_get_image_multisampled(type);
+    return spirv_operand(m, at, IMAGE_MULTISAMPLED) == 0;
 }
 
 // glslang puts `readonly` on each member of a block and on the variable of an image.
-static bool is_read_only(const struct reader *r, spvc_variable_id id, bool buffer)
+static bool is_read_only(const struct spirv *m, const struct variable *variable, bool buffer)
 {
-    if (spvc_compiler_has_decoration(r->compiler, id, SpvDecorationNonWritable)) return true;
-    const SpvDecoration *decorations;
-    size_t count;
-    if (!buffer || spvc_compiler_get_buffer_block_decorations(r->compiler, id, &decorations,
-                                                              &count) != SPVC_SUCCESS) {
-        return false;
-    }
-    for (size_t i = 0; i < count; i++) {
-        if (decorations[i] == SpvDecorationNonWritable) return true;
-    }
-    return false;
+    if (spirv_decoration(m, variable->id, SPIRV_WHOLE, SPIRV_NON_WRITABLE, NULL)) return true;
+    const size_t block = spirv_find(m, variable->block);
+    const int members = buffer && block ? (int)(spirv_next(m, block) - block) - 2 : 0;
+    for (int i = 0; i < members; i++)
+        if (!spirv_decoration(m, variable->block, i, SPIRV_NON_WRITABLE, NULL)) return false;
+    return members > 0;
 }
 
 // Adds a binding, or merges it with that of the other stage.
@@ -119,109 +139,135 @@ static bool add_binding(const struct reader *r, const struct shader_binding *bin
     return true;
 }
 
-static bool read_binding(const struct reader *r, const spvc_reflected_resource *resource,
-                         VkDescriptorType type)
+static bool read_binding(const struct reader *r, const struct variable *variable)
 {
-    bool buffer =
+    const struct spirv *m = &r->module;
+    const VkDescriptorType type = variable->type;
+    const bool buffer =
         type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER || type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    spvc_type handle = spvc_compiler_get_type_handle(r->compiler, resource->type_id);
-    const char *name = buffer ? spvc_compiler_get_name(r->compiler, resource->base_type_id)
-                              : spvc_compiler_get_name(r->compiler, resource->id);
+    const char *name = spirv_name(m, buffer ? variable->block : variable->id);
+    uint32_t set;
     struct shader_binding binding = {
         .type = type,
         .shader_stages = r->stage,
         .stages = pipeline_stage(r->stage),
-        .binding = spvc_compiler_get_decoration(r->compiler, resource->id, SpvDecorationBinding),
         .writes = (type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER ||
                    type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE) &&
-                  !is_read_only(r, resource->id, buffer),
+                  !is_read_only(m, variable, buffer),
     };
-    if (!name || !name[0])
-        return refuse(r, "", "names were stripped from it; compile it without -O");
+    spirv_decoration(m, variable->id, SPIRV_WHOLE, SPIRV_BINDING, &binding.binding);
+    spirv_decoration(m, variable->id, SPIRV_WHOLE, SPIRV_DESCRIPTOR_SET, &set);
+    if (type == VK_DESCRIPTOR_TYPE_MAX_ENUM)
+        return refuse(r, name, "is of a kind that is not supported (samplers are combined ones)");
+    if (!name[0]) return refuse(r, "", "names were stripped from it; compile it without -O");
     if (strlen(name) >= sizeof binding.name) return refuse(r, name, "has too long a name");
     snprintf(binding.name, sizeof binding.name, "%s", name);
-    if (spvc_compiler_get_decoration(r->compiler, resource->id, SpvDecorationDescriptorSet) != 0) {
-        return refuse(r, name, "is not in set 0");
-    }
-    if (spvc_type_get_num_array_dimensions(handle) > 0)
-        return refuse(r, name, "is an array of bindings");
-    if (!buffer && !view_type(handle, &binding.view))
+    if (set != 0) return refuse(r, name, "is not in set 0");
+    if (variable->is_array) return refuse(r, name, "is an array of bindings");
+    if (!buffer && !view_type(m, variable->block, &binding.view))
         return refuse(r, name, "is no 2D, 3D or cube image");
     return add_binding(r, &binding);
 }
 
-static bool read_kind(const struct reader *r, spvc_resource_type kind, VkDescriptorType type)
+// ---- Variables
+
+static VkDescriptorType descriptor_type(const struct spirv *m, uint32_t class, uint32_t type)
 {
-    const spvc_reflected_resource *list;
-    size_t count;
-    if (spvc_resources_get_resource_list_for_type(r->resources, kind, &list, &count) !=
-        SPVC_SUCCESS) {
-        return false;
-    }
-    for (size_t i = 0; i < count; i++) {
-        if (type == VK_DESCRIPTOR_TYPE_MAX_ENUM) {
-            return refuse(r, list[i].name,
-                          "is of a kind that is not supported (samplers are combined ones)");
-        }
-        if (!read_binding(r, &list[i], type)) return false;
-    }
-    return true;
+    const size_t at = spirv_find(m, type);
+    const uint32_t op = spirv_op_at(m, at);
+    if (class == SPIRV_STORAGE_BUFFER ||
+        spirv_decoration(m, type, SPIRV_WHOLE, SPIRV_BUFFER_BLOCK, NULL))
+        return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    if (class == SPIRV_UNIFORM) return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    if (op == SPIRV_TYPE_SAMPLED_IMAGE) return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    if (op == SPIRV_TYPE_IMAGE && spirv_operand(m, at, IMAGE_SAMPLED) == SAMPLED_STORAGE &&
+        spirv_operand(m, at, IMAGE_DIMENSION) != DIMENSION_SUBPASS)
+        return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+    return VK_DESCRIPTOR_TYPE_MAX_ENUM;
 }
 
-static bool read_push(const struct reader *r)
+// The type behind the pointer of a variable, and whether arrays were around it.
+static struct variable variable_at(const struct spirv *m, size_t at)
 {
-    const spvc_reflected_resource *list;
-    size_t count, bytes;
-    if (spvc_resources_get_resource_list_for_type(r->resources, SPVC_RESOURCE_TYPE_PUSH_CONSTANT,
-                                                  &list, &count) != SPVC_SUCCESS ||
-        count == 0) {
-        return true;
+    struct variable out = { .id = spirv_operand(m, at, 2) };
+    const size_t pointer = spirv_find(m, spirv_operand(m, at, 1));
+    out.block = spirv_operand(m, pointer, 3);
+    for (int depth = 0; depth < 4; depth++) {
+        const size_t type = spirv_find(m, out.block);
+        const uint32_t op = spirv_op_at(m, type);
+        if (op != SPIRV_TYPE_ARRAY && op != SPIRV_TYPE_RUNTIME_ARRAY) break;
+        out.is_array = true;
+        out.block = spirv_operand(m, type, 2);
     }
-    spvc_type type = spvc_compiler_get_type_handle(r->compiler, list[0].base_type_id);
-    if (spvc_compiler_get_declared_struct_size(r->compiler, type, &bytes) != SPVC_SUCCESS)
-        return false;
-    bytes = (bytes + 3) & ~(size_t)3;
+    out.type = descriptor_type(m, spirv_operand(m, at, 3), out.block);
+    return out;
+}
+
+static bool read_push(const struct reader *r, uint32_t type)
+{
+    const char *name = spirv_name(&r->module, type);
+    const size_t bytes = (spirv_type_size(&r->module, type) + 3) & ~(size_t)3;
     if (bytes > r->gpu->limits.max_push_bytes)
-        return refuse(r, list[0].name, "has more push constants than the device");
-    if (bytes > 128) return refuse(r, list[0].name, "has more than 128 bytes of push constants");
+        return refuse(r, name, "has more push constants than the device");
+    if (bytes > 128) return refuse(r, name, "has more than 128 bytes of push constants");
     r->out->push_stages |= r->stage;
     if (bytes > r->out->push_bytes) r->out->push_bytes = (uint32_t)bytes;
     return true;
 }
 
-static bool read_constants(const struct reader *r)
+static void read_constant(const struct reader *r, uint32_t id)
 {
     const int most = sizeof r->out->constant_ids / sizeof *r->out->constant_ids;
-    const spvc_specialization_constant *list;
-    size_t count;
-    if (spvc_compiler_get_specialization_constants(r->compiler, &list, &count) != SPVC_SUCCESS)
-        return false;
-    for (size_t i = 0; i < count && r->out->constant_count < most; i++) {
-        r->out->constant_ids[r->out->constant_count++] = list[i].constant_id;
+    uint32_t number;
+    if (r->out->constant_count < most &&
+        spirv_decoration(&r->module, id, SPIRV_WHOLE, SPIRV_SPEC_ID, &number))
+        r->out->constant_ids[r->out->constant_count++] = number;
+}
+
+static bool read_variable(const struct reader *r, size_t at)
+{
+    const struct spirv *m = &r->module;
+    const uint32_t class = spirv_operand(m, at, 3);
+    if (!spirv_used(m, spirv_operand(m, at, 2))) return true;
+    const struct variable variable = variable_at(m, at);
+    if (class == SPIRV_PUSH_CONSTANT) return read_push(r, variable.block);
+    if (class != SPIRV_UNIFORM_CONSTANT && class != SPIRV_UNIFORM && class != SPIRV_STORAGE_BUFFER)
+        return true;
+    return read_binding(r, &variable);
+}
+
+static bool read_globals(const struct reader *r)
+{
+    const struct spirv *m = &r->module;
+    bool ok = true;
+    for (size_t at = m->types; ok && at < m->functions; at = spirv_next(m, at)) {
+        const uint32_t op = spirv_op_at(m, at);
+        if (op == SPIRV_VARIABLE) ok = read_variable(r, at);
+        if (op >= SPIRV_SPEC_CONSTANT_TRUE && op <= SPIRV_SPEC_CONSTANT)
+            read_constant(r, spirv_operand(m, at, 2));
     }
-    return true;
+    return ok;
 }
 
-static bool open_reader(struct reader *r, const uint32_t *words, size_t count)
-{
-    spvc_parsed_ir ir;
-    spvc_set active;
-    return spvc_context_create(&r->context) == SPVC_SUCCESS &&
-           spvc_context_parse_spirv(r->context, words, count, &ir) == SPVC_SUCCESS &&
-           spvc_context_create_compiler(r->context, SPVC_BACKEND_NONE, ir,
-                                        SPVC_CAPTURE_MODE_TAKE_OWNERSHIP,
-                                        &r->compiler) == SPVC_SUCCESS &&
-           spvc_compiler_get_active_interface_variables(r->compiler, &active) == SPVC_SUCCESS &&
-           spvc_compiler_create_shader_resources_for_active_variables(r->compiler, &r->resources,
-                                                                      active) == SPVC_SUCCESS;
-}
+// ---- Stages
 
-static bool check_stage(const struct reader *r)
+// Execution models (specification, section 3.3).
+enum { MODEL_VERTEX = 0, MODEL_FRAGMENT = 4, MODEL_COMPUTE = 5 };
+
+// Marks what the entry point uses. Entry points come before types.
+static bool enter(struct reader *r)
 {
-    SpvExecutionModel model = spvc_compiler_get_execution_model(r->compiler);
-    bool right = (model == SpvExecutionModelVertex && r->stage == VK_SHADER_STAGE_VERTEX_BIT) ||
-                 (model == SpvExecutionModelFragment && r->stage == VK_SHADER_STAGE_FRAGMENT_BIT) ||
-                 (model == SpvExecutionModelGLCompute && r->stage == VK_SHADER_STAGE_COMPUTE_BIT);
+    struct spirv *m = &r->module;
+    size_t at = 5;
+    while (at < m->types && spirv_op_at(m, at) != SPIRV_ENTRY_POINT) at = spirv_next(m, at);
+    if (at >= m->types)
+        return host_fail(r->gpu->host, FAIL_FORMAT, "gpu shader %s: it has no entry point",
+                         r->what);
+    const uint32_t model = spirv_operand(m, at, 1);
+    const bool right = (model == MODEL_VERTEX && r->stage == VK_SHADER_STAGE_VERTEX_BIT) ||
+                       (model == MODEL_FRAGMENT && r->stage == VK_SHADER_STAGE_FRAGMENT_BIT) ||
+                       (model == MODEL_COMPUTE && r->stage == VK_SHADER_STAGE_COMPUTE_BIT);
+    spirv_mark_used(m, spirv_operand(m, at, 2));
     return right || host_fail(r->gpu->host, FAIL_ARGUMENT, "gpu shader %s: it is for another stage",
                               r->what);
 }
@@ -229,30 +275,12 @@ static bool check_stage(const struct reader *r)
 bool reflect_stage(struct gpu *gpu, const uint32_t *words, size_t word_count, const char *what,
                    VkShaderStageFlagBits stage, struct reflection *out)
 {
-    static const struct {
-        spvc_resource_type kind;
-        VkDescriptorType type;
-    } kinds[] = {
-        { SPVC_RESOURCE_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER },
-        { SPVC_RESOURCE_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER },
-        { SPVC_RESOURCE_TYPE_SAMPLED_IMAGE, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER },
-        { SPVC_RESOURCE_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE },
-        { SPVC_RESOURCE_TYPE_SEPARATE_IMAGE, VK_DESCRIPTOR_TYPE_MAX_ENUM },
-        { SPVC_RESOURCE_TYPE_SEPARATE_SAMPLERS, VK_DESCRIPTOR_TYPE_MAX_ENUM },
-        { SPVC_RESOURCE_TYPE_SUBPASS_INPUT, VK_DESCRIPTOR_TYPE_MAX_ENUM },
-        { SPVC_RESOURCE_TYPE_ACCELERATION_STRUCTURE, VK_DESCRIPTOR_TYPE_MAX_ENUM },
-    };
     if (!check_words(gpu, words, word_count, what)) return false;
     struct reader r = { .gpu = gpu, .what = what, .stage = stage, .out = out };
-    bool ok = open_reader(&r, words, word_count);
-    if (!ok) {
-        host_fail(gpu->host, FAIL_FORMAT, "gpu shader %s: it cannot be reflected (%s)", what,
-                  r.context ? spvc_context_get_last_error_string(r.context) : "no memory");
-    }
-    ok = ok && check_stage(&r);
-    for (size_t i = 0; ok && i < sizeof kinds / sizeof *kinds; i++)
-        ok = read_kind(&r, kinds[i].kind, kinds[i].type);
-    ok = ok && read_push(&r) && read_constants(&r);
-    if (r.context) spvc_context_destroy(r.context);
+    const char *why = spirv_open(&r.module, gpu->host, words, word_count);
+    if (why && why[0])
+        host_fail(gpu->host, FAIL_FORMAT, "gpu shader %s: it cannot be reflected (%s)", what, why);
+    const bool ok = !why && enter(&r) && read_globals(&r);
+    spirv_close(&r.module);
     return ok;
 }
