@@ -4,7 +4,9 @@ include(CMakePackageConfigHelpers)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/afterglow)
 
 install(DIRECTORY include/afterglow DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(TARGETS afterglow_import DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/afterglow)
+if(AFTERGLOW_IMPORTER)
+  install(TARGETS afterglow_import DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/afterglow)
+endif()
 install(FILES LICENSE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.[ch])
 # What a host's own shaders include: `glslc -DAG_GLSL=1 -I <prefix>/share/afterglow/glsl`. Paths are those of src/.
@@ -32,10 +34,23 @@ install(FILES ${PROJECT_BINARY_DIR}/afterglow-config.cmake ${PROJECT_BINARY_DIR}
   DESTINATION ${package})
 
 # pkg-config names of the third-party libraries that the static library needs.
-set(AFTERGLOW_PC_REQUIRES "jansson libxxhash libpng libjpeg OpenEXR qhull_r spirv-cross-c-shared vulkan")
-# As flags: required by name, OpenBLAS would add the Fortran library of its static version.
-list(JOIN OPENBLAS_LDFLAGS " " AFTERGLOW_PC_OPENBLAS)
-list(JOIN LAPACKE_LDFLAGS " " AFTERGLOW_PC_LAPACKE)
+set(AFTERGLOW_PC_REQUIRES vulkan)
+set(pc_libraries "")
+if(AFTERGLOW_FILES)
+  string(APPEND AFTERGLOW_PC_REQUIRES " jansson libpng libjpeg OpenEXR")
+endif()
+if(AFTERGLOW_BAKES)
+  string(APPEND AFTERGLOW_PC_REQUIRES " qhull_r")
+  # As flags: required by name, OpenBLAS would add the Fortran library of its static version.
+  list(APPEND pc_libraries ${LAPACKE_LDFLAGS} ${OPENBLAS_LDFLAGS})
+endif()
+if(AFTERGLOW_OPENMP)
+  list(APPEND pc_libraries -lgomp)
+endif()
+if(AFTERGLOW_TRACE)
+  list(APPEND pc_libraries -lembree${EMBREE_MAJOR})
+endif()
+list(JOIN pc_libraries " " AFTERGLOW_PC_LIBRARIES)
 # Path from <libdir>/pkgconfig to the prefix, so that an installed tree can be moved.
 file(RELATIVE_PATH AFTERGLOW_PC_UP /prefix/${CMAKE_INSTALL_LIBDIR} /prefix)
 foreach(name afterglow afterglow-static)

@@ -1,10 +1,14 @@
-# ag_module(name [USES module…] [THIRD_PARTY target…])
+# ag_module(name [USES module…] [THIRD_PARTY target…] [WITHOUT regex…])
 #
-# One static library per module, target ag_<name>, from all .c files of the folder. It may include the modules of USES and, in its
-# own .c files, the libraries of THIRD_PARTY.
+# One static library per module, target ag_<name>, from all .c files of the folder but those whose path in it matches a regex of
+# WITHOUT and those in a folder without/, which take the place of others. It may include the modules of USES, of which some may
+# be left out of the library, and, in its own .c files, the libraries of THIRD_PARTY.
 function(ag_module name)
-  cmake_parse_arguments(arg "" "" "USES;THIRD_PARTY" ${ARGN})
+  cmake_parse_arguments(arg "" "" "USES;THIRD_PARTY;WITHOUT" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.c)
+  foreach(regex /without/ ${arg_WITHOUT})
+    list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}.*${regex}")
+  endforeach()
   if(NOT sources)
     file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/empty.c CONTENT "typedef int ag_empty_${name};\n")
     set(sources ${CMAKE_CURRENT_BINARY_DIR}/empty.c)
@@ -13,6 +17,11 @@ function(ag_module name)
   target_include_directories(ag_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)
   target_compile_definitions(ag_${name} PRIVATE AG_BUILD)
   list(TRANSFORM arg_USES PREPEND ag_)
+  foreach(module ${arg_USES})
+    if(NOT TARGET ${module})
+      list(REMOVE_ITEM arg_USES ${module})
+    endif()
+  endforeach()
   target_link_libraries(ag_${name} PUBLIC ${arg_USES} PRIVATE afterglow_flags ${arg_THIRD_PARTY})
   set_property(GLOBAL APPEND PROPERTY AFTERGLOW_MODULES ag_${name})
 endfunction()

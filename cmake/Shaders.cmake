@@ -1,6 +1,6 @@
-# ag_shaders(module header)
+# ag_shaders(module header [folder…])
 #
-# Compiles every *.comp, *.vert and *.frag below the current folder to SPIR-V and embeds it in ag_<module>:
+# Compiles every *.comp, *.vert and *.frag below the current folder, but for some of its folders, to SPIR-V and embeds it in ag_<module>:
 # `#include "<header>"` declares `extern const struct gpu_shader shader_<name>_<stage>` for each.
 # The .spv files also land in <build>/shaders, the folder to give as AFTERGLOW_SHADER_DIR for reloading.
 #
@@ -12,7 +12,7 @@
 # so that stages share a .glsl file: "add.glsl raster.frag VCT_RASTER=1". A shader that is listed is compiled only as
 # its lines say.
 function(ag_shaders module header)
-  ag_shaders_for(ag_${module} ${header} ${CMAKE_CURRENT_SOURCE_DIR})
+  ag_shaders_for(ag_${module} ${header} ${CMAKE_CURRENT_SOURCE_DIR} ${ARGN})
 endfunction()
 
 # ag_shader_name(result path): the name of the shader at a relative path, without its extension.
@@ -30,10 +30,14 @@ function(ag_shader_name result path)
   set(${result} ${name}${previous} PARENT_SCOPE)
 endfunction()
 
-# ag_shader_units(result folder): all compilations, as "path|name.stage|definitions", definitions separated by commas.
+# ag_shader_units(result folder [folder in it to leave out…]): all compilations, as "path|name.stage|definitions", definitions separated by commas.
 function(ag_shader_units result folder)
   file(GLOB_RECURSE shaders CONFIGURE_DEPENDS RELATIVE ${folder} ${folder}/*.comp ${folder}/*.vert ${folder}/*.frag)
   file(GLOB_RECURSE lists CONFIGURE_DEPENDS RELATIVE ${folder} ${folder}/shader_variants.txt)
+  foreach(left_out ${ARGN})
+    list(FILTER shaders EXCLUDE REGEX "^${left_out}/")
+    list(FILTER lists EXCLUDE REGEX "^${left_out}/")
+  endforeach()
   set(units "")
   foreach(list ${lists})
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${folder}/${list})
@@ -64,10 +68,10 @@ function(ag_shader_units result folder)
   set(${result} ${units} PARENT_SCOPE)
 endfunction()
 
-# ag_shaders_for(target header folder): the same for any target and folder. The target's property AFTERGLOW_SPIRV lists the
+# ag_shaders_for(target header folder [folder in it to leave out…]): the same for any target and folder. The target's property AFTERGLOW_SPIRV lists the
 # .spv files.
 function(ag_shaders_for target header folder)
-  ag_shader_units(units ${folder})
+  ag_shader_units(units ${folder} ${ARGN})
   set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
   set(declarations "#pragma once\n#include \"gpu/gpu.h\"\n")
   set(definitions "#include \"${header}\"\n")

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#define XXH_INLINE_ALL // no library to link
 #include <xxhash.h>
 
 uint64_t hash_bytes(const void *data, size_t size, uint64_t seed)

@@ -1,8 +1,19 @@
-// Parallel loops on OpenMP threads.
+// Parallel loops on OpenMP threads; without OpenMP (AFTERGLOW_OPENMP=OFF) on the calling thread.
 #include "core/parallel.h"
 
 #include <limits.h>
+#ifdef _OPENMP
 #include <omp.h>
+#else
+static int omp_get_max_threads(void)
+{
+    return 1;
+}
+static void omp_set_num_threads(int threads)
+{
+    (void)threads;
+}
+#endif
 
 // GCC's OpenMP library is not instrumented for the thread sanitizer. These annotations declare its
 // fork and join: the caller happens before each call of the body, and each call before the return.
@@ -42,8 +53,12 @@ static void end(struct loop *loop)
 
 NOT_INSTRUMENTED static void call_all(struct loop *loop, int threads, size_t count, int grain)
 {
+    (void)threads; // without OpenMP
+    (void)grain;
     // A single chunk runs on the calling thread.
+#ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, grain) if (count > (size_t)grain) num_threads(threads)
+#endif
     for (size_t i = 0; i < count; i++) call(loop, i);
 }
 

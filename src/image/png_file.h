@@ -3,6 +3,7 @@
 #pragma once
 
 #include "image/image.h"
+#include "image/srgb.h"
 
 // Encodes with the sRGB curve, clamps to 0…1, NaN becomes 0. 1, 3 or 4 channels. The file is
 // replaced atomically.
@@ -11,9 +12,6 @@ bool png_write(struct host *host, const char *path, const struct image *image);
 bool png_read(struct host *host, const char *path, struct image *out);
 // From the header; the rest of the file may be wrong.
 bool png_read_size(struct host *host, const char *path, int *width, int *height);
-
-float srgb_encode(float linear);
-float srgb_decode(float encoded);
 
 // 8-bit sRGB pixels as the bytes of a PNG file, owned by the caller (host_free).
 bool png_encode(struct host *host, const uint8_t *rgba, int width, int height, uint8_t **out,

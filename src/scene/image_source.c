@@ -1,6 +1,5 @@
 #include "scene/image_source.h"
 
-#include "scene/image_decode.h"
 #include "scene/scene_check.h"
 
 #include <string.h>
@@ -15,8 +14,7 @@ static void expand_row(const uint8_t *from, int width, int channels, uint8_t *rg
     }
 }
 
-// Memory for width × height texels, NULL on failure: the size is checked before.
-static uint8_t *allocate(struct scene *scene, const char *name, int width, int height)
+uint8_t *scene_alloc_texels(struct scene *scene, const char *name, int width, int height)
 {
     if (width >= 1 && height >= 1 && width <= SCENE_MAX_IMAGE_SIZE &&
         height <= SCENE_MAX_IMAGE_SIZE)
@@ -31,40 +29,12 @@ int scene_add_texels(struct scene *scene, const char *name, const struct texels 
     struct scene_image image = {
         .name = name, .width = texels->width, .height = texels->height, .linear = linear
     };
-    image.rgba = allocate(scene, name, image.width, image.height);
+    image.rgba = scene_alloc_texels(scene, name, image.width, image.height);
     if (!image.rgba) return -1;
     for (size_t y = 0; y < (size_t)image.height; y++)
         expand_row(texels->bytes + y * texels->row_bytes, image.width, texels->channels,
                    image.rgba + y * (size_t)image.width * 4);
     const int index = scene_add_image(scene, &image);
-    host_free(scene->host, image.rgba);
-    return index;
-}
-
-// NULL, or the reason of failure.
-static const char *find_size(const void *data, size_t size, struct scene_image *image,
-                             char reason[DECODE_WHY_SIZE])
-{
-    const enum image_kind kind = image_kind_of(data, size);
-    if (kind != IMAGE_JPEG && kind != IMAGE_PNG) return "neither JPEG nor PNG";
-    return image_decode_size(data, size, &image->width, &image->height, reason);
-}
-
-int scene_add_encoded_image(struct scene *scene, const char *name, const void *data, size_t size,
-                            bool linear)
-{
-    struct scene_image image = { .name = name, .linear = linear };
-    char reason[DECODE_WHY_SIZE];
-    const char *why = find_size(data, size, &image, reason);
-    if (!why) {
-        image.rgba = allocate(scene, name, image.width, image.height);
-        if (!image.rgba) return -1;
-        why = image_decode(data, size, image.width, image.height, image.rgba, reason);
-    }
-    if (why) // the decoder's reason may be empty
-        host_fail(scene->host, FAIL_FORMAT, "image \"%s\" in %s: %s", name, scene->name,
-                  why[0] ? why : "cannot be decoded");
-    const int index = why ? -1 : scene_add_image(scene, &image);
     host_free(scene->host, image.rgba);
     return index;
 }

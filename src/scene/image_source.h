@@ -12,6 +12,10 @@ struct texels {
     size_t row_bytes; // at least width · channels
 };
 
+// RGBA, owned by the caller (host_free). NULL: the size is beyond SCENE_MAX_IMAGE_SIZE, or out of
+// memory; the message says so.
+uint8_t *scene_alloc_texels(struct scene *scene, const char *name, int width, int height);
+
 // Each returns the index of the new image, -1 on failure.
 int scene_add_texels(struct scene *scene, const char *name, const struct texels *texels,
                      bool linear);

@@ -39,6 +39,11 @@ static bool fail_unknown(struct host *host, const char *name, const struct techn
     const char *names[MAX_KNOWN];
     char list[LIST_SIZE] = "";
     size_t count = 0, used = 0;
+    if (technique_left_out(name))
+        return host_fail(host, FAIL_UNSUPPORTED,
+                         "cannot use %s: the library was built without techniques that need a bake "
+                         "(AFTERGLOW_BAKES=OFF)",
+                         name);
     for (; known[count] && count < MAX_KNOWN; count++) {
         names[count] = known[count]->name;
         const int written =

@@ -16,11 +16,14 @@
 
 #include <string.h>
 
+// The order is that of `afterglow list`.
 const struct technique *const techniques[] = {
-    &technique_none, &technique_ambient, &technique_lpv,   &technique_holpv,
-    &technique_vct,  &technique_mrt,     &technique_drt,   &technique_radiosity,
-    &technique_ort,  &technique_prt,     &technique_dnrt,  &technique_vo,
-    &technique_ssao, &technique_hbao,    &technique_vctao, NULL
+    &technique_none, &technique_ambient, &technique_lpv,       &technique_holpv, &technique_vct,
+#if AG_BAKES
+    &technique_mrt,  &technique_drt,     &technique_radiosity, &technique_ort,   &technique_prt,
+    &technique_dnrt,
+#endif
+    &technique_vo,   &technique_ssao,    &technique_hbao,      &technique_vctao, NULL
 };
 
 const struct technique_debug_view *technique_find_view(const struct technique *technique,

@@ -1,0 +1,37 @@
+#!/bin/sh
+# light_build.sh SOURCE LIBRARY CC CXX LAUNCHER TYPE: a library without the reference, bakes, files and OpenMP needs the Vulkan
+# loader alone beside the C library. It renders the images of the full LIBRARY, refuses in words what it is without, and exports
+# the same functions.
+set -eu
+export CMAKE_GENERATOR=Ninja
+source=$1 library=$2 cc=$3 cxx=$4 launcher=$5 type=$6
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cmake -S "$source" -B "$work/build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_C_COMPILER_LAUNCHER="$launcher" \
+    -DCMAKE_BUILD_TYPE="$type" -DAFTERGLOW_TESTS=OFF -DAFTERGLOW_PROGRAMS=OFF -DAFTERGLOW_REFERENCE=OFF -DAFTERGLOW_FILES=OFF \
+    -DAFTERGLOW_OPENMP=OFF >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+cmake --build "$work/build" --target afterglow_shared --parallel 2 >"$work/log" 2>&1 || { tail -40 "$work/log"; exit 1; }
+light=$work/build/libafterglow.so
+! grep -q 'warning:' "$work/log" || { grep -A4 'warning:' "$work/log"; exit 1; }
+
+needed=$(readelf -d "$light" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | sort | paste -s -d ' ')
+echo "needed: $needed"
+for name in $needed; do
+    case $name in
+    libc.so.* | libm.so.* | ld-linux* | libvulkan.so.*) ;;
+    *) echo "$name is needed"; exit 1 ;;
+    esac
+done
+[ -z "$(ldd -r "$light" | grep 'undefined symbol')" ] || { ldd -r "$light"; exit 1; }
+for file in "$light" "$library"; do nm -D --defined-only "$file" | awk '$2 == "T" { print $3 }' | sort >"$work/$(basename "$(dirname "$file")").names"; done
+diff "$work/$(basename "$(dirname "$library")").names" "$work/build.names" || { echo "< full, > light: exported functions"; exit 1; }
+
+for kind in light full; do
+    eval "file=\$$([ $kind = light ] && echo light || echo library)"
+    "$cc" -Wall -I "$source/include" "$source/tests/api/light_host.c" "$file" "-Wl,-rpath,$(dirname "$file")" -o "$work/$kind"
+    status=0
+    "$work/$kind" $kind >"$work/$kind.out" || status=$?
+    [ $status -eq 0 ] || { cat "$work/$kind.out"; exit $status; }
+done
+cat "$work/light.out"
+diff "$work/full.out" "$work/light.out"
