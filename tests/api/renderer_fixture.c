@@ -136,6 +136,22 @@ void fixture_print_base(int technique, const struct ag_technique_info *info, cha
     }
 }
 
+bool fixture_print_variant(int technique, const struct ag_technique_info *info, int index,
+                           char *out)
+{
+    struct ag_option_info o;
+    fixture_print_base(technique, info, out);
+    if (index == 0) return true;
+    const size_t used = strlen(out);
+    for (int k = 0; index == 1 && ag_technique_option_get(technique, k, &o); k++)
+        if (strcmp(o.name, "temporal") == 0) {
+            snprintf(out + used, FIXTURE_SPEC - used, "%ctemporal=true",
+                     strchr(out, ':') ? ',' : ':');
+            return true;
+        }
+    return false;
+}
+
 struct ag_bake *fixture_bake(struct renderer_fixture *s, const char *gi,
                              const struct ag_technique_info *info)
 {

@@ -46,6 +46,9 @@ double fixture_difference(const struct ag_image *a, const struct ag_image *b);
 // "name", or a small bake's "name:option=least,…"; visibility needs light to show. `out` has
 // FIXTURE_SPEC bytes.
 void fixture_print_base(int technique, const struct ag_technique_info *info, char *out);
+// The base for index 0; with temporal=true for 1, if it has that option. false: no more.
+bool fixture_print_variant(int technique, const struct ag_technique_info *info, int index,
+                           char *out);
 // A complete bake of such a spec for the fixture's scene; NULL if the technique needs none.
 struct ag_bake *fixture_bake(struct renderer_fixture *s, const char *gi,
                              const struct ag_technique_info *info);

@@ -91,16 +91,18 @@ TEST(gi_spec_without_a_source_has_the_first_one)
 
 TEST(gi_spec_of_visibility_alone_stands_on_ambient)
 {
-    static const char *const names[] = { "vo", "ssao", "hbao", "vctao" };
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    int found = 0;
+    for (size_t i = 0; techniques[i]; i++) {
         struct gi_spec spec;
-        CHECK(gi_spec_parse(&spec, test_host(), names[i]));
+        if (techniques[i]->role != ROLE_VISIBILITY) continue;
+        CHECK(gi_spec_parse(&spec, test_host(), techniques[i]->name));
         assert_int_equal(spec.count, 2);
         CHECK_STRING(spec.technique[0]->name, "ambient");
-        CHECK_STRING(spec.technique[1]->name, names[i]);
-        CHECK(spec.added_source);
+        CHECK(spec.technique[1] == techniques[i] && spec.added_source);
         gi_spec_finish(&spec);
+        found++;
     }
+    CHECK(found > 1);
     struct gi_spec none;
     CHECK(gi_spec_parse(&none, test_host(), "none+vo"));
     CHECK(!none.added_source && strcmp(none.technique[0]->name, "none") == 0);

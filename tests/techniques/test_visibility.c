@@ -1,5 +1,6 @@
 // Requirements on every screen-space technique of the role visibility.
 #include "techniques/gi_baked.h"
+#include "techniques/registry.h"
 
 #include "frame/frame_fixture.h"
 
@@ -10,7 +11,7 @@
 
 enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT };
 
-// All estimators; the radius is appended.
+// All estimators; the radius is appended. Those of techniques without a row are their defaults.
 static const char *const specs[] = { "vo:samples=5",
                                      "vo:samples=9,blur=false",
                                      "vo:samples=5,half_resolution=true",
@@ -25,7 +26,32 @@ static const char *const specs[] = { "vo:samples=5",
                                      "ssao:samples=5,half_resolution=true",
                                      "hbao:steps=6,falloff=cubic",
                                      "hbao:falloff=quadratic,half_resolution=true" };
-enum { WAYS = sizeof specs / sizeof specs[0] };
+enum { ROWS = sizeof specs / sizeof specs[0] };
+
+static bool has_row(const struct technique *technique)
+{
+    const size_t length = strlen(technique->name);
+    for (int i = 0; i < ROWS; i++)
+        if (strncmp(specs[i], technique->name, length) == 0 && specs[i][length] == ':') return true;
+    return false;
+}
+
+static bool is_of_screen(const struct technique *technique)
+{
+    return technique->role == ROLE_VISIBILITY && !technique->update &&
+           option_find(&technique->options, "radius");
+}
+
+// The rows, then the other techniques of screen space, which have a radius and share nothing
+// between views; NULL past the last.
+static const char *spec_at(int index)
+{
+    if (index < ROWS) return specs[index];
+    for (size_t t = 0; techniques[t]; t++)
+        if (is_of_screen(techniques[t]) && !has_row(techniques[t]) && index-- == ROWS)
+            return techniques[t]->name;
+    return NULL;
+}
 
 static const double STEP = 1.0 / 255.0; // of the layer's 8 bits
 
@@ -45,7 +71,7 @@ static struct look look_begin(struct frame_fixture *s, const char *way, double r
 {
     char text[160];
     struct look look;
-    snprintf(text, sizeof text, "%s,radius=%g", way, radius_m);
+    snprintf(text, sizeof text, "%s%cradius=%g", way, strchr(way, ':') ? ',' : ':', radius_m);
     if (!gi_spec_parse(&look.spec, test_host(), text))
         fail_msg("%s: %s", text, test_last_message());
     look.gi = gi_create(test_host(), s->gpu, &look.spec, &s->pose, s->width, s->height);
@@ -96,9 +122,9 @@ TEST_GPU(empty_images_have_full_visibility)
                  fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
     fixture_look(&s, vec3_of(0, 0, 0), vec3_of(0, 0, -1)); // the quad is behind the camera
     fixture_open(&s);
-    for (int i = 0; i < WAYS; i++) {
-        float *v = seen(&s, specs[i], 0.5);
-        check_all(specs[i], v, 1.0, 1.0);
+    for (int i = 0; spec_at(i); i++) {
+        float *v = seen(&s, spec_at(i), 0.5);
+        check_all(spec_at(i), v, 1.0, 1.0);
         free(v);
     }
     fixture_finish(&s);
@@ -108,13 +134,13 @@ TEST_GPU(a_sphere_of_radius_0_is_open_and_one_beyond_the_scene_is_finite)
 {
     struct frame_fixture s;
     box_on_floor(&s, gpu);
-    for (int i = 0; i < WAYS; i++) {
-        float *v = seen(&s, specs[i], 0.0);
+    for (int i = 0; spec_at(i); i++) {
+        float *v = seen(&s, spec_at(i), 0.0);
         // One estimator has a second sphere of fixed radius.
-        check_all(specs[i], v, strstr(specs[i], "radius2") ? 0.0 : 1.0, 1.0);
+        check_all(spec_at(i), v, strstr(spec_at(i), "radius2") ? 0.0 : 1.0, 1.0);
         free(v);
-        v = seen(&s, specs[i], 1e6);
-        check_all(specs[i], v, 0.0, 1.0);
+        v = seen(&s, spec_at(i), 1e6);
+        check_all(spec_at(i), v, 0.0, 1.0);
         free(v);
     }
     fixture_finish(&s);
@@ -128,8 +154,8 @@ TEST_GPU(a_grazing_plane_stays_open_up_to_the_horizon_while_the_camera_moves)
     begin(&s, gpu);
     fixture_floor(&s, 20000, fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
     fixture_open(&s);
-    for (int i = 0; i < WAYS; i++) {
-        struct look look = look_begin(&s, specs[i], 0.5);
+    for (int i = 0; spec_at(i); i++) {
+        struct look look = look_begin(&s, spec_at(i), 0.5);
         double least = 1.0, change = 0.0;
         float *last = NULL;
         for (int k = 0; k < 4; k++) {
@@ -140,7 +166,7 @@ TEST_GPU(a_grazing_plane_stays_open_up_to_the_horizon_while_the_camera_moves)
             float *v = fixture_read(&s, READ_VISIBILITY);
             // Away from the image center the slope exceeds its bound while spheres still have two
             // pixels: an area fetches farther from its pixel than a line.
-            check_all(specs[i], v, 1.0 - (strstr(specs[i], "areas") ? 5 : 1) * STEP, 1.0);
+            check_all(spec_at(i), v, 1.0 - (strstr(spec_at(i), "areas") ? 5 : 1) * STEP, 1.0);
             for (int p = 0; p < PIXELS; p++) {
                 least = fmin(least, (double)v[p]);
                 if (last) change = fmax(change, fabs((double)(v[p] - last[p])));
@@ -149,14 +175,14 @@ TEST_GPU(a_grazing_plane_stays_open_up_to_the_horizon_while_the_camera_moves)
             last = v;
         }
         free(last);
-        print_message("%-36s %.3f at least, %.3f from frame to frame\n", specs[i], least, change);
+        print_message("%-36s %.3f at least, %.3f from frame to frame\n", spec_at(i), least, change);
         look_end(&look);
     }
     fixture_finish(&s);
 }
 
 // Two walls along the y axis, z = 0 and x = 0, viewed from between them. A wall at the distance a
-// (radii) leaves (2 + 3a − a³)/4 of the hemisphere over the other.
+// (radii) leaves (2 + 3a − a³)/4 of the hemisphere over the other, which the rows estimate.
 TEST_GPU(visibility_beside_a_wall_is_the_closed_form)
 {
     struct frame_fixture s;
@@ -169,7 +195,7 @@ TEST_GPU(visibility_beside_a_wall_is_the_closed_form)
     fixture_look(&s, vec3_of(3, 0, 3), vec3_of(0, 0, 0));
     fixture_open(&s);
     const double radius_m = 0.6; // nine pixels
-    for (int i = 0; i < WAYS; i++) {
+    for (int i = 0; i < ROWS; i++) {
         if (strstr(specs[i], "radius2") || strstr(specs[i], "quadratic"))
             continue; // something else
         float *v = seen(&s, specs[i], radius_m), *at = fixture_read(&s, READ_POSITION);
@@ -221,12 +247,12 @@ TEST_GPU(silhouettes_have_no_halo_on_distant_backgrounds)
                  vec3_of(-0.5f, 0.4f, -2), matte);
     fixture_look(&s, vec3_of(0, 0, 0), vec3_of(0.05f, 0, -1));
     fixture_open(&s);
-    for (int i = 0; i < WAYS; i++) {
-        const double least = darkest_background(&s, specs[i]);
-        print_message("%-36s %.3f\n", specs[i], least);
+    for (int i = 0; spec_at(i); i++) {
+        const double least = darkest_background(&s, spec_at(i));
+        print_message("%-36s %.3f\n", spec_at(i), least);
         // The depth distribution of an area spans board and wall; the thickness closes a part of
         // it.
-        CHECK(least >= (strstr(specs[i], "areas") ? 0.9 : 1.0 - 2 * STEP));
+        CHECK(least >= (strstr(spec_at(i), "areas") ? 0.9 : 1.0 - 2 * STEP));
     }
     // Occluders of infinite thickness would give:
     CHECK(darkest_background(&s, "vo:samples=5,thickness=1000") < 0.8);

@@ -26,8 +26,9 @@ ag_test(techniques/probe_trials USES techniques LIBRARIES ag_test_light_trial ag
 ag_shaders_for(test_techniques_probe_trials techniques_test_shaders.h ${CMAKE_CURRENT_LIST_DIR}/shaders)
 ag_test(techniques/radiosity_probes USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
 
-foreach(technique lpv vct mrt dnrt ort prt)
-  include(${CMAKE_CURRENT_LIST_DIR}/${technique}/tests.cmake)
+file(GLOB tests_of_techniques CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*/tests.cmake)
+foreach(file ${tests_of_techniques})
+  include(${file})
 endforeach()
 
 # Every option of every technique, or pipelines of many grids: minutes alone, more beside others.
