@@ -3,6 +3,7 @@
 
 #include "techniques/ambient/ambient.h"
 #include "techniques/dnrt/dnrt.h"
+#include "techniques/gtao/gtao.h"
 #include "techniques/hbao/hbao.h"
 #include "techniques/lpv/lpv.h"
 #include "techniques/mrt/mrt.h"
@@ -18,12 +19,15 @@
 
 // The order is that of `afterglow list`.
 const struct technique *const techniques[] = {
-    &technique_none, &technique_ambient, &technique_lpv,       &technique_holpv, &technique_vct,
+    // sources
+    &technique_none, &technique_ambient, &technique_lpv, &technique_holpv, &technique_vct,
 #if AG_BAKES
-    &technique_mrt,  &technique_drt,     &technique_radiosity, &technique_ort,   &technique_prt,
+    &technique_mrt, &technique_drt, &technique_radiosity, &technique_ort, &technique_prt,
+    // deltas
     &technique_dnrt,
 #endif
-    &technique_vo,   &technique_ssao,    &technique_hbao,      &technique_vctao, NULL
+    // visibility
+    &technique_vo, &technique_ssao, &technique_hbao, &technique_gtao, &technique_vctao, NULL
 };
 
 const struct technique_debug_view *technique_find_view(const struct technique *technique,

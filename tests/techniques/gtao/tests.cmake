@@ -1,0 +1,5 @@
+add_library(ag_test_gtao STATIC techniques/gtao/gtao_fixture.c techniques/gtao/gtao_twin.c)
+target_link_libraries(ag_test_gtao PUBLIC ag_test_frame_fixture ag_test_techniques ag_techniques PRIVATE afterglow_flags m)
+foreach(name closed_forms image_border thin_occluders twin)
+  ag_test(techniques/gtao/${name} USES techniques LIBRARIES ag_test_gtao)
+endforeach()
