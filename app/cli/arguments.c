@@ -122,6 +122,14 @@ static bool set_follow_links(struct arguments *a, const char *value, const char 
     return true;
 }
 
+static bool set_scene_scale(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be 0.000001 to 1000000 metres per unit of the file";
+    a->has_scene_scale = true;
+    return value_floats(value, 1, &a->scene_scale) && a->scene_scale >= 1e-6f &&
+           a->scene_scale <= 1e6f;
+}
+
 static bool set_no_scene_lights(struct arguments *a, const char *value, const char **why)
 {
     (void)value, (void)why;
@@ -605,6 +613,7 @@ static struct arguments defaults_of(const struct command *command)
                                .frames = compare ? 8 : 1,
                                .fov_deg = 60.0,
                                .spp = 64,
+                               .scene_scale = 1.0f,
                                .bounces = -1,
                                .obscurance_radius_m = 0.5f,
                                .max_flip = -1.0,

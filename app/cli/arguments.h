@@ -29,7 +29,8 @@ struct arguments {
     int word_count;
     // image
     const char *gi, *frame_options;
-    bool has_gi, follow_links;
+    bool has_gi, follow_links, has_scene_scale;
+    float scene_scale; // metres per unit of the scene's file
     int width, height, frames;
     const char *output; // NULL: from the scene's name
     const char *aov, *debug_view, *stats, *device;

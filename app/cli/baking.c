@@ -98,6 +98,9 @@ enum status baking_check_parts(const struct arguments *a, bool file)
     if (!a->output && (shard || (a->merge && file)))
         return wrong_usage("cannot use --%s: it requires -o FILE.safetensors",
                            a->merge ? "merge" : "shard");
+    if (a->merge && a->has_scene_scale)
+        return wrong_usage("cannot use --scene-scale with --merge: it is that of the parts; leave "
+                           "it out");
     if (shard && a->report)
         return wrong_usage("cannot use --report with --shard: the bake is complete after --merge");
     return DONE;

@@ -186,7 +186,8 @@ static enum status bake(const struct arguments *arguments)
     if (status == DONE) status = begin_export(job);
     if (status == DONE)
         status = session_load(&job->session,
-                              arguments->merge ? job->origin.scene_name : arguments->positional[0]);
+                              arguments->merge ? job->origin.scene_name : arguments->positional[0],
+                              arguments->merge ? job->origin.scene_scale : arguments->scene_scale);
     if (status == DONE) status = begin(job);
     if (status == DONE) status = bake_it(job);
     if (status == DONE) status = bake_export_write(&job->exported, &job->baking);

@@ -62,7 +62,7 @@ static enum status open_device(struct comparison *c)
 static enum status prepare(struct comparison *c)
 {
     const struct arguments *a = c->arguments;
-    enum status status = session_load(&c->session, a->positional[0]);
+    enum status status = session_load(&c->session, a->positional[0], a->scene_scale);
     if (status == DONE) status = session_light(&c->session);
     if (status == DONE) status = session_camera(&c->session, a->time_s, &c->camera);
     if (status == DONE) status = reference_begin(c);

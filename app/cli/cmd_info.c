@@ -4,6 +4,7 @@
 #include "session.h"
 #include "values.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -14,8 +15,11 @@ static const char *const light_types[] = {
 // Which technique's light map is counted.
 #define LIGHT_MAP_GI "radiosity"
 
+static const double SMALLEST_PLAUSIBLE_M = 0.02, LARGEST_PLAUSIBLE_M = 100.0;
+
 struct facts {
     const char *scene;
+    double likelier_scale; // 0: none; not looked for with --scene-scale
     struct ag_scene_info info;
     struct defaults defaults;
     struct ag_bake_estimate light_map; // of radiosity at its defaults; 0 texels: none
@@ -35,6 +39,21 @@ static void find_light_map(struct session *session, double time_s, struct ag_bak
     if (ag_bake_create(session->scene, LIGHT_MAP_GI, &desc, &bake) == AG_OK)
         ag_bake_estimate_cost(bake, false, out);
     ag_bake_destroy(bake);
+}
+
+// ---- size
+
+// The scale at which a scene has a plausible size, if it has none at 1: its unit may be the
+// centimetre or the millimetre, or such a file was scaled as if it were in metres. 0: none.
+static double likelier_scale(const struct ag_scene_info *info)
+{
+    double size = 0.0;
+    for (int k = 0; k < 3; k++)
+        size = fmax(size, (double)info->bounds_max[k] - (double)info->bounds_min[k]);
+    if (size > LARGEST_PLAUSIBLE_M) return size > 50.0 * LARGEST_PLAUSIBLE_M ? 0.001 : 0.01;
+    if (size > 0.0 && size < SMALLEST_PLAUSIBLE_M)
+        return size < 0.1 * SMALLEST_PLAUSIBLE_M ? 1000.0 : 100.0;
+    return 0.0;
 }
 
 // ---- JSON
@@ -145,19 +164,23 @@ static json_t *light_map_json(const struct ag_bake_estimate *map)
 static enum status info_json(struct session *session, const struct facts *facts)
 {
     const struct ag_scene_info *i = &facts->info;
-    return json_print(json_pack(
-        "{s:o, s:I, s:I, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:b, s:I, s:o, s:o, s:o, s:o, s:o, "
-        "s:o, s:o}",
-        "scene", json_text(facts->scene), "triangles", (json_int_t)i->triangles, "vertices",
-        (json_int_t)i->vertices, "meshes", i->meshes, "instances", i->instances, "images",
-        i->images, "skins", i->skins, "nodes", i->nodes, "bounds", bounds_json(i), "sky",
-        json_floats(i->sky, 3), "emissive", i->emissive, "memory_bytes",
-        (json_int_t)i->memory_bytes, "lights", list_of(session, i->lights, light_json), "cameras",
-        list_of(session, i->cameras, camera_json), "materials",
-        list_of(session, i->materials, material_json), "animations",
-        list_of(session, i->animations, animation_json), "defaults",
-        defaults_json(&facts->defaults), "light_map", light_map_json(&facts->light_map),
-        "environment", environment_json(facts)));
+    return json_print(
+        json_pack("{s:o, s:o, s:o, s:I, s:I, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:b, s:I, s:o, "
+                  "s:o, s:o, s:o, s:o, "
+                  "s:o, s:o}",
+                  "scene", json_text(facts->scene), "scene_scale",
+                  json_float(session->arguments->scene_scale), "likelier_scale",
+                  facts->likelier_scale > 0.0 ? json_real(facts->likelier_scale) : json_null(),
+                  "triangles", (json_int_t)i->triangles, "vertices", (json_int_t)i->vertices,
+                  "meshes", i->meshes, "instances", i->instances, "images", i->images, "skins",
+                  i->skins, "nodes", i->nodes, "bounds", bounds_json(i), "sky",
+                  json_floats(i->sky, 3), "emissive", i->emissive, "memory_bytes",
+                  (json_int_t)i->memory_bytes, "lights", list_of(session, i->lights, light_json),
+                  "cameras", list_of(session, i->cameras, camera_json), "materials",
+                  list_of(session, i->materials, material_json), "animations",
+                  list_of(session, i->animations, animation_json), "defaults",
+                  defaults_json(&facts->defaults), "light_map", light_map_json(&facts->light_map),
+                  "environment", environment_json(facts)));
 }
 
 // ---- text
@@ -167,20 +190,31 @@ static void print_vector(const char *before, const float v[3], const char *after
     printf("%s%.6g, %.6g, %.6g%s", before, (double)v[0], (double)v[1], (double)v[2], after);
 }
 
-static void print_counts(const struct ag_scene_info *i)
+static void print_size(const struct facts *facts)
 {
+    const struct ag_scene_info *i = &facts->info;
+    float size[3];
+    if (i->bounds_min[0] > i->bounds_max[0]) return;
+    for (int k = 0; k < 3; k++) size[k] = i->bounds_max[k] - i->bounds_min[k];
+    print_vector("bounds       ", i->bounds_min, " to ");
+    print_vector("", i->bounds_max, " m\n");
+    print_vector("size         ", size, " m\n");
+    const double scale = facts->likelier_scale;
+    if (!(scale > 0.0)) return;
+    printf("             implausible in metres; --scene-scale %g makes it", scale);
+    for (int k = 0; k < 3; k++) size[k] *= (float)scale;
+    print_vector(" ", size, " m\n");
+}
+
+static void print_counts(const struct facts *facts)
+{
+    const struct ag_scene_info *i = &facts->info;
     printf("triangles    %llu\nvertices     %llu\n", (unsigned long long)i->triangles,
            (unsigned long long)i->vertices);
     printf("meshes       %d\ninstances    %d\nmaterials    %d\nimages       %d\n", i->meshes,
            i->instances, i->materials, i->images);
     printf("skins        %d\nnodes        %d\n", i->skins, i->nodes);
-    if (i->bounds_min[0] <= i->bounds_max[0]) {
-        float size[3];
-        for (int k = 0; k < 3; k++) size[k] = i->bounds_max[k] - i->bounds_min[k];
-        print_vector("bounds       ", i->bounds_min, " to ");
-        print_vector("", i->bounds_max, " m\n");
-        print_vector("size         ", size, " m\n");
-    }
+    print_size(facts);
     printf("memory       %.1f MB\n", (double)i->memory_bytes * 1e-6);
     print_vector("sky          ", i->sky, " cd/m2\n");
     printf("emissive     %s\n", i->emissive ? "yes" : "no");
@@ -289,7 +323,7 @@ static void print_defaults(const struct defaults *d)
 static void info_text(struct session *session, const struct facts *facts)
 {
     printf("%s\n", printable(facts->scene).s);
-    print_counts(&facts->info);
+    print_counts(facts);
     print_light_map(&facts->light_map);
     print_environment(facts);
     print_lights(session, facts->info.lights);
@@ -320,7 +354,7 @@ static enum status info(const struct arguments *arguments)
     struct session session;
     struct facts facts = { .scene = arguments->positional[0] };
     enum status status = session_begin(&session, arguments);
-    if (status == DONE) status = session_load(&session, facts.scene);
+    if (status == DONE) status = session_load(&session, facts.scene, arguments->scene_scale);
     if (status == DONE) status = defaults_light(&session, &facts.defaults);
     if (status == DONE) status = defaults_camera(&session, arguments->time_s, &facts.defaults);
     if (status == DONE) {
@@ -328,6 +362,8 @@ static enum status info(const struct arguments *arguments)
             ag_scene_get_info(session.scene, session.animation, arguments->time_s, &facts.info);
         if (result != AG_OK) status = fail_library(session.context, result);
     }
+    if (status == DONE && !arguments->has_scene_scale)
+        facts.likelier_scale = likelier_scale(&facts.info);
     if (status == DONE) status = find_environment(&session, &facts);
     if (status == DONE) find_light_map(&session, arguments->time_s, &facts.light_map);
     if (status == DONE && arguments->json)
@@ -347,7 +383,8 @@ const struct command command_info = {
     .text = "Shows counts, size, lights, cameras, animations and materials of SCENE.\n"
             "The light map is that of radiosity at its defaults.\n"
             "If light or camera are missing, shows the options that render would use.\n"
-            "Lengths are in metres, suns in lux, other lights in candela.\n",
+            "Lengths are in metres, suns in lux, other lights in candela.\n"
+            "For a scene of an implausible size, shows the --scene-scale that may be right.\n",
     .examples = "  afterglow info house.glb\n"
                 "  afterglow info @cornell:light=point --json\n"
                 "  afterglow info fox.glb --animation Run --time 0.5\n",

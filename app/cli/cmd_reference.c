@@ -49,7 +49,7 @@ static enum status prepare(struct job *job)
 {
     const struct arguments *a = job->arguments;
     struct ag_camera camera;
-    enum status status = session_load(&job->session, a->positional[0]);
+    enum status status = session_load(&job->session, a->positional[0], a->scene_scale);
     if (status == DONE) status = session_light(&job->session);
     if (status == DONE) status = session_camera(&job->session, a->time_s, &camera);
     return status == DONE ? tracing_begin(&job->tracing, &job->session, &camera, a->spp) : status;
@@ -133,6 +133,7 @@ static json_t *result_json(const struct job *job, const struct ag_reference_info
     const struct arguments *a = job->arguments;
     json_t *document = json_object();
     if (!document) return NULL;
+    json_object_set_new(document, "scene_scale", json_float(a->scene_scale));
     json_object_set_new(document, "scene", json_text(a->positional[0]));
     json_object_set_new(document, "camera", json_text(job->session.camera_name));
     json_object_set_new(document, "size", json_pack("[i,i]", a->width, a->height));

@@ -122,7 +122,7 @@ static enum status prepare(struct job *job)
 {
     const struct arguments *a = job->arguments;
     struct ag_context *context = job->session.context;
-    enum status status = session_load(&job->session, a->positional[0]);
+    enum status status = session_load(&job->session, a->positional[0], a->scene_scale);
     if (status == DONE) status = session_light(&job->session);
     struct ag_camera camera; // unused: fails early if there is no such camera
     if (status == DONE) status = session_camera(&job->session, a->time_s, &camera);
@@ -204,6 +204,7 @@ static json_t *result_json(struct job *job, const char *path)
     json_t *document =
         statistics_json(&job->statistics, &job->session, job->device, job->renderer, &job->bakes);
     if (!document) return NULL;
+    json_object_set_new(document, "scene_scale", json_float(job->arguments->scene_scale));
     json_object_set_new(document, "scene", json_text(job->arguments->positional[0]));
     json_object_set_new(document, "camera", json_text(job->session.camera_name));
     json_object_set_new(document, "exposure_ev", json_float(job->exposure_ev));

@@ -248,7 +248,8 @@ static enum status prepare(struct job *job)
         status = is_part(a) ? whole_file_check(a->output)
                             : folder_plan(&job->folder, a->lightmap, MARK, is_ours);
     if (status == DONE)
-        status = session_load(&job->session, a->merge ? job->origin.scene_name : a->positional[0]);
+        status = session_load(&job->session, a->merge ? job->origin.scene_name : a->positional[0],
+                              a->merge ? job->origin.scene_scale : a->scene_scale);
     if (status == DONE) status = check_scene(job);
     return status == DONE ? session_light(&job->session) : status;
 }

@@ -291,9 +291,10 @@ static enum ag_result write_exr_layers(struct session *session, struct ag_render
     float ev = 0.0f;
     enum ag_result result = ag_renderer_exposure(renderer, &ev);
     if (result != AG_OK) return result;
-    char exposure[32], seed[32], version[32];
+    char exposure[32], seed[32], version[32], scale[32];
     int v = ag_version();
     snprintf(exposure, sizeof exposure, "%.9g", (double)ev);
+    snprintf(scale, sizeof scale, "%.9g", (double)a->scene_scale);
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)a->seed);
     snprintf(version, sizeof version, "%d.%d.%d", v / 10000, v / 100 % 100, v % 100);
     const struct ag_attribute attributes[] = {
@@ -303,6 +304,7 @@ static enum ag_result write_exr_layers(struct session *session, struct ag_render
         { "afterglow.exposure_ev", exposure },
         { "afterglow.seed", seed },
         { "afterglow.version", version },
+        { "afterglow.scene_scale", scale },
     };
     interrupt_hold();
     result = ag_image_write_exr(session->context, path, layers, count, attributes,

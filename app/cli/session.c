@@ -103,9 +103,10 @@ static void remember_still_scene(struct session *session)
                  a->time_s != 0.0 ? "--time" : "--time-step", session->name);
 }
 
-enum status session_load(struct session *session, const char *name)
+enum status session_load(struct session *session, const char *name, float scale)
 {
-    enum ag_result result = ag_scene_load(session->context, name, &session->scene);
+    const struct ag_scene_load_desc desc = { .scale = scale };
+    enum ag_result result = ag_scene_load_with(session->context, name, &desc, &session->scene);
     if (result != AG_OK) return fail_library(session->context, result);
     session->name = name;
     remember_still_scene(session);

@@ -34,8 +34,8 @@ struct defaults {
 };
 
 enum status session_begin(struct session *session, const struct arguments *arguments);
-// Loads the scene and finds the animation.
-enum status session_load(struct session *session, const char *name);
+// Loads the scene and finds the animation. scale: metres per unit of its file.
+enum status session_load(struct session *session, const char *name, float scale);
 void session_end(struct session *session); // accepts zero
 
 // Values are rounded to six digits, so that printed options give identical results.

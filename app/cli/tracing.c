@@ -152,6 +152,9 @@ static void find_origin(const struct tracing *t, struct origin *out)
 {
     const struct arguments *a = t->session->arguments;
     const char *only = a->direct_only ? "--direct-only" : a->indirect_only ? "--indirect-only" : "";
+    char scale[32] = "";
+    if (a->scene_scale != 1.0f)
+        snprintf(scale, sizeof scale, " scene-scale=%.9g", (double)a->scene_scale);
     int i = 0;
     snprintf(out->text[i++], LIGHT_SIZE, "%s", a->positional[0]);
     snprintf(out->text[i++], LIGHT_SIZE, "%s", t->session->camera_name);
@@ -162,9 +165,9 @@ static void find_origin(const struct tracing *t, struct origin *out)
     snprintf(out->text[i++], LIGHT_SIZE, "%.9g %d", a->time_s, t->session->animation);
     snprintf(out->text[i++], LIGHT_SIZE, "%s",
              t->session->light[0] ? t->session->light : "that of the scene");
-    snprintf(out->text[i++], LIGHT_SIZE, "%s guiding=%d antialias=%d radius=%.6g decay=%.6g%s",
+    snprintf(out->text[i++], LIGHT_SIZE, "%s guiding=%d antialias=%d radius=%.6g decay=%.6g%s%s",
              only, !a->no_guiding, a->antialias, (double)a->obscurance_radius_m,
-             (double)a->occlusion_decay_per_m, a->obscurance_sphere ? " sphere" : "");
+             (double)a->occlusion_decay_per_m, a->obscurance_sphere ? " sphere" : "", scale);
 }
 
 bool tracing_differences(const struct tracing *t, const char *path, char out[SPEC_SIZE])

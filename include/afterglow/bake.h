@@ -107,10 +107,11 @@ AG_API enum ag_result ag_bake_save_partial(struct ag_bake *bake, const char *pat
 AG_API enum ag_result ag_bake_merge(struct ag_bake *bake, const char *path);
 struct ag_bake_origin {
     char gi[4096];         ///< GI spec
-    char scene_name[4096]; ///< as given to ag_scene_load
+    char scene_name[4096]; ///< as given to ag_scene_load_with
     uint64_t seed;
     /// Paths per texel of a light map; 0: it is not one. Its merge needs the light of the parts.
     int lightmap_samples;
+    float scene_scale;    ///< ag_scene_load_desc.scale
     uint64_t reserved[3]; ///< 0; see ABI in types.h
 };
 /// What such a file is a part of, for ag_bake_create.

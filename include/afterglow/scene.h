@@ -13,6 +13,18 @@ struct ag_scene;
 /// Untrusted input. Skips unsupported features with one warning each.
 AG_API enum ag_result ag_scene_load(struct ag_context *context, const char *name,
                                     struct ag_scene **out);
+/// How a scene is loaded. Zero is the default of all members: there is no
+/// ag_scene_load_desc_default.
+struct ag_scene_load_desc {
+    /// Metres per unit of length of the file, 1e-6…1e6; 0: 1. Multiplies all lengths: of geometry,
+    /// skins, animations, cameras, and positions and ranges of lights. Candela, lux and cd/m² stay.
+    float scale;
+    uint64_t reserved[8]; ///< 0; see ABI in types.h
+};
+/// ag_scene_load; desc may be NULL.
+AG_API enum ag_result ag_scene_load_with(struct ag_context *context, const char *name,
+                                         const struct ag_scene_load_desc *desc,
+                                         struct ag_scene **out);
 /// A scene file in memory. Zero is the default of all members but `bytes` and `size`: there is no
 /// ag_scene_memory_desc_default.
 struct ag_scene_memory_desc {
@@ -28,7 +40,8 @@ struct ag_scene_memory_desc {
     /// Called on the calling thread, once for each file; not for OBJ materials.
     bool (*read)(void *user, const char *path, const void **bytes, size_t *size);
     void *user;           ///< passed to `read`
-    uint64_t reserved[8]; ///< 0; see ABI in types.h
+    float scale;          ///< as in ag_scene_load_desc
+    uint64_t reserved[7]; ///< 0; see ABI in types.h
 };
 /// ag_scene_load of a file in memory, with the same limits. Untrusted input. A buffer that cannot
 /// be found is AG_ERROR_FILE, an image that cannot be found is a warning.

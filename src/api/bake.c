@@ -147,7 +147,8 @@ static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *
     const struct bake_identity identity = { .seed = desc->seed,
                                             .program = api_program(),
                                             .gi = text,
-                                            .scene_name = b->scene->scene->name };
+                                            .scene_name = b->scene->scene->name,
+                                            .scene_scale = b->scene->scene->scale };
     if (text && b->lightmap_samples > 0)
         b->bake = create_lightmap(b, identity);
     else if (text)
@@ -340,6 +341,7 @@ static bool take_origin(struct host *host, const char *path, const struct bake_o
     snprintf(out->gi, sizeof out->gi, "%s", origin->gi);
     snprintf(out->scene_name, sizeof out->scene_name, "%s", origin->scene_name);
     out->seed = origin->seed;
+    out->scene_scale = origin->scene_scale;
     return true;
 }
 

@@ -6,6 +6,7 @@
 #include "scene/environment_map.h"
 #include "scene/import/import.h"
 #include "scene/limits.h"
+#include "scene/rescale.h"
 
 #include <string.h>
 
@@ -98,12 +99,33 @@ static enum ag_result give(struct ag_context *context, struct scene *made, struc
     return api_done(context, true);
 }
 
-enum ag_result ag_scene_load(struct ag_context *context, const char *name, struct ag_scene **out)
+static enum ag_result require_scale(const char *function, struct ag_context *context, float scale)
 {
+    AG_REQUIRE_FOR(function, context,
+                   scale == 0.0f || (scale >= SCENE_SCALE_MIN && scale <= SCENE_SCALE_MAX),
+                   "scale %g is not within %g to %g", (double)scale, (double)SCENE_SCALE_MIN,
+                   (double)SCENE_SCALE_MAX);
+    return AG_OK;
+}
+
+enum ag_result ag_scene_load_with(struct ag_context *context, const char *name,
+                                  const struct ag_scene_load_desc *desc, struct ag_scene **out)
+{
+    static const struct ag_scene_load_desc defaults;
     AG_REQUIRE_OUT(context, out);
     AG_REQUIRE_POINTER(context, context);
     AG_REQUIRE(context, name && name[0], "name is empty");
-    return give(context, scene_load(&context->host, name), out);
+    if (!desc) desc = &defaults;
+    AG_REQUIRE_KNOWN(__func__, context, desc);
+    enum ag_result result = require_scale(__func__, context, desc->scale);
+    if (result != AG_OK) return result;
+    const float scale = desc->scale > 0.0f ? desc->scale : 1.0f;
+    return give(context, scene_load_scaled(&context->host, name, scale), out);
+}
+
+enum ag_result ag_scene_load(struct ag_context *context, const char *name, struct ag_scene **out)
+{
+    return ag_scene_load_with(context, name, NULL, out);
 }
 
 enum ag_result ag_scene_load_memory(struct ag_context *context,
@@ -116,12 +138,15 @@ enum ag_result ag_scene_load_memory(struct ag_context *context,
     AG_REQUIRE(context, desc->bytes && desc->size > 0, "there are no bytes");
     AG_REQUIRE(context, !desc->folder || !desc->read, "both folder and read are given");
     AG_REQUIRE(context, !desc->folder || desc->folder[0], "folder is empty");
+    enum ag_result result = require_scale(__func__, context, desc->scale);
+    if (result != AG_OK) return result;
     const struct import_bytes from = { .data = desc->bytes,
                                        .size = desc->size,
                                        .name = desc->name ? desc->name : "memory",
                                        .folder = desc->folder,
                                        .read = desc->read,
-                                       .user = desc->user };
+                                       .user = desc->user,
+                                       .scale = desc->scale };
     return give(context, import_memory(&context->host, &from), out);
 }
 

@@ -16,7 +16,8 @@ struct bake_identity {
     const char *program; // its version, for files only
     // GI spec and scene, so that partial files can be merged without them; may be NULL.
     const char *gi, *scene_name;
-    bool of_light; // the scene's hash includes its light, for messages
+    float scene_scale; // metres per unit of its file; 0: 1
+    bool of_light;     // the scene's hash includes its light, for messages
 };
 
 // An empty plan; `bake` owns it. Copies the identity. NULL: out of memory.
@@ -80,6 +81,7 @@ const char *bake_split_stage(const struct bake *bake);
 // What a partial file is a part of: new texts owned by the caller, and its seed.
 struct bake_origin {
     char *technique, *options, *gi, *scene_name;
+    float scene_scale;
     uint64_t seed;
 };
 void bake_origin_finish(struct host *host, struct bake_origin *origin);

@@ -12,7 +12,8 @@ static const char KIND[] = "afterglow.kind", TECHNIQUE[] = "afterglow.technique"
                   SCENE[] = "afterglow.scene", SEED[] = "afterglow.seed",
                   PROGRAM[] = "afterglow.program", SECONDS[] = "afterglow.seconds",
                   STAGE_SECONDS[] = "afterglow.stage_seconds", CONTENT[] = "afterglow.content",
-                  GI[] = "afterglow.gi", SCENE_NAME[] = "afterglow.scene_name";
+                  GI[] = "afterglow.gi", SCENE_NAME[] = "afterglow.scene_name",
+                  SCENE_SCALE[] = "afterglow.scene_scale";
 static const char BAKE[] = "bake", PARTIAL[] = "partial", ANY_SCENE[] = "any";
 
 // ---- metadata
@@ -40,6 +41,10 @@ void identity_print(const struct bake *bake, const char *kind, double seconds,
     put(out, PROGRAM, id->program);
     if (strcmp(kind, PARTIAL) == 0 && id->gi) put(out, GI, id->gi);
     if (strcmp(kind, PARTIAL) == 0 && id->scene_name) put(out, SCENE_NAME, id->scene_name);
+    if (strcmp(kind, PARTIAL) == 0 && id->scene_scale > 0.0f && id->scene_scale != 1.0f) {
+        snprintf(out->scale, sizeof out->scale, "%.9g", (double)id->scene_scale);
+        put(out, SCENE_SCALE, out->scale);
+    }
     if (isnan(seconds)) return;
     snprintf(out->seconds, sizeof out->seconds, "%.3f", seconds);
     put(out, SECONDS, out->seconds);
@@ -268,6 +273,14 @@ bool bake_file_technique(struct host *host, const char *path, char *out, size_t 
     return name || fail_use(host, path, "it is not a bake of this program");
 }
 
+// 1 in a file without the entry, 0 for a wrong one.
+static float scale_of(const struct tensors *set)
+{
+    const char *text = tensors_metadata(set, SCENE_SCALE);
+    const float scale = text ? strtof(text, NULL) : 1.0f;
+    return isfinite(scale) && scale > 0.0f ? scale : 0.0f;
+}
+
 static bool take_origin(struct host *host, const char *path, const struct tensors *set,
                         struct bake_origin *out)
 {
@@ -281,6 +294,8 @@ static bool take_origin(struct host *host, const char *path, const struct tensor
     out->gi = host_strdup(host, gi);
     out->scene_name = host_strdup(host, name);
     out->seed = strtoull(seed, NULL, 10);
+    out->scene_scale = scale_of(set);
+    if (!(out->scene_scale > 0.0f)) return fail_use(host, path, "its scale of the scene is wrong");
     return out->technique && out->options && out->gi && out->scene_name;
 }
 

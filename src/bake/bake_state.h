@@ -132,9 +132,9 @@ bool partial_read(struct host *host, struct bake *bake, const char *path);
 
 // ---- bake_file.c: identity in metadata
 
-enum { BAKE_MAX_METADATA = 12, BAKE_TEXT = 64 };
+enum { BAKE_MAX_METADATA = 16, BAKE_TEXT = 64 };
 struct identity_text {
-    char version[BAKE_TEXT], seed[BAKE_TEXT], seconds[BAKE_TEXT];
+    char version[BAKE_TEXT], seed[BAKE_TEXT], seconds[BAKE_TEXT], scale[BAKE_TEXT];
     char scene[HASH128_TEXT], content[HASH128_TEXT];
     struct tensor_metadata metadata[BAKE_MAX_METADATA];
     size_t count;

@@ -17,6 +17,7 @@ struct scene *scene_create(struct host *host, const char *name)
     scene->host = host;
     arena_init(&scene->arena, host);
     scene->free_node = -1;
+    scene->scale = 1.0f;
     scene->name = arena_strdup(&scene->arena, name_or_empty(name));
     scene->warned_of_unwraps = arena_alloc(&scene->arena, 1, sizeof *scene->warned_of_unwraps);
     if (!scene->name || !scene->warned_of_unwraps) goto fail;

@@ -208,7 +208,8 @@ struct scene {
     int animation_count;
     struct environment environment;
     uint64_t file_environment; // environment_map_use_key of the environment that the file has
-    uint64_t content_hash;     // of the file's bytes or of the built-in's name
+    uint64_t content_hash; // of the file's bytes or of the built-in's name, and of another scale
+    float scale;           // metres per unit of length of the file (rescale.h)
     // A warning has said that unwraps are broken: light maps are planned several times. Shared with
     // copies of this struct.
     atomic_bool *warned_of_unwraps;
@@ -217,6 +218,8 @@ struct scene {
 // Loads a file (glTF 2.0, .glb; OBJ, PLY, FBX, X) or a built-in, "@name" or "@name:key=value,…".
 // Files are untrusted. NULL on failure. One warning lists the features that are ignored.
 struct scene *scene_load(struct host *host, const char *name);
+// The same, with another scale than 1 (rescale.h).
+struct scene *scene_load_scaled(struct host *host, const char *name, float scale);
 // An empty scene, for scene_add_*.
 struct scene *scene_create(struct host *host, const char *name);
 void scene_destroy(struct scene *scene);

@@ -279,7 +279,7 @@ TEST(wrong_bytes_in_memory_are_refused)
     desc.folder = "";
     assert_int_equal(ag_scene_load_memory(context, &desc, &scene), AG_ERROR_ARGUMENT);
     desc = gltf_with(NULL);
-    desc.reserved[7] = 1;
+    desc.reserved[6] = 1;
     assert_int_equal(ag_scene_load_memory(context, &desc, &scene), AG_ERROR_ARGUMENT);
     CHECK(strstr(ag_context_last_error(context), "newer library"));
     desc = (struct ag_scene_memory_desc){ .bytes = OBJ, .size = sizeof OBJ - 1 };

@@ -77,6 +77,23 @@ TEST(bake_gives_the_same_file_for_threads_shards_and_from_the_cache)
     CHECK(files_are_equal(one, copied));
 }
 
+TEST(bakes_of_scales_are_not_mixed_and_their_parts_know_them)
+{
+    const char *folder = use_cache("bake-scale");
+    const char *one = path_of("scaled.safetensors"), *joined = path_of("scaled-joined.safetensors"),
+               *a = path_of("scaled-a.safetensors"), *b = path_of("scaled-b.safetensors");
+    run_expect(0, "bake @cornell --gi sample", NULL);
+    run_expect(0, "bake @cornell --gi sample --scene-scale 2", NULL);
+    assert_int_equal(count_files(folder), 2);
+    run_expect(0, "bake @cornell --gi sample --scene-scale 2 -o", one, NULL);
+    run_expect(0, "bake @cornell --gi sample --scene-scale 2 --shard 0/2 -o", a, NULL);
+    run_expect(0, "bake @cornell --gi sample --scene-scale 2 --shard 1/2 -o", b, NULL);
+    run_expect(0, "bake --merge", a, b, "-o", joined, NULL);
+    CHECK(files_are_equal(one, joined));
+    const struct run *r = run_expect(2, "bake --merge --scene-scale 2", a, b, "-o", joined, NULL);
+    CHECK(strstr(r->err, "--scene-scale with --merge"));
+}
+
 TEST(bake_report_has_stages_times_and_bytes)
 {
     use_cache("bake-report");

@@ -133,7 +133,8 @@ TEST(the_report_has_the_documented_fields_and_files)
     CHECK(file_exists(in(folder, "sheet.png")));
     json_t *report = report_of(folder);
     check_keys(report, "scene camera size exposure_ev reference methods device driver frames "
-                       "direct command version date light light_is_default camera_is_default");
+                       "scene_scale direct command version date light light_is_default "
+                       "camera_is_default");
     check_keys(json_object_get(report, "direct"), "relmse flip mae images");
     check_images(folder, json_object_get(json_object_get(report, "direct"), "images"), 24, 18);
     const char *command = json_string_value(json_object_get(report, "command"));

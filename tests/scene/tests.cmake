@@ -1,6 +1,7 @@
 include(${CMAKE_CURRENT_LIST_DIR}/tests_import.cmake OPTIONAL)
 ag_test(scene/scene USES scene)
 ag_test(scene/pose USES scene)
+ag_test(scene/rescale USES scene)
 ag_test(scene/mesh_parts USES scene)
 ag_test(scene/charts USES scene)
 ag_test(scene/builtin USES scene)

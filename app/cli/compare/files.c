@@ -77,9 +77,10 @@ static enum status write_map(struct comparison *c, const struct ag_image *a,
 
 static enum status write_method_exr(struct comparison *c, const struct method *m)
 {
-    char path[PATH_SIZE], exposure[32], version[32];
+    char path[PATH_SIZE], exposure[32], version[32], scale[32];
     int v = ag_version();
     snprintf(exposure, sizeof exposure, "%.9g", (double)c->exposure_ev);
+    snprintf(scale, sizeof scale, "%.9g", (double)c->arguments->scene_scale);
     snprintf(version, sizeof version, "%d.%d.%d", v / 10000, v / 100 % 100, v % 100);
     const struct ag_image_layer layers[] = { { "color", m->color },
                                              { "indirect", m->indirect },
@@ -90,11 +91,12 @@ static enum status write_method_exr(struct comparison *c, const struct method *m
         { "afterglow.gi", m->spelled },
         { "afterglow.exposure_ev", exposure },
         { "afterglow.version", version },
+        { "afterglow.scene_scale", scale },
     };
     enum status status = path_of(c, m->stem, ".exr", path);
     if (status != DONE) return status;
     interrupt_hold();
-    enum ag_result result = ag_image_write_exr(c->session.context, path, layers, 3, attributes, 5);
+    enum ag_result result = ag_image_write_exr(c->session.context, path, layers, 3, attributes, 6);
     interrupt_release();
     return result == AG_OK ? DONE : fail_library(c->session.context, result);
 }

@@ -181,6 +181,7 @@ json_t *report_json(const struct comparison *c)
                   reference_json(&c->reference), "methods", methods_json(c), "device",
                   json_text(device.name), "driver", json_text(device.driver), "frames", a->frames);
     if (!report) return NULL;
+    json_object_set_new(report, "scene_scale", json_float(a->scene_scale));
     if (c->direct_error_image) json_object_set_new(report, "direct", direct_json(c));
     add_origin(report, c);
     return report;

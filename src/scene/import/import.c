@@ -16,6 +16,7 @@
 #include "scene/import/importers.h"
 
 #include "scene/limits.h"
+#include "scene/rescale.h"
 
 #include "core/hash.h"
 
@@ -47,13 +48,14 @@ static bool dispatch(struct import *import, const char *format, const struct fil
 
 // Fills a new scene. `import` has host, path, and where other files come from.
 static struct scene *import_scene(struct import *import, const char *format,
-                                  const struct file_bytes *bytes)
+                                  const struct file_bytes *bytes, float scale)
 {
     import->source_bytes = bytes->size;
     import->scene = scene_create(import->host, import->path);
     if (!import->scene) return NULL;
     import->scene->content_hash = hash_bytes(bytes->data, bytes->size, 0);
-    if (dispatch(import, format, bytes) && limits_scene(import->scene)) {
+    if (dispatch(import, format, bytes) && scene_rescale(import->scene, scale) &&
+        limits_scene(import->scene)) {
         import_log_notes(import);
         return import->scene;
     }
@@ -61,14 +63,14 @@ static struct scene *import_scene(struct import *import, const char *format,
     return NULL;
 }
 
-struct scene *import_file(struct host *host, const char *path)
+struct scene *import_file(struct host *host, const char *path, float scale)
 {
     struct import import = { .host = host, .path = path };
     struct file_bytes bytes = { 0 };
     char format[16];
     if (!file_read(host, path, MAX_FILE_BYTES, &bytes)) return NULL;
     file_extension(path, format);
-    struct scene *scene = import_scene(&import, format, &bytes);
+    struct scene *scene = import_scene(&import, format, &bytes, scale);
     file_bytes_finish(host, &bytes);
     return scene;
 }
@@ -123,7 +125,7 @@ struct scene *import_memory(struct host *host, const struct import_bytes *from)
     char *path = path_in_memory(host, from, &bytes, format);
     if (path) {
         struct import import = { .host = host, .path = path, .memory = from };
-        scene = import_scene(&import, format, &bytes);
+        scene = import_scene(&import, format, &bytes, from->scale > 0.0f ? from->scale : 1.0f);
     }
     file_bytes_finish(host, &bytes);
     host_free(host, path);

@@ -5,8 +5,8 @@
 
 #include "scene/scene.h"
 
-// See scene_load; `path` is a file path.
-struct scene *import_file(struct host *host, const char *path);
+// See scene_load_scaled; `path` is a file path.
+struct scene *import_file(struct host *host, const char *path, float scale);
 
 // A scene file in memory, and the files that it refers to. The bytes are needed during the call.
 struct import_bytes {
@@ -18,5 +18,6 @@ struct import_bytes {
     // `folder` is used. The bytes stay until import_memory returns.
     bool (*read)(void *user, const char *path, const void **bytes, size_t *size);
     void *user;
+    float scale; // rescale.h; 0: 1
 };
 struct scene *import_memory(struct host *host, const struct import_bytes *from);
