@@ -204,7 +204,8 @@ AG_API const char *ag_scene_camera_name(const struct ag_scene *scene,
 AG_API enum ag_result ag_scene_camera(struct ag_scene *scene, const char *name, int animation,
                                       double time_s, struct ag_camera *out);
 /// The first camera of the scene, or a generated one if there is none: outside an object, inside a
-/// scene that encloses its centre. Sets *made_up (may be NULL) to true for a generated camera.
+/// scene that encloses its centre, in front of its open side if there is only one. Sets *made_up
+/// (may be NULL) to true for a generated camera.
 AG_API enum ag_result ag_scene_default_camera(struct ag_scene *scene, int animation, double time_s,
                                               struct ag_camera *out, bool *made_up);
 

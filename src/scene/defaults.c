@@ -1,9 +1,9 @@
 // Default camera and sun.
 //
 // Rays from points around the scene's centre classify it: an interior (geometry surrounds most of
-// the points) gets a camera inside, an object a camera in front of it. Lengths are relative to the
-// bounds, because files may use other units than metres. Without memory for the rays the scene
-// counts as an object.
+// the points) gets a camera inside, or in front of its only open side; an object a camera in front
+// of it. Lengths are relative to the bounds, because files may use other units than metres. Without
+// memory for the rays the scene counts as an object.
 #include "scene/defaults.h"
 
 #include "scene/direct_light.h"
@@ -349,6 +349,50 @@ static bool inside_camera(struct survey *survey)
     return true;
 }
 
+// ---- Interiors with an open side, such as the Cornell box: seen from a corner they are walls in
+// close-up, seen through the open side they are seen whole.
+
+enum { OPENING_ACROSS = 8, OPENING_RAYS = OPENING_ACROSS * OPENING_ACROSS };
+
+// Whether rays from outside pass the first tenth of the bounds through this side: nine of ten,
+// since a frame or furniture may reach it. axis: 0 or 2; towards the positive or the negative end.
+static bool is_open_side(const struct survey *survey, int axis, bool positive)
+{
+    const float depth = box3_size(survey->pose->bounds).raw[axis];
+    vec3s inwards = vec3_of(0, 0, 0);
+    inwards.raw[axis] = positive ? -1.0f : 1.0f;
+    int passed = 0;
+    for (int i = 0; i < OPENING_RAYS; i++) {
+        float across = ((float)(i % OPENING_ACROSS) + 0.5f) / OPENING_ACROSS;
+        float y = ((float)(i / OPENING_ACROSS) + 0.5f) / OPENING_ACROSS;
+        float at = positive ? 1.0f : 0.0f;
+        vec3s start = axis == 0 ? point_in_bounds(survey, at, y, across)
+                                : point_in_bounds(survey, across, y, at);
+        start.raw[axis] -= 0.1f * depth * inwards.raw[axis];
+        passed += !raycast_blocked(&survey->raycast, start, inwards, 0.2f * depth);
+    }
+    return 10 * passed >= 9 * OPENING_RAYS;
+}
+
+// A level view of the whole interior through its only open side, if that shows most of its middle.
+static bool stage_camera(struct survey *survey)
+{
+    vec3s towards = vec3_of(0, 0, 0);
+    int open = 0;
+    for (int side = 0; side < 4; side++) {
+        const int axis = side & 2;
+        const bool positive = side & 1;
+        if (!is_open_side(survey, axis, positive)) continue;
+        open++;
+        towards.raw[axis] = positive ? 1.0f : -1.0f;
+    }
+    if (open != 1) return false;
+    const struct world_camera camera = outside_camera(survey->pose, towards);
+    if (interior_visibility(survey, camera.eye) < 0.5f) return false;
+    survey->camera = camera;
+    return true;
+}
+
 static void survey_scene(struct survey *survey, const struct scene_pose *pose)
 {
     *survey = (struct survey){ .pose = pose, .diagonal = bounds_diagonal(pose) };
@@ -357,7 +401,7 @@ static void survey_scene(struct survey *survey, const struct scene_pose *pose)
     survey->has_rays = raycast_init(&survey->raycast, pose->scene->host, pose);
     if (!survey->has_rays) return;
     direct_light_init(&survey->direct, pose, &survey->raycast, 1e-4f * survey->diagonal);
-    survey->inside = is_interior(survey) && inside_camera(survey);
+    survey->inside = is_interior(survey) && (stage_camera(survey) || inside_camera(survey));
     if (!survey->inside && survey->direct.count > 0) survey->camera = lit_outside_camera(survey);
 }
 

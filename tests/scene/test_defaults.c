@@ -135,6 +135,49 @@ TEST(the_camera_of_an_object_is_outside_and_sees_all_of_it)
     }
 }
 
+// Walls of a room of 4 × 4 × 4, of which some are missing: bits 1 to 8 are -x, +x, -z, +z.
+static int stage_part(const void *user, int i, int j, int k)
+{
+    const int missing = *(const int *)user;
+    if (j != 1) return 1;
+    if (i == 0) return !(missing & 1);
+    if (i == 2) return !(missing & 2);
+    if (k == 0) return !(missing & 4);
+    return k == 2 && !(missing & 8);
+}
+
+static struct world_camera camera_of_stage(int missing, struct box3 *bounds)
+{
+    struct shape_fixture fixture;
+    float x[4] = { -2.1f, -2, 2, 2.1f }, y[4] = { -0.1f, 0, 4, 4.1f };
+    struct shape_grid grid = { x, y, x, 3, 3, 3, stage_part, &missing };
+    begin(&fixture);
+    shape_blocks(&fixture.builder, &grid, 1);
+    end(&fixture);
+    struct world_camera camera = default_camera(&fixture.pose);
+    *bounds = fixture.pose.bounds;
+    finish(&fixture);
+    return camera;
+}
+
+TEST(a_room_with_one_open_side_is_seen_whole_through_it)
+{
+    for (int side = 0; side < 4; side++) {
+        struct box3 bounds;
+        float fill;
+        struct world_camera camera = camera_of_stage(1 << side, &bounds);
+        CHECK(frames(&camera, bounds, 1, &fill) && fill > 0.9f);
+        CHECK_NEAR(camera.forward.raw[side & 2], side & 1 ? -1 : 1, 1e-5);
+    }
+}
+
+TEST(a_passage_with_two_open_ends_is_seen_from_inside)
+{
+    struct box3 bounds;
+    struct world_camera camera = camera_of_stage(1 | 2, &bounds);
+    CHECK(fabsf(camera.eye.x) < 2 && fabsf(camera.eye.z) < 2);
+}
+
 TEST(an_empty_scene_has_a_camera)
 {
     struct scene *scene = scene_create(test_host(), "empty");
