@@ -79,11 +79,13 @@ bool baking_load(struct baking *b)
     char cached[PATH_SIZE];
     ag_bake_get_info(b->bake, &info);
     if (load_from(b, b->path)) {
+        b->from_cache = b->in_cache;
         if (b->in_cache) cache_touch(b->path);
         return true;
     }
     if (b->in_cache || !cache_file(CACHE_BAKE, info.key, cached, NULL) || !load_from(b, cached))
         return false;
+    b->from_cache = true;
     cache_touch(cached);
     return true;
 }

@@ -15,6 +15,7 @@ struct baking {
     bool must_keep;                // fail where the cache has no room for it
     char no_cache[CACHE_WHY_SIZE]; // why the path is ""
     bool loaded;                   // from a file, not run
+    bool from_cache;               // that file is in the cache
     double estimate_seconds;       // of the whole run, before it; NaN: nothing was estimated
 };
 // Creates the bake of one technique of the spec. path NULL: a file in the cache. desc: see

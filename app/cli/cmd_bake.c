@@ -90,14 +90,24 @@ static bool may_load(const struct arguments *a)
     return !a->force && !a->report_full && !a->merge && a->shard_count == 0;
 }
 
+// A bake of the cache is copied to -o, without a run.
+static enum status use_baked(struct job *job)
+{
+    struct baking *b = &job->baking;
+    const char *output = job->arguments->output;
+    const bool copied = b->from_cache && output;
+    const enum status status = output ? baking_run(b, false) : DONE;
+    if (status != DONE) return status;
+    note(copied ? "%s is already baked, in the cache; written: %s (--force bakes again)"
+                : "%s is already baked: %s (--force bakes again)",
+         b->technique, b->path);
+    return DONE;
+}
+
 static enum status bake_it(struct job *job)
 {
     const struct arguments *a = job->arguments;
-    if (may_load(a) && baking_load(&job->baking)) {
-        note("%s is already baked: %s (--force bakes again)", job->baking.technique,
-             job->baking.path);
-        return a->output ? baking_run(&job->baking, false) : DONE; // writes the file
-    }
+    if (may_load(a) && baking_load(&job->baking)) return use_baked(job);
     const enum status status = a->merge ? baking_merge(&job->baking) : DONE;
     return status == DONE ? baking_run(&job->baking, a->shard_count > 0) : status;
 }
@@ -212,6 +222,7 @@ const struct command command_bake = {
         "Says first what it needs: rays, time, memory, bytes on disk. Runs on all cores.\n"
         "Ctrl-C keeps what is finished; the same command continues with it.\n"
         "Neither threads, parts nor interruptions change the file.\n"
+        "With --report, writes the seconds, memory and bytes that each stage took, as JSON.\n"
         "\n"
         "With --lightmap, writes a light map for other engines instead: see docs/lightmaps.md.\n"
         "With --export, writes the transfer maps of ort as images too: see\n"

@@ -237,6 +237,8 @@ const struct command command_diff = {
     .examples = "  afterglow diff lpv.exr reference.exr\n"
                 "  afterglow diff lpv.exr reference.exr --layer indirect --json\n"
                 "  afterglow diff before.png after.png --map error.png --metric flip\n"
-                "  afterglow diff lpv.exr reference.exr --mask depth --ignore-nan\n",
+                "  afterglow reference house.glb --aov color,depth -o reference.exr\n"
+                "  afterglow diff lpv.exr reference.exr --mask depth\n"
+                "      only pixels with a surface: B needs the layer, see --aov of reference\n",
     .run = diff,
 };

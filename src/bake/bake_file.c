@@ -131,6 +131,17 @@ static bool fail_value(struct host *host, const char *path, const char *what,
                      value ? value : "not stated", wanted);
 }
 
+static bool fail_options(struct host *host, const char *path, const struct tensors *set,
+                         const char *wanted)
+{
+    char differences[600];
+    const char *value = tensors_metadata(set, OPTIONS);
+    if (!value) return fail_use(host, path, "it does not state its options");
+    option_differences(value, wanted, differences, sizeof differences);
+    return host_fail(host, FAIL_FORMAT, "cannot use %s: it has other options: %s", path,
+                     differences);
+}
+
 bool identity_check(struct host *host, const struct bake *bake, const char *kind, const char *path,
                     const struct tensors *set)
 {
@@ -144,7 +155,7 @@ bool identity_check(struct host *host, const struct bake *bake, const char *kind
     if (differs(set, VERSION, text.version))
         return fail_value(host, path, "bake version", set, VERSION, text.version);
     if (differs(set, OPTIONS, bake->identity.options))
-        return fail_value(host, path, "list of options", set, OPTIONS, bake->identity.options);
+        return fail_options(host, path, set, bake->identity.options);
     if (differs(set, SCENE, text.scene))
         return fail_use(host, path,
                         bake->identity.of_light ? "it is of another scene or of other light"

@@ -136,6 +136,16 @@ static bool read_header(struct reader *r, json_t *header, struct tensors *out)
     return true;
 }
 
+// Text begins with bytes that would be a length of a header of petabytes.
+static bool fail_not_safetensors(const struct reader *r, const struct file_bytes *file)
+{
+    const char *text = (const char *)file->data;
+    const size_t blanks = strspn(text, " \t\r\n");
+    if (text[blanks] == '{' || text[blanks] == '[')
+        return fail_file(r, "it is JSON text, not a safetensors file");
+    return fail_file(r, "it is not a safetensors file: its header would be larger than 16 MiB");
+}
+
 // Splits the file into header and data. *header is NULL on failure.
 static bool parse_file(struct reader *r, const struct file_bytes *file, json_t **header)
 {
@@ -144,7 +154,7 @@ static bool parse_file(struct reader *r, const struct file_bytes *file, json_t *
     *header = NULL;
     if (file->size < LENGTH_BYTES) return fail_file(r, "it is shorter than its header");
     memcpy(&length, file->data, sizeof length);
-    if (length > SAFETENSORS_MAX_HEADER) return fail_file(r, "its header is larger than 16 MiB");
+    if (length > SAFETENSORS_MAX_HEADER) return fail_not_safetensors(r, file);
     if (length > file->size - LENGTH_BYTES) return fail_file(r, "it is shorter than its header");
     if (length % DATA_ALIGNMENT != 0)
         return fail_file(r, "the length of its header is not a multiple of 8");

@@ -299,7 +299,7 @@ static void list_text(const struct gpu_device_info *infos, uint32_t count, char 
     size_t used = 0;
     out[0] = 0;
     for (uint32_t i = 0; i < count && used < size; i++) {
-        used += (size_t)snprintf(out + used, size - used, "%s%u %s%s%s%s", i ? "; " : "", i,
+        used += (size_t)snprintf(out + used, size - used, "%s%u \"%s\"%s%s%s", i ? ", " : "", i,
                                  infos[i].name, infos[i].usable ? "" : " (lacks ", infos[i].missing,
                                  infos[i].usable ? "" : ")");
     }
@@ -319,7 +319,8 @@ VkPhysicalDevice device_choose(struct host *host, VkInstance instance, const cha
         host_fail(host, FAIL_UNSUPPORTED, "gpu device: there is no Vulkan device; %s",
                   GPU_DRIVER_HINT);
     } else if (chosen < 0 && wanted) {
-        host_fail(host, FAIL_ARGUMENT, "gpu device \"%s\": there are %s", wanted, list);
+        host_fail(host, FAIL_ARGUMENT, "cannot find gpu device %s: the devices are %s", wanted,
+                  list);
     } else if (chosen < 0) {
         host_fail(host, FAIL_UNSUPPORTED, "gpu device: none has all that is needed: %s", list);
     } else if (!infos[chosen].usable) {

@@ -58,17 +58,37 @@ static bool fail_unknown(struct host *host, const char *name, const struct techn
     return host_fail(host, FAIL_ARGUMENT, "unknown technique %s: known are %s", name, list);
 }
 
-// "lpv,steps=8": the first option follows a colon.
-static bool fail_comma(struct host *host, char *term, const struct technique *const *known)
+static const struct technique *find_known(const char *name, size_t length,
+                                          const struct technique *const *known)
 {
-    char *comma = strchr(term, ',');
-    *comma = 0;
     for (size_t i = 0; known[i]; i++)
-        if (strcmp(known[i]->name, term) == 0)
-            return host_fail(host, FAIL_ARGUMENT, "unknown technique %s,%s: did you mean %s:%s?",
-                             term, comma + 1, term, comma + 1);
-    *comma = ',';
-    return fail_unknown(host, term, known);
+        if (strlen(known[i]->name) == length && memcmp(known[i]->name, name, length) == 0)
+            return known[i];
+    return NULL;
+}
+
+// "lpv,steps=8": the first option follows a colon. "lpv,vo": a plus joins techniques. options: what
+// follows the term's colon, NULL: it has none.
+static bool fail_comma(struct host *host, char *term, const char *options,
+                       const struct technique *const *known)
+{
+    char *comma = strchr(term, ','), *rest = comma + 1;
+    if (!find_known(term, (size_t)(comma - term), known)) return fail_unknown(host, term, known);
+    *comma = 0;
+    const char joint = find_known(rest, strcspn(rest, ","), known) ? '+' : ':';
+    return host_fail(host, FAIL_ARGUMENT, "unknown technique %s,%s: did you mean %s%c%s%s%s?", term,
+                     rest, term, joint, rest, options ? ":" : "", options ? options : "");
+}
+
+// "lpv:steps=8,vo": an option that is the name of a technique. False after a failure.
+static bool check_options(struct host *host, const char *name, const char *options,
+                          const struct technique *const *known)
+{
+    for (const char *comma = options; (comma = strchr(comma, ',')); comma++)
+        if (find_known(comma + 1, strcspn(comma + 1, ":,"), known))
+            return host_fail(host, FAIL_ARGUMENT, "unknown option %s:%s: did you mean %s:%.*s+%s?",
+                             name, comma + 1, name, (int)(comma - options), options, comma + 1);
+    return true;
 }
 
 // Inserts the technique in the order of roles. The spec takes ownership of `options`.
@@ -111,10 +131,10 @@ static bool parse_term(struct gi_spec *spec, char *term, const struct technique 
         return host_fail(
             spec->host, FAIL_ARGUMENT,
             "cannot read the GI spec: a technique's name is missing (source+delta+visibility)");
-    for (size_t i = 0; known[i]; i++)
-        if (strcmp(known[i]->name, term) == 0)
-            return add_technique(spec, known[i], colon ? colon + 1 : "");
-    return strchr(term, ',') ? fail_comma(spec->host, term, known)
+    const struct technique *technique = find_known(term, strlen(term), known);
+    if (technique && colon && !check_options(spec->host, term, colon + 1, known)) return false;
+    if (technique) return add_technique(spec, technique, colon ? colon + 1 : "");
+    return strchr(term, ',') ? fail_comma(spec->host, term, colon ? colon + 1 : NULL, known)
                              : fail_unknown(spec->host, term, known);
 }
 

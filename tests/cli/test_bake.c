@@ -72,7 +72,10 @@ TEST(bake_gives_the_same_file_for_threads_shards_and_from_the_cache)
     run_expect(0, "bake @cornell --gi sample --shard 1/2 -o", b, NULL);
     run_expect(0, "bake --merge", b, a, "-o", joined, NULL);
     run_expect(0, "bake @cornell --gi sample", NULL);
-    run_expect(0, "bake @cornell --gi sample -o", copied, NULL);
+    const struct run *r = run_expect(0, "bake @cornell --gi sample -o", copied, NULL);
+    CHECK(strstr(r->err, "already baked, in the cache; written: ") && strstr(r->err, copied));
+    r = run_expect(0, "bake @cornell --gi sample -o", copied, NULL);
+    CHECK(strstr(r->err, "sample is already baked: ") && !strstr(r->err, "written"));
     CHECK(files_are_equal(one, many) && files_are_equal(one, joined));
     CHECK(files_are_equal(one, copied));
 }
@@ -169,7 +172,7 @@ TEST(bake_refuses_parts_of_another_bake_and_complete_files)
     run_expect(0, "bake @cornell --gi sample:rows=9 --shard 1/2 -o", b, NULL);
     run_expect(0, "bake @cornell --gi sample -o", whole, NULL);
     const struct run *r = run_expect(1, "bake --merge", a, b, "-o", out, NULL);
-    CHECK(strstr(r->err, "its list of options is rows=9") && !file_exists(out));
+    CHECK(strstr(r->err, "other options: rows is 9, not 8") && !file_exists(out));
     r = run_expect(1, "bake --merge", a, whole, "-o", out, NULL);
     CHECK(strstr(r->err, "its kind is bake, not partial") && !file_exists(out));
 }
@@ -293,6 +296,23 @@ static void check_refused_bake(const char *words, const char *bake, const char *
 }
 
 // Before the scene is loaded: there is none of that name.
+TEST(render_with_a_file_that_is_no_bake_says_what_it_is)
+{
+    char image[300];
+    const char *json = path_of("no-bake.json"), *text = path_of("no-bake.txt");
+    static const char members[] = "\n{\"blocks\": []}", words[] = "0123456789";
+    use_cache("render-no-bake");
+    snprintf(image, sizeof image, "%s", path_of("no-bake.png"));
+    write_file(json, members, sizeof members - 1);
+    write_file(text, words, sizeof words - 1);
+    const struct run *r =
+        run_expect(1, "render @cornell --gi sample --size 16x16 -o", image, "--bake", json, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "it is JSON text, not a safetensors file"));
+    r = run_expect(1, "render @cornell --gi sample --size 16x16 -o", image, "--bake", text, NULL);
+    CHECK(strstr(r->err, "it is not a safetensors file"));
+}
+
 TEST(bake_file_that_no_technique_of_the_run_uses_is_refused)
 {
     use_cache("bake-unused");

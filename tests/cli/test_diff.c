@@ -135,6 +135,21 @@ TEST(both_images_have_the_same_exposure)
     json_decref(dark);
 }
 
+// As the help of diff shows it: half of this view is sky.
+TEST(a_reference_with_depth_masks_the_sky)
+{
+    char reference[300];
+    snprintf(reference, sizeof reference, "%s", test_path("masked-reference.exr"));
+    run_expect(0, "reference @diagonal --spp 1 --size 32x32 --aov color,depth -o", reference, NULL);
+    json_t *masked =
+        run_json(run_expect(0, "diff --json --mask depth", reference, reference, NULL));
+    CHECK(metric(masked, "pixels") > 0 && metric(masked, "pixels") < 32 * 32);
+    json_decref(masked);
+    const char *help = run_expect(0, "diff --help", NULL)->out;
+    CHECK(strstr(help, "afterglow reference house.glb --aov color,depth -o reference.exr\n"
+                       "  afterglow diff lpv.exr reference.exr --mask depth\n"));
+}
+
 TEST(a_mask_and_ignored_pixels_are_excluded)
 {
     char a[300], b[300];

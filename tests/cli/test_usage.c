@@ -49,6 +49,9 @@ TEST(wrong_commands_and_arguments_are_wrong_usage)
         { "list lpv vct", "vct" },
         { "help rendr", "did you mean render?" },
         { "render @cornell --gi lpv,steps=8", "did you mean lpv:steps=8?" },
+        { "render @cornell --gi lpv,vo", "did you mean lpv+vo?" },
+        { "render @cornell --gi lpv,vo:lines=4", "did you mean lpv+vo:lines=4?" },
+        { "render @cornell --gi lpv:steps=8,vo", "did you mean lpv:steps=8+vo?" },
         { "diff a.png", "B" },
         { "diff a.png b.exr", "b.exr" },
         { "diff a.jpg b.png", "a.jpg" },
@@ -334,6 +337,16 @@ TEST(the_help_of_an_option_fits_two_lines)
     json_array_foreach(json_object_get(list, "techniques"), i, owner) check_option_help(owner);
     json_array_foreach(json_object_get(list, "scenes"), i, owner) check_option_help(owner);
     json_decref(list);
+}
+
+// --report writes figures of an existing bake too; --report-full makes it again.
+TEST(the_help_of_bake_explains_its_reports)
+{
+    const char *help = run_expect(0, "bake --help", NULL)->out;
+    const char *report = strstr(help, "  --report FILE.json"),
+               *full = strstr(help, "--report-full ");
+    CHECK(strstr(help, "With --report, writes the seconds, memory and bytes"));
+    CHECK(report && full && strstr(report, "bakes again even if a file exists") > full);
 }
 
 TEST(help_has_examples)
