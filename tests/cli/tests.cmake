@@ -26,6 +26,7 @@ add_library(ag_test_report STATIC ${CMAKE_CURRENT_LIST_DIR}/report_sample.c ${CM
 target_link_libraries(ag_test_report PUBLIC ag_test_program ag_image afterglow_commands PRIVATE afterglow_flags)
 ag_test(cli/report_page LIBRARIES ag_test_report)
 ag_test(cli/waiting LIBRARIES ag_test_report)
+ag_test(cli/terminal LIBRARIES ag_test_report)
 ag_test(cli/report_page_browser LIBRARIES ag_test_report)
 set_tests_properties(cli.report_page_browser PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: no Chromium")
 

@@ -1,14 +1,14 @@
 // Standard error. Its state is static, since there is one terminal; the lock of stderr guards it
 // against the thread of waiting.c.
 #include "messages.h"
+#include "bar.h"
 
 #include <stdio.h>
 #include <stdarg.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
-enum { LINE_SIZE = 2048, BAR_WIDTH = 30, SHARE_TOTAL = -1 };
+enum { LINE_SIZE = 2048, SHARE_TOTAL = -1 };
 static const double BAR_AFTER_S = 0.3;   // shorter work shows none
 static const double LINE_EVERY_S = 10.0; // where there is no terminal
 
@@ -130,12 +130,9 @@ static double now_s(void)
 
 static void draw_bar(const char *what, double share, const char *count, double left_s)
 {
-    const int filled = (int)(BAR_WIDTH * share);
-    char bar[BAR_WIDTH + 1];
-    memset(bar, '.', BAR_WIDTH);
-    memset(bar, '#', (size_t)filled);
-    bar[BAR_WIDTH] = 0;
-    fprintf(stderr, "\r\033[K%s [%s] %s, %.0f s left", what, bar, count, left_s);
+    char text[LINE_SIZE];
+    bar_print(bar_columns(), what, share, count, left_s, text, sizeof text);
+    fprintf(stderr, "\r\033[K%s", text);
     fflush(stderr);
     state.bar_shown = true;
 }
@@ -165,7 +162,7 @@ void progress(const char *what, int done, int total)
     const double left = done > 0 ? passed / done * (total - done) : 0.0;
     char count[32];
     snprintf(count, sizeof count, "%d/%d", done, total);
-    if (isatty(STDERR_FILENO)) {
+    if (bar_is_possible()) {
         if (passed > BAR_AFTER_S && done < total) draw_bar(what, (double)done / total, count, left);
     } else if (done > 0 && done < total && line_is_due()) {
         note("%s: %d of %d, %.0f s left", what, done, total, left);
@@ -178,7 +175,7 @@ void progress_share(const char *what, double share, double left_s)
     const double passed = passed_s(SHARE_TOTAL);
     char count[32];
     snprintf(count, sizeof count, "%.0f %%", 100.0 * share);
-    if (isatty(STDERR_FILENO)) {
+    if (bar_is_possible()) {
         if (passed > BAR_AFTER_S) draw_bar(what, share, count, left_s);
     } else if (line_is_due()) {
         note("%s: %s, %.0f s left", what, count, left_s);
