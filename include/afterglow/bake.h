@@ -89,7 +89,7 @@ ag_bake_run(struct ag_bake *bake,
             bool (*progress)(void *user, const struct ag_bake_progress *progress), void *user);
 
 /// Writes the file of a complete bake and removes its checkpoint. record_seconds: add
-/// ag_bake_info.seconds to the file, which differ from run to run.
+/// ag_bake_info.seconds to the file, which differ from run to run, and the name of the scene.
 AG_API enum ag_result ag_bake_save(struct ag_bake *bake, const char *path, bool record_seconds);
 /// Writes the data of a complete bake for other programs into an existing folder: of ort,
 /// index.json and the images that it names (docs/techniques/ort.md). Files of the same names are

@@ -93,9 +93,10 @@ bool bake_partial_origin(struct host *host, const char *path, struct bake_origin
 const struct tensors *bake_tensors(const struct bake *bake);
 // With the BAKE_REPORTED ones after a run, for bake_report.
 const struct tensors *bake_reported(const struct bake *bake);
-// Writes the file, which has the same bytes for the same identity. record_seconds: add
-// afterglow.seconds and those of the stages to its metadata, which differ from run to run.
-bool bake_save(struct bake *bake, const char *path, bool record_seconds);
+// Writes the file, which has the same bytes for the same identity. record_run: add
+// afterglow.seconds and those of the stages to its metadata, which differ from run to run, and the
+// scene's name, which differs from caller to caller.
+bool bake_save(struct bake *bake, const char *path, bool record_run);
 // Reads a file of this identity; otherwise FAIL_FORMAT and one sentence with the difference.
 bool bake_load(struct bake *bake, const char *path);
 

@@ -23,6 +23,14 @@ static void put(struct identity_text *text, const char *key, const char *value)
     text->metadata[text->count++] = (struct tensor_metadata){ key, value };
 }
 
+static void put_scene(struct identity_text *text, const struct bake_identity *id)
+{
+    if (id->scene_name) put(text, SCENE_NAME, id->scene_name);
+    if (!(id->scene_scale > 0.0f) || id->scene_scale == 1.0f) return;
+    snprintf(text->scale, sizeof text->scale, "%.9g", (double)id->scene_scale);
+    put(text, SCENE_SCALE, text->scale);
+}
+
 void identity_print(const struct bake *bake, const char *kind, double seconds,
                     struct identity_text *out)
 {
@@ -40,11 +48,7 @@ void identity_print(const struct bake *bake, const char *kind, double seconds,
     put(out, SEED, out->seed);
     put(out, PROGRAM, id->program);
     if (strcmp(kind, PARTIAL) == 0 && id->gi) put(out, GI, id->gi);
-    if (strcmp(kind, PARTIAL) == 0 && id->scene_name) put(out, SCENE_NAME, id->scene_name);
-    if (strcmp(kind, PARTIAL) == 0 && id->scene_scale > 0.0f && id->scene_scale != 1.0f) {
-        snprintf(out->scale, sizeof out->scale, "%.9g", (double)id->scene_scale);
-        put(out, SCENE_SCALE, out->scale);
-    }
+    if (strcmp(kind, PARTIAL) == 0) put_scene(out, id);
     if (isnan(seconds)) return;
     snprintf(out->seconds, sizeof out->seconds, "%.3f", seconds);
     put(out, SECONDS, out->seconds);
@@ -221,15 +225,16 @@ static bool put_seconds(struct bake *bake, struct identity_text *text)
     return stages != NULL;
 }
 
-bool bake_save(struct bake *bake, const char *path, bool record_seconds)
+bool bake_save(struct bake *bake, const char *path, bool record_run)
 {
     struct identity_text text;
     const struct tensors *tensors = bake_tensors(bake);
     if (!tensors)
         return host_fail(bake->host, FAIL_ARGUMENT,
                          "cannot write %s: the bake is incomplete; run it first", path);
-    identity_print(bake, BAKE, record_seconds ? bake->seconds : (double)NAN, &text);
-    if (record_seconds && !put_seconds(bake, &text)) return false;
+    identity_print(bake, BAKE, record_run ? bake->seconds : (double)NAN, &text);
+    if (record_run) put_scene(&text, &bake->identity);
+    if (record_run && !put_seconds(bake, &text)) return false;
     const size_t count = bake->file.memory ? tensors->count : bake->saved_count;
     if (!identity_write(bake->host, path, &text, tensors->at, count)) return false;
     if (bake->checkpoint) remove(bake->checkpoint);

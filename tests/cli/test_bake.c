@@ -383,6 +383,58 @@ static void write_old_bake(const char *folder, const char *name, time_t used, of
     CHECK(utime(path, &(struct utimbuf){ used, used }) == 0);
 }
 
+static json_t *cached_file(const json_t *list, size_t index)
+{
+    return json_array_get(json_object_get(list, "files"), index);
+}
+
+static void set_age(const json_t *list, size_t index, long seconds)
+{
+    const char *path = json_string_value(json_object_get(cached_file(list, index), "path"));
+    const struct utimbuf times = { time(NULL) - seconds, time(NULL) - seconds };
+    CHECK(path && utime(path, &times) == 0);
+}
+
+TEST(cache_shows_scene_technique_options_size_and_age)
+{
+    const char *folder = use_cache("cache-words");
+    char damaged[700];
+    run_expect(0, "bake @cornell --gi sample:rows=9 --quiet", NULL);
+    run_expect(0, "bake @cornell --gi sample --scene-scale 0.5 --quiet", NULL);
+    json_t *list = run_json(run_expect(0, "cache --json", NULL));
+    const json_t *nine = cached_file(list, 0);
+    CHECK_STRING(json_string_value(json_object_get(nine, "scene")), "@cornell");
+    CHECK_STRING(json_string_value(json_object_get(nine, "technique")), "sample");
+    CHECK(strstr(json_string_value(json_object_get(nine, "options")), "rows=9"));
+    set_age(list, 0, 3 * 3600 + 5);
+    set_age(list, 1, 2 * 86400 + 5);
+    const struct run *r = run_expect(0, "cache", NULL);
+    CHECK(strstr(r->out, "3 h  @cornell                  sample:rows=9\n"));
+    CHECK(strstr(r->out, "2 days  @cornell --scene-scale 0.5  sample\n"));
+    CHECK(!strstr(r->out, ".safetensors"));
+    CHECK(strstr(run_expect(0, "cache --verbose", NULL)->out, ".safetensors\n"));
+    json_decref(list);
+    // A file that states nothing is listed too.
+    snprintf(damaged, sizeof damaged, "%s/0123456789abcdef0123456789abcdef.safetensors", folder);
+    write_file(damaged, "{\"a\": 1}    ", 12);
+    CHECK(strstr(run_expect(0, "cache", NULL)->out, "now  ?"));
+    list = run_json(run_expect(0, "cache --json", NULL));
+    CHECK(json_is_null(json_object_get(cached_file(list, 2), "scene")));
+    json_decref(list);
+}
+
+TEST(cache_shows_the_view_of_a_reference)
+{
+    require_device();
+    use_cache("cache-view");
+    run_expect(0,
+               "compare @cornell:light=point --size 16x16 --spp 1 --frames 1 --gi none "
+               "--bounces 2 --scene-scale 2 -o",
+               path_of("view-compare"), NULL);
+    CHECK(strstr(run_expect(0, "cache", NULL)->out,
+                 "@cornell:light=point --scene-scale 2  16x16, main, 2 bounces\n"));
+}
+
 TEST(cache_over_its_limit_loses_the_least_recently_used_files)
 {
     const char *folder = use_cache("cache-limit");
