@@ -17,9 +17,10 @@ endforeach()
 if(TARGET afterglow)
   install(TARGETS afterglow)
   install(FILES ${PROJECT_BINARY_DIR}/manual/afterglow.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-  install(FILES ${PROJECT_BINARY_DIR}/manual/afterglow
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-  install(FILES ${PROJECT_BINARY_DIR}/manual/_afterglow DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  install(FILES app/completions/afterglow.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+    RENAME afterglow)
+  install(FILES app/completions/_afterglow DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  install(FILES app/completions/afterglow.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
 
 # Two exports, since only users of the static library need the third-party libraries.

@@ -1,5 +1,6 @@
 // afterglow: finds and runs the command. Exit status: 0 success, 1 failure, 2 wrong usage.
 #include "commands.h"
+#include "complete.h"
 #include "cli/files/interrupt.h"
 
 #include <afterglow/catalogue.h>
@@ -75,6 +76,10 @@ static enum status run(int count, char **words)
     if (strcmp(words[1], "--version") == 0 || strcmp(words[1], "-V") == 0) {
         int version = ag_version();
         printf("afterglow %d.%d.%d\n", version / 10000, version / 100 % 100, version % 100);
+        return DONE;
+    }
+    if (strcmp(words[1], "__complete") == 0) { // called by app/completions
+        complete(count - 2, words + 2);
         return DONE;
     }
     const struct command *command = command_find(words[1]);

@@ -1,5 +1,5 @@
 // The manual page: what --help and `afterglow list` print, for man.
-#include "texts.h"
+#include "manual_page.h"
 
 #include "cli/commands.h"
 #include "cli/option_text.h"

@@ -2,7 +2,7 @@
 add_library(ag_test_program STATIC ${CMAKE_CURRENT_LIST_DIR}/program.c)
 target_compile_definitions(ag_test_program PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
 target_link_libraries(ag_test_program PUBLIC ag_test_framework PkgConfig::JANSSON PRIVATE afterglow_flags)
-foreach(name usage info environment diff reference render compare interrupt hostile lightmap lightmap_lights export unwrap scale)
+foreach(name usage info environment diff reference render compare interrupt hostile lightmap lightmap_lights export unwrap scale complete)
   ag_test(cli/${name} USES image LIBRARIES ag_test_program)
   target_compile_definitions(test_cli_${name} PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
   add_dependencies(test_cli_${name} afterglow)
@@ -30,9 +30,14 @@ ag_test(cli/terminal LIBRARIES ag_test_report)
 ag_test(cli/report_page_browser LIBRARIES ag_test_report)
 set_tests_properties(cli.report_page_browser PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: no Chromium")
 
-# The manual page and the completions, against what the program prints.
+# The manual page, against what the program prints, and completion in each shell.
 add_test(NAME cli.manual COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/manual.sh ${CMAKE_BINARY_DIR}/manual $<TARGET_FILE:afterglow>)
 set_tests_properties(cli.manual PROPERTIES TIMEOUT 60 LABELS cli)
+foreach(shell bash zsh fish)
+  add_test(NAME cli.complete_${shell} COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/completions.sh
+    ${shell} ${CMAKE_SOURCE_DIR}/app/completions $<TARGET_FILE:afterglow>)
+  set_tests_properties(cli.complete_${shell} PROPERTIES TIMEOUT 300 LABELS cli SKIP_RETURN_CODE 77)
+endforeach()
 
 # The examples, as their readers would run them.
 set(images ${CMAKE_BINARY_DIR}/tests)

@@ -1,7 +1,7 @@
 // References state their scene and view in attributes (tracing.c), bakes in the metadata of their
 // safetensors header (docs/cli.md).
-#include "describe.h"
-#include "cli/option_text.h"
+#include "cache_content.h"
+#include "option_text.h"
 
 #include <afterglow/image.h>
 

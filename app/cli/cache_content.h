@@ -1,7 +1,7 @@
 // What a cached file is of, from its own header.
 #pragma once
 
-#include "cache.h"
+#include "cli/cache/cache.h"
 
 #include <afterglow/context.h>
 

@@ -1,0 +1,29 @@
+// The words of one value, from the tables of techniques, scenes and layers.
+#pragma once
+
+#include <stdbool.h>
+
+// Words are printed behind the first characters of this text, "--gi=" of "--gi=lpv"; the others are
+// typed.
+void candidates_behind(const char *text, int length);
+
+struct candidate_word {
+    const char *kept; // what is typed and stays
+    int kept_length;
+    const char *typed; // what the name begins with
+};
+// Prints kept + name + suffix, with the first line of `help`, if it begins with kept + typed.
+void candidate(const struct candidate_word *word, const char *name, const char *suffix,
+               const char *help);
+
+// "lpv:steps=4,filter=…+vo": a GI spec.
+void candidates_gi(const char *typed);
+// "@maze:blocks=3,…": a built-in scene.
+void candidates_scene(const char *typed);
+// Techniques and "@scene", for `list`.
+void candidates_names(const char *typed);
+// "shadow_size=2048,…"
+void candidates_frame_options(const char *typed);
+// "color,depth,…": names that the list does not have yet.
+void candidates_layers(const char *typed, const char *(*layer_name)(int index));
+void candidates_debug_views(const char *typed);

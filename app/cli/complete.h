@@ -1,0 +1,8 @@
+// What a shell offers at a tab.
+#pragma once
+
+// Prints the words that may stand in place of the last of `words`, one a line, each with a tab and
+// a description: words after the program's name and before the cursor, the last one as far as it is
+// typed, at least "". A last line ":files" says that files are offered too. The scripts in
+// app/completions call it.
+void complete(int count, char *const *words);
