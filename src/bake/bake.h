@@ -7,7 +7,7 @@
 
 struct bake;
 
-// What a bake is. A file of another identity is refused; the seed may differ.
+// The identity of a bake. A file of another identity is refused; the seed may differ.
 struct bake_identity {
     const char *technique;
     int version;
@@ -78,7 +78,7 @@ bool bake_merge(struct bake *bake, const char *path);
 // not worth splitting.
 const char *bake_split_stage(const struct bake *bake);
 
-// What a partial file is a part of: new texts owned by the caller, and its seed.
+// The bake that a partial file is a part of: new texts owned by the caller, and the seed.
 struct bake_origin {
     char *technique, *options, *gi, *scene_name;
     float scene_scale;

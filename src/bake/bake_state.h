@@ -106,7 +106,7 @@ struct prediction {
 // Measures the speed of linear algebra, some milliseconds.
 double prediction_flop_seconds(struct host *host);
 struct prediction prediction_now(const struct bake *bake, double per_flop_s);
-// Wall time of the missing tasks of this run, on so many threads.
+// Wall time of the missing tasks of this run on `threads` threads.
 double prediction_left(const struct bake *bake, const struct prediction *prediction,
                        const struct bake_run_options *options, int threads);
 // ---- split.c: shards
@@ -119,7 +119,7 @@ size_t run_tasks(const struct bake *bake, const struct bake_stage *stage,
 
 // ---- partial.c: finished tasks in a file
 
-// What of a stage was finished at some moment, copied under the mutex.
+// The finished tasks of a stage at some moment, copied under the mutex.
 struct finished_tasks {
     bool *done; // [task_count]
     double seconds;

@@ -1,4 +1,4 @@
-// What a bake will need: rays, bytes, memory, and time by a probe run.
+// The estimate of a bake: rays, bytes, memory, and time by a probe run.
 #include "bake/bake_state.h"
 
 #include "core/parallel.h"

@@ -1,9 +1,9 @@
-// What a technique bakes, as a list of stages: included by X_bake.c. README.md beside this file has
-// an example.
+// The plan of a bake, a list of stages: included by X_bake.c. README.md beside this file has an
+// example.
 //
 // A stage is a number of independent tasks and the tensors that they fill. Stages are in waves 0,
 // 1, …: tasks of a wave run in any order, on any thread or machine, and read only the inputs of the
-// bake and the tensors of earlier waves. So tasks of wave 0 can be spread over shards.
+// bake and the tensors of earlier waves. Tasks of wave 0 can therefore be spread over shards.
 #pragma once
 
 #include "bake/tensors.h"
@@ -57,9 +57,9 @@ struct bake_stage {
     const void *argument; // for run
     const struct bake_output *outputs;
     int output_count; // at most BAKE_MAX_OUTPUTS
-    // Of one task, for estimates of time and memory. flops: floating-point operations of dense
-    // linear algebra. others: work that is neither, in rays that take as long. scratch_bytes:
-    // memory beyond the outputs.
+    // Costs of one task, for estimates. flops: floating-point operations of dense linear algebra.
+    // others: work that is neither, in rays that take as long. scratch_bytes: memory beyond the
+    // outputs.
     double rays, flops, others, texels;
     size_t scratch_bytes;
 };
@@ -96,8 +96,8 @@ struct bake_job {
     void *job;
     bool (*prepare)(void *job, struct host *host);
     void (*finish)(void *job);
-    // What planning and preparing leave for a next run: called once, when the plan ends; may be
-    // NULL.
+    // Frees the memory that planning and preparing keep between runs: called once, when the plan
+    // ends; may be NULL.
     void (*destroy)(void *job);
     size_t bytes; // of memory that `prepare` takes, for the estimate
 };

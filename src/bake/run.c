@@ -331,8 +331,8 @@ static bool is_queued(const struct bake_run *run, const struct planned_stage *st
     return false;
 }
 
-// About so many rays are traced to find out how long they take. Tasks of few rays have other work,
-// of which one must be enough.
+// Rays traced to measure their time, approximately. Tasks of few rays have other work; one task
+// must be enough to measure that.
 static const double PROBE_RAYS = 1e6, FEW_RAYS = 1e4;
 
 // Tasks over all of the stage: rays of its first part may be the shortest.

@@ -32,7 +32,7 @@ const char *tensor_type_name(enum tensor_type type); // as in a file: "F32"
 size_t tensor_type_bytes(enum tensor_type type);
 // Product of the shape times the element's size; false on overflow.
 bool tensor_extent(enum tensor_type type, int rank, const uint64_t *shape, size_t *out);
-// Of F32 and F16: no NaN and no infinity. Other types are finite.
+// F32 and F16: has no NaN and no infinity. Other types are always finite.
 bool tensor_is_finite(const struct tensor *tensor);
 
 // NULL: none.

@@ -28,9 +28,8 @@
 // [roughness][n·v]; A in the lower 16 bits, B in the upper ones, as fractions of 65535.
 extern const uint32_t ggx_albedo_table[GGX_ALBEDO_SIZE * GGX_ALBEDO_SIZE];
 
-// What a lookup needs, as a texel of an image of GGX_ALBEDO_SIZE² texels for shaders: the nodes i
-// and i + 1 of n·v, of roughness j and j + 1. i, j: 0…GGX_ALBEDO_SIZE − 1; beyond the last node, it
-// again.
+// Texel (i, j) of an image of GGX_ALBEDO_SIZE² texels for shaders. One fetch has all nodes of a
+// bilinear lookup: i and i + 1 of n·v, j and j + 1 of roughness, clamped to the last node.
 struct ggx_albedo_texel {
     uint32_t nodes[4];
 };

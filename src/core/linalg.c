@@ -297,7 +297,7 @@ static void fix_signs(struct linalg_svd *svd)
     }
 }
 
-// What gesdd writes: m, n and k are those of the row-major matrix.
+// Outputs and scratch memory of gesdd: m, n and k are those of the row-major matrix.
 struct svd_work {
     struct aligned a, u, vt, work;
     lapack_int *integers; // 8k

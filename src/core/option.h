@@ -42,7 +42,7 @@ enum option_type {
     OPTION_TYPE_text,
 };
 
-// What a running technique must do when the option changes, in ascending order.
+// The effect of a changed option on a running technique, in ascending order.
 enum option_effect { LIVE, INVALIDATE, RESIZE, RECREATE, REBAKE };
 // Beside an effect, as in LIVE | EXPERT: the option was measured without gain, compares with a
 // paper or tunes a method's inside; lists show it on demand.

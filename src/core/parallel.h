@@ -12,5 +12,5 @@ void parallel_for_on(int threads, size_t count, size_t grain, void (*body)(void 
                      void *user);
 // The number of threads of parallel_for.
 int parallel_threads(void);
-// Loops of the calling thread use at most so many from now on.
+// From now on, loops of the calling thread use at most `threads` threads.
 void parallel_limit(int threads);

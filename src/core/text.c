@@ -20,7 +20,7 @@ size_t text_utf8_length(const char *text)
     return wrong ? 0 : length;
 }
 
-// Of a valid character of one to three bytes; 0 for four, none of which is a control.
+// The code point of a valid character of one to three bytes; 0 for four, as no control has four.
 static uint32_t code_point(const char *text, size_t length)
 {
     const unsigned char *s = (const unsigned char *)text;

@@ -8,7 +8,7 @@
 size_t text_utf8_length(const char *text);
 
 // Copies `text` to `out` of `size` bytes, truncated between characters, with a terminating zero.
-// What could command a terminal or reorder the line is escaped: C0 and C1 controls, line and
-// paragraph separators and bidirectional controls as \uXXXX, bytes that are not UTF-8 as \xXX.
+// Escapes characters that could control a terminal or reorder the line: C0 and C1 controls, line
+// and paragraph separators and bidirectional controls as \uXXXX, bytes that are not UTF-8 as \xXX.
 // Returns the length written. out NULL: the length that the whole text needs; size is unused.
 size_t text_escape(const char *text, char *out, size_t size);

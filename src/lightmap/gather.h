@@ -1,5 +1,5 @@
-// Irradiance of light-map texels by the path tracer. A texel is sampled at points that are spread
-// over the part of its square that the surface covers, without those that are inside of something.
+// Irradiance of light-map texels by the path tracer. Sample points are spread over the part of a
+// texel's square that the surface covers; points inside geometry are left out.
 #pragma once
 
 #include "scene/charts/charts.h"
@@ -24,7 +24,7 @@ struct gather_point {
 };
 struct gather_points {
     struct gather_point at[GATHER_POINTS]; // in random order
-    int count;                             // 0: all are inside of something
+    int count;                             // 0: all are inside geometry
     uint32_t pixel;                        // of random numbers: the front in charts->texels
     bool back;
 };
@@ -41,8 +41,8 @@ struct surface gather_surface(const struct gather_scene *scene, const struct gat
 
 // ---- gather.c. Lux, along the interpolated vertex normal.
 
-// Of punctual lights: the mean over the points.
+// Irradiance by punctual lights: the mean over the points.
 vec3s gather_punctual(const struct gather_scene *scene, const struct gather_points *points);
-// Of emissive surfaces, the sky and all bounces: the mean of `samples` paths.
+// Irradiance by emissive surfaces, the sky and all bounces: the mean of `samples` paths.
 vec3s gather_paths(const struct gather_scene *scene, const struct gather_points *points,
                    int samples, uint64_t seed);

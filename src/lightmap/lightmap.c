@@ -134,7 +134,7 @@ static void set_texel(void *user, size_t i)
     struct gather_points points;
     const unsigned before = embree_flush_denormals();
     gather_find_points(&l->scene, texel, &points);
-    // Charts that are inside of something as a whole stay black, as by paths.
+    // Charts that are completely inside geometry stay black, as by paths.
     vec3s light = points.count > 0 ? light_along(l, texel) : vec3_of(0, 0, 0);
     if (l->punctual) light = glms_vec3_add(light, gather_punctual(&l->scene, &points));
     memcpy(texel_at(l->map, texel), light.raw, sizeof light.raw);

@@ -1,4 +1,4 @@
-// Where a texel is sampled.
+// Sample points of a texel.
 #include "lightmap/gather.h"
 
 #include "core/rng.h"

@@ -7,7 +7,7 @@
 #define LIGHTMAP_FRONT_FILE "irradiance.exr"
 #define LIGHTMAP_BACK_FILE  "irradiance_back.exr"
 
-// What the maps are: in the extras of the scene's copy, and in attributes of the maps.
+// Facts about the maps: in the extras of the scene's copy, and in attributes of the maps.
 struct lightmap_facts {
     int samples; // paths of a texel; 0: of a technique
     bool punctual;

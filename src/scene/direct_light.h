@@ -15,11 +15,11 @@ struct direct_light {
 void direct_light_init(struct direct_light *direct, const struct scene_pose *pose,
                        const struct raycast *raycast, float offset);
 
-// What rays of a view hit.
+// Hits of the rays of a view.
 struct lit_count {
     int hits, lit;
 };
-// Adds what a ray hits.
+// Adds the hit of a ray.
 void direct_light_count(const struct direct_light *direct, vec3s origin, vec3s direction,
                         struct lit_count *count);
 // lit / hits; 0 without hits.

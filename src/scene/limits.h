@@ -1,5 +1,5 @@
-// What 32-bit floats can trace. Scenes beyond it are refused when they are loaded, and a moment of
-// an animation when it is posed.
+// Limits within which 32-bit floats can trace a scene. Scenes beyond them are refused when they are
+// loaded, and a moment of an animation when it is posed.
 #pragma once
 
 #include "scene/pose.h"
@@ -10,8 +10,8 @@
 // Coordinates of cameras, points and spots. A camera that shows all of the largest scene is 6e8 m
 // away.
 #define SCENE_MAX_DISTANCE_M 1e9f
-// Of emissive surfaces and the sky (cd/m²), of suns (lux) and of other lights (candela). Flux from
-// the largest scene, 1e33 lumens, is finite. The sun's disc has 1.6e9 cd/m².
+// Strength of emissive surfaces and the sky (cd/m²), of suns (lux) and of other lights (candela).
+// Flux from the largest scene, 1e33 lumens, is finite. The sun's disc has 1.6e9 cd/m².
 #define SCENE_MAX_RADIANCE 1e15f
 
 bool limits_vertex(vec3s position);   // finite, and within SCENE_MAX_COORDINATE_M

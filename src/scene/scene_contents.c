@@ -1,4 +1,4 @@
-// What instances show.
+// Contents of instances: meshes, triangles, emission.
 #include "scene/scene.h"
 
 #include <math.h>

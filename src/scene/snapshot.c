@@ -94,7 +94,7 @@ static bool make_room(struct scene_snapshot *s, int meshes)
     return true;
 }
 
-// Of meshes that an instance shows. An array that meshes share is never overwritten.
+// Copies the vertices of meshes with instances. An array that meshes share is never overwritten.
 static bool take_vertices(struct scene_snapshot *s, const struct scene *scene)
 {
     if (!make_room(s, scene->mesh_count)) return false;

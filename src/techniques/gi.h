@@ -74,6 +74,6 @@ bool gi_paint(struct gi *gi, const struct light_map_area *area);
 float gi_painted(const struct gi *gi); // largest painted irradiance, lux
 uint64_t gi_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height);
 uint32_t gi_spec_needs(const struct gi_spec *spec); // frame_need bits
-// What a further view of this size adds; apart: it shares no memory.
+// Bytes that a further view of this size adds; apart: it shares no memory.
 uint64_t gi_view_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height,
                                  bool apart);

@@ -14,7 +14,7 @@ static void apply_options(const struct technique *technique, void *state, const 
     if (state) technique_set_options(technique, state, options);
 }
 
-// Of a running term, in all views.
+// Sets the options of a running term in all views.
 static void set_options(struct gi *gi, int term, void *now, const void *next)
 {
     const struct technique *technique = gi->spec.technique[term];

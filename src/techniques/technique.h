@@ -22,8 +22,8 @@ enum technique_capability {
     GATHERS_EMISSION = 32, // emissive surfaces light others
 };
 
-// What changed, for `invalidate`. frame_view has the changes of lights and of movable geometry,
-// too, for a history that follows them.
+// Changes, for `invalidate`. frame_view has those of lights and of movable geometry, too, for a
+// history that follows them.
 enum technique_change {
     CHANGED_GEOMETRY = 1, // static instances added or removed
     CHANGED_MATERIAL = 2,
@@ -75,8 +75,8 @@ struct technique {
     struct option_table options;
     const struct technique_preset *presets; // by ascending cost; ends with a NULL name; may be NULL
     const struct technique_debug_view *debug_views; // ends with a NULL name; may be NULL
-    // Of the private state, allocated zeroed by the host. The state begins with the options, which
-    // technique.c writes: before `create`, and after `set_options`.
+    // Bytes of the private state, which technique.c allocates zeroed. It begins with the options,
+    // which technique.c writes: before `create`, and after `set_options`.
     size_t state_size;
 
     // All but record may be NULL. `state` is the private state. Objects and scopes are
@@ -131,7 +131,7 @@ struct technique {
     // With PUBLISHES_PROBES: the volume that the newest update filled. false: the option `probes`
     // is off.
     bool (*probes)(void *state, struct probe_volume *out);
-    // Of a delta that needs the probes of its source: before each `update`.
+    // For a delta that needs the probes of its source: called before each `update`.
     void (*take_probes)(void *state, const struct probe_volume *source);
     // The light map: the charts of static surfaces (scene/statics.h), and for each side and colour
     // a layer of irradiance along the surface's normal and vector irradiance, scaled radiance,
@@ -167,7 +167,7 @@ void technique_destroy(const struct technique *technique, struct gpu *gpu, void 
 // Bytes of GPU memory, without creating anything.
 uint64_t technique_memory(const struct technique *technique, const void *options, uint32_t width,
                           uint32_t height);
-// Of these what a further view of this size adds. shared: it shares the memory of the first
-// (gpu_image_desc.alias).
+// The part of technique_memory that a further view of this size adds. shared: it shares the memory
+// of the first view (gpu_image_desc.alias).
 uint64_t technique_view_memory(const struct technique *technique, const void *options,
                                uint32_t width, uint32_t height, bool shared);

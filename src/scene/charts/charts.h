@@ -41,7 +41,7 @@ struct charts_options {
     uint32_t max_texels; // width × height of the atlas
     // [scene_triangle_count], instance after instance: triangles to have charts. NULL: all.
     const bool *chosen;
-    // Of the surface, wanted: its area is so many texels. Charts touch more. 0: no wish.
+    // Wanted area of the surface in texels; charts touch more texels. 0: no wish.
     uint32_t surface_texels;
     enum charts_join join;
     enum charts_coordinates coordinates;

@@ -203,7 +203,7 @@ static struct bounds bounds_of(const struct growth *growth, const struct frame *
     return bounds;
 }
 
-// Of the edges of so many triangles, one gives the u axis.
+// Triangles whose edges are tried as the u axis, at most.
 enum { TRIED_TRIANGLES = 8 };
 
 static void choose_axes(const struct growth *growth, struct frame *frame)
@@ -290,7 +290,7 @@ static bool unwrapped_frame(struct growth *growth, uint32_t seed, struct frame *
 
 // ---- charts
 
-// Of coordinates, which are sums of products: a chart that begins at −ROUNDING begins at 0.
+// Rounding errors of coordinates, sums of products: a chart that begins at −ROUNDING begins at 0.
 static const double ROUNDING = 1e-6;
 
 // Moves the least coordinates to 0: the second pass may have taken more or fewer triangles.

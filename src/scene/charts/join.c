@@ -91,7 +91,7 @@ static bool find_spots(struct joining *j)
 
 // ---- joining
 
-// Sight costs time: a spot tries so many others.
+// Spots that a spot is tried with, at most: tests of visibility take time.
 enum { MOST_TRIED = 8 };
 
 // The irradiance of a spot is that of its normal and its direction; other normals of the half space

@@ -167,7 +167,7 @@ static void add_seam(const struct making *m, const struct seam *seam)
     }
 }
 
-// Sides of several sheets may lie on one edge: so many are compared with each other.
+// Sides on one edge that are compared with each other, at most: several sheets may meet there.
 enum { MOST_SIDES = 4 };
 
 static void add_seams(const struct making *m)

@@ -3,5 +3,5 @@
 
 #include "scene/charts/charts.h"
 
-// Of charts whose texels are made.
+// The charts must have their texels.
 bool make_chart_sides(struct charts *charts, const struct scene *scene);

@@ -78,7 +78,7 @@ static bool sort_triangles(struct sight *s)
     return true;
 }
 
-// Lowest boxes have so many triangles, one after the other in the order.
+// Triangles of a lowest box, adjacent in the order.
 enum { LEAF = 4 };
 
 static void make_boxes(struct sight *s)

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-// What a chart's triangles leave in a texel.
+// Sums over the parts of a chart's triangles in a texel.
 struct cell {
     double area_m2, largest; // of all parts; of the largest one, in texels
     double middle[2];        // of the largest part, in the atlas

@@ -6,7 +6,7 @@
 
 #include <jansson.h>
 
-// Where an instance of the scene is in the document.
+// The place of a scene's instance in the document.
 struct gltf_place {
     size_t node, mesh, primitive; // indices; primitive: in the mesh
 };

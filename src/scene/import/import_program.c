@@ -16,7 +16,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-// What a file of a size may cost: processor time, addresses, and bytes of glTF.
+// Limits that follow from a file's size: processor time, addresses, and bytes of glTF.
 static const double CPU_S = 5.0, CPU_S_PER_MEGABYTE = 4.0;
 static const double WALL_FACTOR = 12.0; // of a loaded machine; the program ends itself before
 static const size_t MEMORY_ALLOWANCE_BYTES = (size_t)1 << 30;

@@ -1,5 +1,5 @@
-// What the importer program (src/importer) writes to its standard output: the greeting, then lines,
-// the last of which is one of
+// The standard output of the importer program (src/importer): the greeting, then lines, the last
+// of which is one of
 //
 //     glb SIZE                  and SIZE bytes of a binary glTF file
 //     fail KIND WHY             KIND is format, unsupported, file or memory
@@ -10,6 +10,6 @@
 // in the original file, or contained.
 #pragma once
 
-// Of the form, so that a program of another version is refused.
+// The version of the format: a program of another version is refused.
 #define IMPORT_STREAM_GREETING "afterglow-import 2\n"
 enum { IMPORT_STREAM_LINE = 512 }; // bytes of a line at most, with its end

@@ -1,5 +1,5 @@
-// Whether the light of a technique's last frame serves again. Techniques keep one for each of what
-// they update: shared light, the history of a view.
+// Whether the light of a technique's last frame can be reused. Techniques keep one struct for each
+// thing that they update: shared light, the history of a view.
 #pragma once
 
 #include "frame/frame.h"
@@ -7,7 +7,7 @@
 struct kept {        // zero: no frame before
     bool known, lit; // there is a last frame; its light is not to be computed again
     uint64_t index, light;
-    // Of the frame being recorded, after kept_update.
+    // The frame being recorded, after kept_update:
     bool follows;   // the last one was the frame before
     bool still;     // and no geometry has moved since
     bool same;      // nor has light changed

@@ -122,7 +122,7 @@ static uint32_t slot_of(const struct dnrt *s, int object)
     return (uint32_t)(x | y << 10 | object / layer * n << 20);
 }
 
-// Of a shape in the pose: its volumes at the key frames around, and their mean.
+// A shape in the pose: its volumes at the key frames before and after, and their interpolation.
 struct shape_now {
     int volume, next;
     float part;
@@ -210,7 +210,7 @@ static void record_lamps(struct dnrt *s, struct gpu_cmd *cmd, const struct frame
 
 static void record_light(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_binding objects)
 {
-    // What other objects change of an object's light is not compared.
+    // The changes of an object's light by other objects are not compared: all are computed again.
     const bool bounces = has_bounces(s);
     const struct dnrt_light_push push = { s->source.grid, (uint32_t)s->objects.count,
                                           (uint32_t)dnrt_normals(&s->options),
@@ -348,7 +348,7 @@ static void destroy(void *state)
     dnrt_objects_finish(&s->baked);
 }
 
-// Of one object.
+// Bytes of one object.
 static uint64_t memory_estimate(const void *options)
 {
     const struct dnrt_options *o = options;

@@ -2,10 +2,10 @@
 // disk of its bounding sphere: percentage-closer soft shadows (Fernando 2005), with each occluder
 // projected from the receiver to that disk.
 //
-// Texels are compared with the receiver's tangent plane, too: what is behind the plane hides
-// nothing of the light that the receiver gets, and a plane is never in front of itself, however
-// large the penumbra. Directions that end behind it before the occluders do not count: that part of
-// the disk is below the horizon.
+// Texels are compared with the receiver's tangent plane, too: geometry behind the plane occludes
+// none of the receiver's light, and a plane never occludes itself, however large the penumbra.
+// Directions that end behind the plane before the occluders do not count: that part of the disk is
+// below the horizon.
 
 #include "core/basis.glsl"
 
@@ -14,8 +14,8 @@ const vec2 GOLDEN_TURN = vec2(-0.73736888, 0.67549029); // cosine and sine of π
 // Height over the tangent plane below which texels are not in front of it, over their distance from
 // the receiver: covers the rounding of normals and the curvature of smooth surfaces.
 const float PLANE_SLACK = 0.02;
-// Where a direction ends behind the tangent plane, the ray to the disk is looked up at that
-// distance, nearer to the axis: an occluder may be closer to the receiver than the others are.
+// Lookups along the ray to the disk where a direction ends behind the tangent plane, each nearer to
+// the axis: an occluder may be closer to the receiver than the others.
 const int FOLLOW_STEPS = 2;
 const float LEAST_TEXELS = 1.5; // radius of the filter
 const float FARTHEST = 1.0;     // tangent of the widest search: occluders nearer than the sphere
@@ -113,7 +113,7 @@ float intrusion_visibility(intrusion i)
     return 1.0 - hidden / max(float(FILTER_TAPS) - below, 1.0);
 }
 
-// Of object `index`.
+// Visibility of object `index` from a receiver.
 float seen_of(uint index, dnrt_gpu_object object, vec3 position, vec3 n)
 {
     vec3 receiver = position - object.centre;

@@ -4,7 +4,7 @@
 
 #include "scene/pose.h"
 
-// Of the animation that the pose plays; 1 without one.
+// Key frames of the animation that the pose plays; 1 without one.
 int dnrt_keys_of(const struct scene_pose *pose, int keys);
 // s; key below `keys` ≥ 2. The last one is just before the end, where time wraps around.
 float dnrt_key_time(const struct scene_pose *pose, int keys, int key);

@@ -25,7 +25,7 @@ struct dnrt_object {
     int shape;        // in dnrt_objects.shapes
 };
 
-// What is baked once, for all objects of these meshes and this stretch.
+// The unit of the bake: all objects of these meshes and this stretch share it.
 struct dnrt_shape {
     int object;       // stands for it
     int first, count; // in dnrt_objects.meshes

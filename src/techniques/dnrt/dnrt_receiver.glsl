@@ -1,5 +1,5 @@
-// What a receiver looks up in the volumes of an object: where, and the weight of each. Include
-// after dnrt_object.glsl.
+// The lookup of a receiver in the volumes of an object: its place, and the weight of each volume.
+// Include after dnrt_object.glsl.
 #ifndef DNRT_RECEIVER_GLSL
 #define DNRT_RECEIVER_GLSL
 
@@ -52,14 +52,14 @@ float dnrt_weight(dnrt_receiver at, vec3 above, uint volume)
     return mix(side * above[axis], of_axis, alone);
 }
 
-// What is looked up in a volume.
+// The place of a lookup in a volume.
 struct dnrt_place {
     vec3 at;     // among the samples, 0 to size − 1 along each edge
     float reach; // a factor: 1 in the inner volume, 0 out of the object's reach
 };
 
-// In the outer volume, between the border of the inner one, at 1, and `fade`, it is the sample at
-// the border, times the inverse square of the distance less its value at the end.
+// The outer volume is between the border of the inner one, at 1, and `fade`. A lookup there is the
+// sample at the border times the inverse square of the distance, less its value at the end.
 dnrt_place dnrt_place_of(dnrt_gpu_object object, dnrt_receiver at, uint size, float fade)
 {
     vec3 p = at.position * (1.0 / object.half_m), extent = abs(p);

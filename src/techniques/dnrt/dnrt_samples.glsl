@@ -13,7 +13,7 @@ uint samples_words(uint count)
     return count / (BYTES ? 4u : 2u);
 }
 
-// Of the four samples from `first` on in a plane, a multiple of 4, over the plane's scale.
+// Four samples of a plane from `first` on, a multiple of 4, over the plane's scale.
 vec4 samples_of(uint plane_word, uint first)
 {
     if (BYTES) {

@@ -1,7 +1,7 @@
-// What an object changes of the light at its own surface (Giuffrida 2016, appendix B.3): of each of
-// its pixels Σ c_j s_j, s_j the self-transfer between the points of the triangle. Light d_j of
-// lamps is reflected, but its shadow is in direct light: s_j and what is occluded of Y_j. After the
-// pass `apply`, of the same tiles.
+// The change of light at an object's own surface (Giuffrida 2016, appendix B.3): Σ c_j s_j in each
+// of its pixels, s_j the self-transfer interpolated between the points of the triangle. Light d_j
+// of punctual lights has its shadow in direct light: only its reflection is added, s_j and the
+// occluded part of Y_j. Runs after the pass `apply`, on the same tiles.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

@@ -28,7 +28,7 @@ struct dnrt_map {
     uint64_t updates; // scene_gpu.updates when they were last valid; 0: never
 };
 
-// Of a volume, in the buffer of patches.
+// The patches of a volume in their buffer.
 struct dnrt_patch_range {
     uint32_t first, count;
 };

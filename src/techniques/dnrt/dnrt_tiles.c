@@ -128,10 +128,10 @@ bool dnrt_in_view(const struct dnrt *s, const struct frame_view *view, int objec
     return r.first[0] < r.end[0] && r.first[1] < r.end[1];
 }
 
-// Of the distance of two samples.
+// Largest extent of pixels that share a lookup, over the distance of two samples.
 static const float SHARE = 0.5f;
 
-// Of the bounding sphere, for rounded positions.
+// Factor of the bounding sphere's radius, for rounded positions.
 static const float OWN_MARGIN = 1.02f;
 
 struct dnrt_tile_counts dnrt_find_tiles(const struct dnrt *s, const struct frame_view *view,

@@ -19,7 +19,7 @@ bool seam_closing_init(struct seam_closing *out, struct host *host, const struct
                        const struct trace_scene *trace);
 void seam_closing_finish(struct seam_closing *closing);
 
-// What a task needs. NULL: no memory; seam_closing_room_destroy accepts it.
+// Scratch memory of a task. NULL: no memory; seam_closing_room_destroy accepts it.
 struct seam_closing_room *seam_closing_room_create(struct host *host,
                                                    const struct seam_closing *closing);
 void seam_closing_room_destroy(struct seam_closing_room *room);

@@ -14,13 +14,13 @@ struct texel_receiver {
 
 enum { RAYS_PER_LIGHT_SAMPLE = 4 };
 
-// Emitter samples for so many rays; 0 without emissive surfaces.
+// Emitter samples of a texel with `rays` rays; 0 without emissive surfaces.
 static inline int texel_light_samples(const struct trace_scene *scene, int rays)
 {
     return scene->lights.has_emitters ? rays / RAYS_PER_LIGHT_SAMPLE : 0;
 }
 
-// What a ray meets.
+// The first hit of a ray.
 struct texel_seen {
     bool back, inside; // inside: the back of a single-sided surface
     vec3s emission;    // cd/m²; 0: none

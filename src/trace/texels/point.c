@@ -1,5 +1,5 @@
-// Where a texel is sampled: in its middle, or where that is inside of something, beside it. A texel
-// of a ledge whose larger part is in a wall still has light.
+// The sample point of a texel: its middle, or where that is inside geometry, a point beside it. A
+// texel of a ledge whose larger part is in a wall still has light.
 #include "trace/texels/inside.h"
 #include "trace/texels/texels.h"
 
@@ -136,8 +136,8 @@ static int least_crossings(const struct search *s)
     return least;
 }
 
-// Of the points with at most so many crossings, the one nearest to the middle of them all, and the
-// share of them.
+// The point nearest to the mean of all points with at most `most` crossings, and the share that
+// these points have.
 static struct texel_point middle_of(const struct search *s, int most)
 {
     vec3s middle = vec3_of(0, 0, 0);

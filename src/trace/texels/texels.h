@@ -18,7 +18,7 @@ bool texel_weigh(const struct chart_triangle *triangle, float x, float y, float 
 bool texel_is_inside(const struct trace_scene *scene, const struct charts *charts, uint32_t texel,
                      vec3s at);
 
-// Where a texel is sampled, and the share of it that is not inside geometry; 0: none is.
+// The sample point of a texel, and the share of the texel that is outside geometry; 0: none is.
 struct texel_point {
     vec3s position;
     float share;

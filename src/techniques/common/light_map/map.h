@@ -48,7 +48,7 @@ void light_map_list(const struct light_map *map, size_t base, struct gpu_objects
 // what a texel sees of the sky, as struct light_map_texels has it.
 bool light_map_upload(struct light_map *map, uint32_t instances, const uint32_t *shown,
                       const float *sky, const struct tensors *bake);
-// Approximate bytes on the GPU of a map whose sides have so many texels.
+// Approximate bytes on the GPU of a map; texels: of both sides.
 uint64_t light_map_bytes(uint64_t texels);
 
 // Rows first … first + count − 1, of owner_count and seam_count, of the map that is not shown.

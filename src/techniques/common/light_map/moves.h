@@ -1,5 +1,5 @@
-// Where instances were when a light map was made: pixels of a moved instance find the light that it
-// had at the same point of its surface.
+// Poses of instances when a light map was made. A pixel of a moved instance looks up the light at
+// the same point of its surface.
 #pragma once
 
 #include "scene/pose.h"
@@ -20,16 +20,16 @@ struct light_map_places {
     int count;                    // of instances
 };
 
-// Of the pose of a map, in place of those of another one or of zero, which light_map_places_finish
-// accepts. false: no memory.
+// Replaces *out, which may be zero, by the places in the pose of a map. false: no memory.
+// light_map_places_finish accepts zero.
 bool light_map_places_init(struct light_map_places *out, struct host *host,
                            const struct scene_pose *pose);
 void light_map_places_finish(struct light_map_places *places, struct host *host);
-// Writes the moves of a later pose of the scene; whether there are any. The row of an instance that
-// is not there any more, or has another mesh, is 0.
+// Writes the moves of a later pose of the scene; returns whether there are any. The row of an
+// instance that was removed or has another mesh is 0.
 bool light_map_find_moves(struct light_map_places *places, const struct scene_pose *pose);
 
-// Whether an instance of the map is not there any more.
+// Whether an instance of the map was removed or has another mesh.
 static inline bool light_map_is_gone(const struct light_map_places *places, int instance)
 {
     return glms_vec3_norm2(places->moves[instance].x) == 0.0f;

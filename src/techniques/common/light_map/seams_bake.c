@@ -4,7 +4,7 @@
 #include "bake/plan.h"
 #include "trace/texels/close.h"
 
-// A place takes as long as so many rays, measured.
+// RAYS_PER_PLACE: rays that take as long as a place, measured.
 enum { PLACES_PER_TASK = 512, RAYS_PER_PLACE = 50 };
 
 static bool run_seams(const struct bake_task *task)

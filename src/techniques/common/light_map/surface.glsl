@@ -1,4 +1,4 @@
-// Where the surface of a pixel is in a light map, by the triangle that FRAME_ID names. Include
+// The place of a pixel's surface in a light map, by the triangle that FRAME_ID names. Include
 // frame/frame.glsl and frame/octahedral.glsl first.
 #ifndef AG_LIGHT_MAP_SURFACE_GLSL
 #define AG_LIGHT_MAP_SURFACE_GLSL

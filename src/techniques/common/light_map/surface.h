@@ -12,7 +12,7 @@ struct light_map_surfaces {
     const struct light_map_move *moves; // [count] of the frame; NULL: none has moved since
 };
 
-// Of the shaders that include surface.glsl: in GPU_BIND, and in their push constants.
+// For shaders that include surface.glsl: their bindings, and a member of their push constants.
 #define LIGHT_MAP_SURFACE_BINDINGS(surfaces, cmd)                                                  \
     { .name = "light_map_first", .buffer = (surfaces)->first },                                    \
         { .name = "light_map_triangles", .buffer = (surfaces)->triangles },                        \

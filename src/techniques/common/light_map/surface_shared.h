@@ -16,7 +16,7 @@
 // Layers of a light map for one side of the surfaces: one for each colour.
 #define LIGHT_MAP_LAYERS 3
 
-// Of a place of the light map: y above x, above both the side.
+// Bits of x and of y in the word of a place of the light map: y above x, above both the side.
 #define LIGHT_MAP_PLACE_BITS 15
 
 // A triangle of the scene. In the atlas it is at axis · position + offset, in texels.
@@ -26,8 +26,8 @@ struct light_map_triangle {
     uint32_t front;
 };
 
-// From where an instance is to where it was when the map was made: p.x x + p.y y + p.z z + by.
-// 0: it was not there.
+// From the present pose of an instance to that of the map: p.x x + p.y y + p.z z + by. 0: the map
+// does not have it.
 struct light_map_move {
     vec3s x, y, z, by;
 };

@@ -7,9 +7,10 @@
 
 enum { SIDE = PROBE_DEPTH_SIDE, TRIES = 16 };
 
-// Of the sphere: a probe that sees more backs of single-sided surfaces is inside of something.
+// A probe is inside geometry if backs of single-sided surfaces cover more than this part of its
+// sphere of directions.
 static const float MOST_BACKS = 0.25f;
-// Of a spacing: how far a moved probe is in front of the surface.
+// Distance of a moved probe from the surface, over the spacing.
 static const float CLEARANCE = 0.1f;
 
 // A ray by its place in a map of `side` squares. The solid angle of a square there is its area

@@ -16,19 +16,19 @@ struct probe_ray {
     float solid_angle; // of its part of the sphere
 };
 
-// Returns the distance of what a ray meets, INFINITY: nothing. *inside: it is the back of a
-// single-sided surface.
+// Returns the distance of the first hit, INFINITY: none. *inside: it is the back of a single-sided
+// surface.
 struct probe_tracer {
     float (*trace)(void *user, const struct probe_ray *ray, bool *inside);
     void *user;
 };
 
-// The middle of a cell, or where that is inside of something, the nearest place before a surface of
-// it that is not, within the cell. False: there is none.
+// The middle of a cell, or where that is inside geometry, the nearest place outside, in front of a
+// surface, within the cell. False: there is none.
 bool probe_find_place(const struct probe_tracer *tracer, vec3s center, float spacing_m,
                       vec3s *position);
 
-// About so many rays.
+// A grid of about `rays` directions.
 struct probe_sphere {
     int side;    // rays along an edge of the map
     float scale; // solid angles of the rays sum to 4π with it

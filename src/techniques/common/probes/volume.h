@@ -26,7 +26,7 @@ struct gpu_image_desc probe_volume_desc(const char *name, struct frame_probes gr
 bool probe_depth_create(struct host *host, struct gpu *gpu, uint32_t probes, const uint16_t *depth,
                         gpu_image *out);
 
-// Of a probe, of a volume with depths.
+// Bytes of a probe's depths, and of a probe in a volume with depths.
 enum {
     PROBE_DEPTH_BYTES = 4 * PROBE_DEPTH_TILE * PROBE_DEPTH_TILE,
     PROBE_VOLUME_BYTES = 8 * (FRAME_PROBE_SLABS + 1) + PROBE_DEPTH_BYTES,

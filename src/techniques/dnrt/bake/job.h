@@ -1,4 +1,4 @@
-// What the stages of a bake share.
+// Inputs that the stages of a bake share.
 #pragma once
 
 #include "core/rng.h"

@@ -19,14 +19,16 @@ struct dnrt_patches {
     uint32_t count, points;
 };
 
-// Of a shape, whose key frames have the patches of its first one. dnrt_patches_finish accepts zero.
+// The patches of a shape; all its key frames have those of the first one. dnrt_patches_finish
+// accepts zero.
 bool dnrt_patches_init(struct dnrt_patches *out, struct host *host, const struct dnrt_part *part);
 void dnrt_patches_finish(struct dnrt_patches *patches);
 
 // The corners of a triangle from the centre of the bounding sphere.
 void dnrt_patch_corners(const struct dnrt_part *part, uint32_t patch, vec3s corners[3]);
 
-// What an object changes of the irradiance at a point of its own: of irradiance Y_j(n) by colour,
-// and w: what it occludes of it, which light of lamps has not lost. how: rays, bands, trace.
+// The change of irradiance Y_j(n) at a point of the object by the object itself, by colour. w: the
+// irradiance that it occludes; direct light of punctual lights has lost that already. how: rays,
+// bands, trace.
 void dnrt_self_at(const struct dnrt_sampling *how, const struct dnrt_patches *patches,
                   uint32_t point, uint32_t seed, vec4s out[DNRT_MAX_COEFFICIENTS]);

@@ -63,9 +63,9 @@ static struct dnrt_grid grid_of(const struct dnrt_job *job, const struct dnrt_pa
                                dnrt_size(&job->options), job->options.grid == DNRT_GRID_QUADRATIC };
 }
 
-// What k_j is multiplied by: c_j are coefficients of irradiance, the radiance behind the object has
-// c_j over the band's factor of the clamped cosine (appendix B.2, Ramamoorthi & Hanrahan 2001),
-// where the paper has c_j / π.
+// The factor of k_j. c_j are coefficients of irradiance; the radiance behind the object is c_j over
+// the band's factor of the clamped cosine (appendix B.2, Ramamoorthi & Hanrahan 2001), where the
+// paper has c_j / π.
 static float hidden_factor(const struct dnrt_options *options, int coefficient)
 {
     const int band = coefficient == 0 ? 0 : coefficient < SH_COUNT(2) ? 1 : 2;
@@ -254,7 +254,7 @@ static bool add_stages(struct bake_plan *plan, const struct dnrt_job *job, int v
     return true;
 }
 
-// Of every shape in its own frame: placing objects elsewhere changes nothing.
+// Hashes every shape in its own frame, so that the key does not depend on the objects' poses.
 static bool add_key(struct bake_plan *plan, const struct dnrt_objects *objects,
                     const struct dnrt_key_poses *keys)
 {

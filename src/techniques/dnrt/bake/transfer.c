@@ -1,6 +1,6 @@
-// Rays towards the cone around the bounding sphere. Of one normal they are distributed by the
-// cosine to n_o: sin²θ ≤ s², density cosθ/(π s²); a point inside of the sphere has the hemisphere.
-// Of several normals they are distributed evenly, from inside over the sphere.
+// Rays in the cone around the bounding sphere. With one normal they are cosine-weighted about n_o:
+// sin²θ ≤ s², density cosθ/(π s²); from inside the sphere, in the hemisphere. With several normals
+// they are uniform; from inside, over all directions.
 #include "techniques/dnrt/bake/transfer.h"
 
 #include "core/rng.h"
@@ -54,7 +54,7 @@ static void weights_of(const struct cone *cone, const struct dnrt_sampling *how,
     }
 }
 
-// What one ray met adds to the sums.
+// Adds the hit of a ray to the sums.
 static void add_hit(const struct dnrt_sampling *how, const struct ray *ray,
                     const struct ray_hit *hit, const float *weights, struct rng *rng,
                     struct dnrt_transfer *sum)
