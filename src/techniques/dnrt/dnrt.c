@@ -84,10 +84,10 @@ static void objects(const void *options, int view, uint32_t width, uint32_t heig
     { GPU_PIPELINE, name, MEMBER(thing), .consts = (bits),                                         \
       .shader = (when) ? &shader_dnrt_##shader_##_comp : NULL }
     GPU_ADD(out, 0, PIPELINE("light", light_pipeline[0], true, light_grid, 0),
-            PIPELINE("light", light_pipeline[1], true, light_seen, 0),
+            PIPELINE("light", light_pipeline[1], true, light_depths, 0),
             PIPELINE("bounce", bounce_pipeline, true, bounce, 31),
             PIPELINE("volumes", volumes_pipeline, true, volumes, 30),
-            PIPELINE("lamps", lamps_pipeline, o->direct, lamps, 0),
+            PIPELINE("punctual", punctual_pipeline, o->direct, punctual, 0),
             PIPELINE("self", self_pipeline, o->self, self, 1u << 2 | 1u << 4),
             PIPELINE("apply", apply_pipeline[0][0], !maps, apply_plain, 3),
             PIPELINE("apply", apply_pipeline[0][1], maps, apply_plain_maps, 3),
@@ -188,19 +188,19 @@ static bool has_bounces(const struct dnrt *s)
     return s->objects.count > 1 && s->options.bounces > 1;
 }
 
-static uint32_t lamps_of(const struct dnrt *s)
+static uint32_t punctual_of(const struct dnrt *s)
 {
-    return DNRT_LIGHT_LAMPS * (uint32_t)s->objects.count * DNRT_COEFFICIENTS;
+    return DNRT_LIGHT_PUNCTUAL * (uint32_t)s->objects.count * DNRT_COEFFICIENTS;
 }
 
-static void record_lamps(struct dnrt *s, struct gpu_cmd *cmd, const struct frame_view *view,
-                         struct gpu_binding objects)
+static void record_punctual(struct dnrt *s, struct gpu_cmd *cmd, const struct frame_view *view,
+                            struct gpu_binding objects)
 {
-    const struct dnrt_lamps_push push = { (uint32_t)s->objects.count, lamps_of(s), s->options.reach,
-                                          view->shadow_radius };
+    const struct dnrt_punctual_push push = { (uint32_t)s->objects.count, punctual_of(s),
+                                             s->options.reach, view->shadow_radius };
     if (!s->options.direct) return;
-    gpu_scope_begin(cmd, "lamps");
-    gpu_dispatch(cmd, s->lamps_pipeline,
+    gpu_scope_begin(cmd, "punctual");
+    gpu_dispatch(cmd, s->punctual_pipeline,
                  GPU_BIND(FRAME_LIGHT_BINDINGS(view), objects,
                           { .name = "dnrt_light", .buffer = s->light },
                           { .name = "dnrt_changed", .buffer = s->changed }),
@@ -233,7 +233,7 @@ static uint32_t record_bounces(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_b
 {
     const uint32_t count = (uint32_t)s->objects.count, part = count * DNRT_COEFFICIENTS;
     struct dnrt_bounce_push push = { .objects = count,
-                                     .lamps = lamps_of(s),
+                                     .punctual = punctual_of(s),
                                      .size = (uint32_t)dnrt_size(&s->options),
                                      .fade = s->options.fade,
                                      .reach = s->options.reach };
@@ -256,7 +256,8 @@ static uint32_t record_bounces(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_b
 static void record_volumes(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_binding objects,
                            uint32_t light)
 {
-    const struct dnrt_volumes_push push = { (uint32_t)dnrt_size(&s->options), light, lamps_of(s) };
+    const struct dnrt_volumes_push push = { (uint32_t)dnrt_size(&s->options), light,
+                                            punctual_of(s) };
     gpu_scope_begin(cmd, "volumes");
     gpu_dispatch_indirect(cmd, s->volumes_pipeline,
                           GPU_BIND(objects, { .name = "dnrt_light", .buffer = s->light },
@@ -276,7 +277,7 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     dnrt_place_own(s, view->pose->scene);
     if (s->map_count > 0) dnrt_record_maps(s, cmd, view);
     const struct gpu_binding objects = objects_binding(s, cmd);
-    record_lamps(s, cmd, view, objects);
+    record_punctual(s, cmd, view, objects);
     record_light(s, cmd, objects);
     s->newest_light = record_bounces(s, cmd, objects);
     record_volumes(s, cmd, objects, s->newest_light);
@@ -328,7 +329,7 @@ static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     if (tiles.own == 0) return;
     dnrt_record_self(s, cmd, view, objects, table,
                      &(struct dnrt_self_push){ words, gpu_groups(view->width, DNRT_TILE),
-                                               s->own_count, s->newest_light, lamps_of(s) },
+                                               s->own_count, s->newest_light, punctual_of(s) },
                      tiles.own);
 }
 

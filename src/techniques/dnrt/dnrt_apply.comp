@@ -129,7 +129,7 @@ void add_object(uint index, vec3 position, bvec4 of, inout pixel_quad q)
     }
 #ifdef DNRT_MAPS
     [[dont_unroll]] for (int i = 0; i < 4; i++) if (added[i] != vec3(0.0)) q.change[i] +=
-        seen_of(index, object, q.position[i], q.normal[i]) * added[i];
+        visibility_of(index, object, q.position[i], q.normal[i]) * added[i];
 #endif
 }
 

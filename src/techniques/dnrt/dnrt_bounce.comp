@@ -77,8 +77,8 @@ vec3 change_at(uint index, dnrt_gpu_object object, vec3 position, vec3 n)
             if (object.part > 0.0)
                 m = mix(m, transfer_at(NORMALS * uint(object.next) + i, j, place.at), object.part);
             uint entry = index * DNRT_COEFFICIENTS + j;
-            vec3 lamps = PLANES == 4u ? light_table[push.lamps + entry] : vec3(0.0);
-            sum += weight * ((light_table[push.from + entry] + lamps) * m.rgb + lamps * m.w);
+            vec3 punctual = PLANES == 4u ? light_table[push.punctual + entry] : vec3(0.0);
+            sum += weight * ((light_table[push.from + entry] + punctual) * m.rgb + punctual * m.w);
         }
     }
     return SH_COSINE_0 * sum;

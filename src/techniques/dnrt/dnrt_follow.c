@@ -64,7 +64,7 @@ static void warn(struct dnrt *s, int without)
                  s->objects.count, DNRT_MAX_OBJECTS);
 }
 
-static bool make_room(struct dnrt *s, const struct scene *scene)
+static bool make_images(struct dnrt *s, const struct scene *scene)
 {
     host_free(s->host, s->gpu_objects);
     s->gpu_objects = host_alloc(s->host, DNRT_MAX_OBJECTS, sizeof *s->gpu_objects);
@@ -93,8 +93,8 @@ bool dnrt_find_objects(struct dnrt *s, const struct scene_pose *pose)
     }
     if (s->baked.count > 0) warn(s, without);
     if (s->objects.count > DNRT_MAX_OBJECTS) s->objects.count = DNRT_MAX_OBJECTS;
-    s->seen = pose->scene->revisions;
-    return make_room(s, pose->scene);
+    s->revisions = pose->scene->revisions;
+    return make_images(s, pose->scene);
 }
 
 void dnrt_follow(void *state, const struct scene_pose *pose, bool wait)
@@ -103,7 +103,7 @@ void dnrt_follow(void *state, const struct scene_pose *pose, bool wait)
     const struct scene_revisions *now = &pose->scene->revisions;
     (void)wait;
     if (s->baked.count == 0) return;
-    if (now->layout != s->seen.layout || now->instances != s->seen.instances ||
-        now->transforms != s->seen.transforms)
+    if (now->layout != s->revisions.layout || now->instances != s->revisions.instances ||
+        now->transforms != s->revisions.transforms)
         dnrt_find_objects(s, pose);
 }

@@ -1,4 +1,4 @@
-// Depth maps around objects (Giuffrida 2016, section 5.2.3): what is seen from the centre of an
+// Depth maps around objects (Giuffrida 2016, section 5.2.3): cube maps from the centre of an
 // object's bounding sphere, without the object. They are kept while nothing moves within reach.
 #include "techniques/dnrt/dnrt_state.h"
 

@@ -114,7 +114,7 @@ float intrusion_visibility(intrusion i)
 }
 
 // Visibility of object `index` from a receiver.
-float seen_of(uint index, dnrt_gpu_object object, vec3 position, vec3 n)
+float visibility_of(uint index, dnrt_gpu_object object, vec3 position, vec3 n)
 {
     vec3 receiver = position - object.centre;
     float distance = length(receiver), radius = object.half_m / push.reach;

@@ -9,7 +9,7 @@
 #include "core/sh.glsl"
 #include "frame/frame_shared.h"
 #include "frame/probes.glsl"
-#ifdef DNRT_SEEN
+#ifdef DNRT_DEPTHS
 #include "frame/octahedral.glsl"
 #include "techniques/common/probes/lookup.glsl"
 #endif
@@ -38,7 +38,7 @@ layout(set = 0, binding = 3, scalar) buffer dnrt_changed
 {
     dnrt_changed_data changed;
 };
-#ifdef DNRT_SEEN
+#ifdef DNRT_DEPTHS
 layout(set = 0, binding = 4) uniform sampler2D probe_depths; // no light passes through walls
 #endif
 
@@ -70,7 +70,7 @@ void rotate(mat3 axes, inout vec3 c[9])
     }
 }
 
-#ifdef DNRT_SEEN
+#ifdef DNRT_DEPTHS
 void light_at(vec3 position, out vec3 c[9])
 {
     probes_seen_coefficients(probes, probe_depths, push.grid, position, c);

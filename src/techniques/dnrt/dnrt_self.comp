@@ -15,7 +15,7 @@
 
 layout(local_size_x = DNRT_TILE, local_size_y = DNRT_LOCAL_ROWS) in;
 layout(constant_id = 2) const uint COEFFICIENTS = 4;
-layout(constant_id = 4) const uint PLANES = 3; // 4: with light of lamps
+layout(constant_id = 4) const uint PLANES = 3; // 4: with light of punctual lights
 
 layout(push_constant, scalar) uniform push_block
 {
@@ -50,7 +50,7 @@ layout(set = 0, binding = 9, scalar) readonly buffer dnrt_light
 };
 layout(set = 0, binding = 10, rgba16f) uniform image2D irradiance;
 
-vec3 change_at(dnrt_gpu_patch patch_, vec2 at, vec3 n, uint light, uint lamps)
+vec3 change_at(dnrt_gpu_patch patch_, vec2 at, vec3 n, uint light, uint punctual)
 {
     uint steps = patch_.grid & DNRT_PATCH_STEPS, points[3], first = patch_.first;
     vec3 front = cross(patch_.corner[1] - patch_.corner[0], patch_.corner[2] - patch_.corner[0]);
@@ -64,7 +64,8 @@ vec3 change_at(dnrt_gpu_patch patch_, vec2 at, vec3 n, uint light, uint lamps)
             uvec2 packed = point_table[(first + points[k]) * COEFFICIENTS + j];
             vec4 change = vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y));
             sum += weights[k] * change.rgb * light_table[light + j];
-            if (PLANES == 4u) sum += weights[k] * (change.rgb + change.a) * light_table[lamps + j];
+            if (PLANES == 4u)
+                sum += weights[k] * (change.rgb + change.a) * light_table[punctual + j];
         }
     return INV_PI * sum; // dnrt_light has π c_j
 }
@@ -84,9 +85,9 @@ vec3 change_of(ivec2 pixel, uvec2 ids, float z)
                                mix(first.corner[1], next.corner[1], object.part),
                                mix(first.corner[2], next.corner[2], object.part), p);
     uint light = push.light + uint(of.object) * DNRT_COEFFICIENTS;
-    uint lamps = push.lamps + uint(of.object) * DNRT_COEFFICIENTS;
-    vec3 change = change_at(first, at, n, light, lamps);
-    return object.part > 0.0 ? mix(change, change_at(next, at, n, light, lamps), object.part)
+    uint punctual = push.punctual + uint(of.object) * DNRT_COEFFICIENTS;
+    vec3 change = change_at(first, at, n, light, punctual);
+    return object.part > 0.0 ? mix(change, change_at(next, at, n, light, punctual), object.part)
                              : change;
 }
 

@@ -72,10 +72,10 @@ struct dnrt_self_push {
     uint32_t tiles_x;   // across the image
     uint32_t instances; // of the scene
     uint32_t light;     // first entry of dnrt_light
-    uint32_t lamps;     // of lamps
+    uint32_t punctual;  // the same for punctual lights
 };
 
-struct dnrt_lamps_push {
+struct dnrt_punctual_push {
     uint32_t objects;
     uint32_t to;           // first entry of dnrt_light
     float reach;           // of the inner volume, radii of the bounding sphere
@@ -92,16 +92,16 @@ struct dnrt_light_push {
 struct dnrt_bounce_push {
     uint32_t objects;
     uint32_t from, to; // entries of dnrt_light before those of the objects, read and written
-    uint32_t lamps;    // of lamps
+    uint32_t punctual; // the same for punctual lights, read
     uint32_t size;
     float fade;
     float reach; // of the inner volume, radii of the bounding sphere
 };
 
 struct dnrt_volumes_push {
-    uint32_t size;  // samples along an edge
-    uint32_t first; // entry of dnrt_light
-    uint32_t lamps; // of lamps
+    uint32_t size;     // samples along an edge
+    uint32_t first;    // entry of dnrt_light
+    uint32_t punctual; // entry for punctual lights
 };
 
 struct dnrt_apply_push {

@@ -17,8 +17,8 @@ struct dnrt_volume {
     vec3s box_centre, box_half;
 };
 
-// Entries of `light`: of the probes, two that bounces fill by turns, and of lamps.
-enum { DNRT_LIGHT_LAMPS = 3, DNRT_LIGHT_PARTS };
+// Parts of `light`: that of the probes, two that bounces fill by turns, that of punctual lights.
+enum { DNRT_LIGHT_PUNCTUAL = 3, DNRT_LIGHT_PARTS };
 
 // The depth maps of an object: six layers, of the directions around its centre.
 struct dnrt_map {
@@ -37,21 +37,21 @@ struct dnrt {
     struct dnrt_options options;
     struct host *host;
     struct gpu *gpu;
-    struct dnrt_objects baked;   // of the pose of `create`: their shapes are in the bake
-    struct dnrt_objects objects; // of the newest pose; shape: in `baked`, −1: none
-    struct scene_revisions seen; // of the scene when `objects` were found
-    bool warned;                 // of objects without a volume
-    int animation;               // of the key frames
-    struct dnrt_volume *volumes; // [baked.volume_count]
-    struct dnrt_frame *frames;   // [baked.shape_count] of their objects in the pose of `create`
-    int slots[3];                // room for objects along x, y, z of the image
+    struct dnrt_objects baked;        // of the pose of `create`: their shapes are in the bake
+    struct dnrt_objects objects;      // of the newest pose; shape: in `baked`, −1: none
+    struct scene_revisions revisions; // of the scene when `objects` were found
+    bool warned;                      // of objects without a volume
+    int animation;                    // of the key frames
+    struct dnrt_volume *volumes;      // [baked.volume_count]
+    struct dnrt_frame *frames; // [baked.shape_count] of their objects in the pose of `create`
+    int slots[3];              // of objects along x, y, z of the image
     gpu_buffer shapes, samples, light, changed;
     bool stale;      // all volumes of `image`
     gpu_image image; // volumes of all objects in their light
     gpu_sampler linear;
-    gpu_pipeline light_pipeline[2]; // [probes that say what they see]
+    gpu_pipeline light_pipeline[2]; // [probes with depths]
     gpu_pipeline bounce_pipeline, volumes_pipeline;
-    gpu_pipeline lamps_pipeline;       // of the option `direct`
+    gpu_pipeline punctual_pipeline;    // of the option `direct`
     gpu_pipeline apply_pipeline[2][2]; // [with FRAME_ID][with depth maps]
     gpu_pipeline self_pipeline;        // of the option `self`
     gpu_buffer patch_buffer, point_buffer;
@@ -66,7 +66,7 @@ struct dnrt {
     int views;                           // one more than the largest number of a view
     struct probe_volume source;          // of the newest `take_probes`
     struct dnrt_gpu_object *gpu_objects; // [DNRT_MAX_OBJECTS] of the frame
-    uint32_t *tiles;                     // room for the tiles of a view
+    uint32_t *tiles;                     // scratch memory for the tiles of a view
     size_t most_tiles;                   // of a view
     size_t tiles_words;                  // allocated
 };
@@ -77,14 +77,14 @@ bool dnrt_upload(struct dnrt *s, const struct tensors *bake);
 
 // ---- dnrt_follow.c
 
-// Objects of the pose, and room for their volumes and tiles. Without memory there are none.
+// Finds the objects of the pose, and makes their volumes and tiles. Without memory there are none.
 bool dnrt_find_objects(struct dnrt *s, const struct scene_pose *pose);
 bool dnrt_make_tiles(struct dnrt *s);
 void dnrt_follow(void *state, const struct scene_pose *pose, bool wait);
 
 // ---- dnrt_intrusion.c
 
-// Room for the depth maps of all objects, of which none is valid.
+// Makes depth maps for all objects, none of them valid.
 bool dnrt_make_maps(struct dnrt *s);
 // Draws those that are not valid.
 void dnrt_record_maps(struct dnrt *s, struct gpu_cmd *cmd, const struct frame_view *view);
@@ -92,7 +92,7 @@ void dnrt_record_maps(struct dnrt *s, struct gpu_cmd *cmd, const struct frame_vi
 // ---- dnrt_self.c
 
 bool dnrt_upload_self(struct dnrt *s, const struct tensors *bake);
-// Room for the instances of a scene.
+// Allocates the table of a scene's instances.
 bool dnrt_make_own(struct dnrt *s, const struct scene *scene);
 // After all objects of the frame have been placed.
 void dnrt_place_own(struct dnrt *s, const struct scene *scene);

@@ -1,7 +1,7 @@
 // The volume of each object whose light has changed: π Σ c_j m_j, the change of irradiance of a
-// receiver that faces the object's centre (Giuffrida 2016, equation 16). Light d_j of lamps is
-// reflected, but not hidden: π Σ d_j t_j, with t = m + k. One lookup per pixel is then enough,
-// whatever the number of coefficients. An invocation has four neighbouring samples.
+// receiver that faces the object's centre (Giuffrida 2016, equation 16). Light d_j of punctual
+// lights is reflected, but not occluded: π Σ d_j t_j, with t = m + k. One lookup per pixel is then
+// enough, whatever the number of coefficients. An invocation has four neighbouring samples.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -45,24 +45,24 @@ layout(set = 0, binding = 5, scalar) readonly buffer dnrt_changed
 #include "techniques/dnrt/dnrt_samples.glsl"
 
 // Σ π (c_j m_j + d_j t_j) of four samples in each colour.
-mat3x4 product(uint shape_index, uint light_index, uint lamps_index, uint first, uint count)
+mat3x4 product(uint shape_index, uint light_index, uint punctual_index, uint first, uint count)
 {
     dnrt_gpu_shape shape = shape_table[shape_index];
     uint words = samples_words(count);
     mat3x4 sum = mat3x4(0.0);
     for (uint j = 0; j < COEFFICIENTS; j++) {
-        vec3 light = light_table[light_index + j], lamps = vec3(0.0);
+        vec3 light = light_table[light_index + j], punctual = vec3(0.0);
         vec4 hidden = vec4(0.0);
         if (PLANES == 4u) {
             uint plane = PLANES * j + 3u;
-            lamps = light_table[lamps_index + j];
+            punctual = light_table[punctual_index + j];
             hidden = shape.scale[plane] * samples_of(shape.first_word + plane * words, first);
         }
         for (uint c = 0; c < 3; c++) {
             uint plane = PLANES * j + c;
-            sum[c] += ((light[c] + lamps[c]) * shape.scale[plane]) *
+            sum[c] += ((light[c] + punctual[c]) * shape.scale[plane]) *
                           samples_of(shape.first_word + plane * words, first) +
-                      lamps[c] * hidden;
+                      punctual[c] * hidden;
         }
     }
     return sum;
@@ -76,10 +76,10 @@ void main()
     dnrt_gpu_object object = object_table[index];
     if (first >= count || object.shape < 0) return;
     uint light = push.first + index * DNRT_COEFFICIENTS;
-    uint lamps = push.lamps + index * DNRT_COEFFICIENTS;
-    mat3x4 sum = product(NORMALS * uint(object.shape) + normal, light, lamps, first, count);
+    uint punctual = push.punctual + index * DNRT_COEFFICIENTS;
+    mat3x4 sum = product(NORMALS * uint(object.shape) + normal, light, punctual, first, count);
     if (object.part > 0.0) {
-        mat3x4 next = product(NORMALS * uint(object.next) + normal, light, lamps, first, count);
+        mat3x4 next = product(NORMALS * uint(object.next) + normal, light, punctual, first, count);
         sum = (1.0 - object.part) * sum + object.part * next;
     }
     ivec3 to =

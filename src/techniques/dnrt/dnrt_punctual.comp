@@ -1,8 +1,8 @@
-// Light of lamps that each object reflects: irradiance coefficients in the object's frame, times π.
-// A lamp of irradiance E from direction ω has E A_l Y_j(ω), A_l the bands' factors of the clamped
-// cosine. Its shadow is looked up on a disk before the bounding sphere, where the object itself
-// occludes nothing. An object whose light differs from that of the last frame loses its shape in
-// `changed`, so that the pass `light` lists it.
+// Light of punctual lights at each object: irradiance coefficients in the object's frame, times π.
+// Irradiance E from direction ω adds E A_l Y_j(ω), A_l the bands' factors of the clamped cosine.
+// The shadow is looked up on a disk before the bounding sphere, where the object itself occludes
+// nothing. An object whose light differs from that of the last frame loses its shape in `changed`,
+// so that the pass `light` lists it.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -24,7 +24,7 @@ layout(local_size_x = DNRT_LOCAL) in;
 
 layout(push_constant, scalar) uniform push_block
 {
-    dnrt_lamps_push push;
+    dnrt_punctual_push push;
 };
 layout(set = 0, binding = 1, scalar) readonly buffer dnrt_objects
 {
@@ -52,7 +52,7 @@ vec2 disk_point(int i)
     return sqrt((float(i) + 0.5) / float(POINTS)) * vec2(cos(angle), sin(angle));
 }
 
-// Share of the disk of the sphere's radius that the lamp lights, `distance` before the centre.
+// Lit share of a disk of the sphere's radius, `distance` before the centre.
 float lit_share(frame_light light, vec3 centre, vec3 to_light, float radius, float distance)
 {
     if (light.shadow_first < 0) return 1.0;
@@ -67,8 +67,8 @@ float lit_share(frame_light light, vec3 centre, vec3 to_light, float radius, flo
     return lit / float(POINTS);
 }
 
-// The irradiance at the centre of a surface that faces the lamp, of which `to_light` is the
-// direction. A lamp within the bounding sphere is at its border.
+// Irradiance at the centre on a surface that faces the light; *to_light: its direction. A light
+// within the bounding sphere is moved to its border.
 vec3 irradiance_by(frame_light light, dnrt_gpu_object object, float radius, out vec3 to_light)
 {
     const float MARGIN = 1.25; // radii: farther than a texel of the shadow map before the sphere
