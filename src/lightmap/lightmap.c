@@ -59,16 +59,17 @@ bool lightmap_positions(const struct lightmap *map, enum lightmap_side side, str
 static bool fill(struct lightmap *map, const bool *hidden)
 {
     const size_t places = (size_t)map->charts.width * map->charts.height;
-    uint32_t *shown = charts_fill(&map->charts, hidden);
-    const bool ok = shown;
+    uint32_t *nearest_valid = charts_fill(&map->charts, hidden);
+    const bool ok = nearest_valid;
     for (uint32_t i = 0; ok && i < map->charts.side_texel_count; i++)
-        if (shown[i] != i) memcpy(texel_at(map, i), texel_at(map, shown[i]), 3 * sizeof(float));
+        if (nearest_valid[i] != i)
+            memcpy(texel_at(map, i), texel_at(map, nearest_valid[i]), 3 * sizeof(float));
     for (size_t i = 0; ok && i < (map->has_back ? 2 : 1) * places; i++) {
         const uint32_t owner = chart_texel_of_place(&map->charts, i);
         float *pixel = map->irradiance[i / places].pixels + 3 * (i % places);
         if (owner != CHART_NONE) memmove(pixel, texel_at(map, owner), 3 * sizeof *pixel);
     }
-    host_free(map->host, shown);
+    host_free(map->host, nearest_valid);
     return ok;
 }
 

@@ -169,6 +169,6 @@ static inline size_t charts_place_count(const struct charts *charts)
 }
 // The texel of a place; CHART_NONE: none.
 uint32_t chart_texel_of_place(const struct charts *charts, size_t place);
-// [side_texel_count] the texel whose light each one shows: itself, or where `hidden` the nearest of
-// the same side of its chart that is not; itself where all are. Owned by the caller.
+// [side_texel_count] nearest valid texel of each: itself, or where `hidden` the nearest on the same
+// side of its chart that is not; itself where all are. Owned by the caller.
 uint32_t *charts_fill(const struct charts *charts, const bool *hidden);

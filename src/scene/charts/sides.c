@@ -98,7 +98,7 @@ uint32_t chart_texel_of_place(const struct charts *charts, size_t place)
 
 struct filling {
     const struct charts *charts;
-    uint32_t *shown, *next; // CHART_NONE: not known yet
+    uint32_t *nearest_valid, *next; // CHART_NONE: not known yet
 };
 
 // A neighbour's value of the last sweep: the first of those along the edges, then of the corners.
@@ -115,7 +115,7 @@ static uint32_t neighbor_value(const struct filling *f, uint32_t texel)
         uint32_t neighbor = charts->owner[at];
         if (neighbor == CHART_NONE) continue;
         if (chart_is_back(charts, texel)) neighbor = back_of(chart_of(charts, texel), neighbor);
-        if (f->shown[neighbor] != CHART_NONE) return f->shown[neighbor];
+        if (f->nearest_valid[neighbor] != CHART_NONE) return f->nearest_valid[neighbor];
     }
     return CHART_NONE;
 }
@@ -124,8 +124,8 @@ static bool sweep(const struct filling *f)
 {
     bool changed = false;
     for (uint32_t i = 0; i < f->charts->side_texel_count; i++) {
-        f->next[i] = f->shown[i] != CHART_NONE ? f->shown[i] : neighbor_value(f, i);
-        changed |= f->next[i] != f->shown[i];
+        f->next[i] = f->nearest_valid[i] != CHART_NONE ? f->nearest_valid[i] : neighbor_value(f, i);
+        changed |= f->next[i] != f->nearest_valid[i];
     }
     return changed;
 }
@@ -134,17 +134,17 @@ uint32_t *charts_fill(const struct charts *charts, const bool *hidden)
 {
     const size_t count = charts->side_texel_count;
     struct filling f = { .charts = charts,
-                         .shown = host_alloc(charts->host, count, sizeof *f.shown),
+                         .nearest_valid = host_alloc(charts->host, count, sizeof *f.nearest_valid),
                          .next = host_alloc(charts->host, count, sizeof *f.next) };
-    const bool ok = f.shown && f.next;
+    const bool ok = f.nearest_valid && f.next;
     if (ok) {
-        for (uint32_t i = 0; i < count; i++) f.shown[i] = hidden[i] ? CHART_NONE : i;
-        while (sweep(&f)) memcpy(f.shown, f.next, count * sizeof *f.shown);
+        for (uint32_t i = 0; i < count; i++) f.nearest_valid[i] = hidden[i] ? CHART_NONE : i;
+        while (sweep(&f)) memcpy(f.nearest_valid, f.next, count * sizeof *f.nearest_valid);
         for (uint32_t i = 0; i < count; i++)
-            if (f.shown[i] == CHART_NONE) f.shown[i] = i;
+            if (f.nearest_valid[i] == CHART_NONE) f.nearest_valid[i] = i;
     }
     host_free(charts->host, f.next);
-    if (ok) return f.shown;
-    host_free(charts->host, f.shown);
+    if (ok) return f.nearest_valid;
+    host_free(charts->host, f.nearest_valid);
     return NULL;
 }

@@ -174,7 +174,7 @@ static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
 static gpu_image light_map(void *state)
 {
     const struct ort *s = state;
-    return s->light_map.images[s->light_map.shown];
+    return s->light_map.images[s->light_map.front];
 }
 
 static struct light_map_paint *paint(void *state)

@@ -14,9 +14,9 @@ struct content {
     const uint8_t *links; // ORT_LINKS
     uint8_t *level;       // as ort_maps.level
     struct light_map_texels texels;
-    uint32_t *shown; // [texels] whose light each one shows
-    float *scale;    // [maps] of bytes
-    uint8_t *bytes;  // as ort_maps.bytes
+    uint32_t *nearest_valid; // [texels]
+    float *scale;            // [maps] of bytes
+    uint8_t *bytes;          // as ort_maps.bytes
 };
 
 // Light that scatters is all diffuse light of a surface: it is received by shading normals, as
@@ -151,14 +151,14 @@ bool ort_upload(struct ort *s, const struct tensors *bake)
     struct content c;
     if (!find_tensors(s, bake, &c)) return false;
     if (s->map.texel_count == 0) return true;
-    c.shown = light_map_shown(&c.texels, s->host);
-    const bool ok = c.shown && find_levels(s, &c) && upload_steps(s, &c) && upload_maps(s, &c) &&
-                    upload_places(s) &&
+    c.nearest_valid = light_map_nearest_valid(&c.texels, s->host);
+    const bool ok = c.nearest_valid && find_levels(s, &c) && upload_steps(s, &c) &&
+                    upload_maps(s, &c) && upload_places(s) &&
                     light_map_upload_texels(&c.texels, s->host, s->gpu, &s->tables.texels) &&
                     light_map_upload_sky(&c.texels, s->host, s->gpu, bake, &s->tables.sky) &&
-                    light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c.shown,
-                                     c.texels.sky, bake);
-    host_free(s->host, c.shown);
+                    light_map_upload(&s->light_map, (uint32_t)s->followed.places.count,
+                                     c.nearest_valid, c.texels.sky, bake);
+    host_free(s->host, c.nearest_valid);
     host_free(s->host, c.level);
     host_free(s->host, c.scale);
     host_free(s->host, c.bytes);

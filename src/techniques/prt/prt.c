@@ -107,8 +107,8 @@ static void list_pipelines(const struct prt *s, struct gpu_objects *out)
                   .consts = constants });
 }
 
-// Objects of the map that shows receivers.
-static void list_shown(const struct prt *s, struct gpu_objects *out)
+// Objects of the map in which pixels look up the light of receivers.
+static void list_lookup(const struct prt *s, struct gpu_objects *out)
 {
     if (s->receivers.at_vertices) {
         if (s->receivers.count > 0)
@@ -127,7 +127,7 @@ static void list(const struct prt *s, struct gpu_objects *out)
 {
     const uint32_t rows = prt_codebook_rows(&s->options);
     gpu_objects_clear(out);
-    list_shown(s, out);
+    list_lookup(s, out);
     list_constants(&s->options, out->constants + LIGHT_MAP_CONSTANTS);
     prt_probes_list(&s->probes, offsetof(struct prt, probes), &s->options,
                     3u << LIGHT_MAP_CONSTANTS, out);
@@ -256,7 +256,7 @@ static bool has_light_map(const void *options)
 static gpu_image light_map(void *state)
 {
     const struct prt *s = state;
-    return s->light_map.images[s->light_map.shown];
+    return s->light_map.images[s->light_map.front];
 }
 
 static void destroy(void *state)

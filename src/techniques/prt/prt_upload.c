@@ -11,8 +11,8 @@ struct content {
         const uint16_t *rows, *cluster, *weight; // PRT_CODEBOOK, PRT_CLUSTER, PRT_WEIGHT
     } vectors, matrices;                         // NULL: not compressed
     const uint16_t *matrix;                      // PRT_MATRIX
-    float *emitted;  // [texels][3][4] with bounces, as LIGHT_MAP_EMITTED
-    uint32_t *shown; // [texels] whose light each one shows
+    float *emitted;          // [texels][3][4] with bounces, as LIGHT_MAP_EMITTED
+    uint32_t *nearest_valid; // [texels]
 };
 
 // Bounced light comes from all around: its vector irradiance is along the normal.
@@ -182,23 +182,23 @@ static bool upload_clusters(struct prt *s, const struct compressed *c, struct pr
            ok;
 }
 
-static bool upload_shown(struct prt *s, const struct content *c, const struct tensors *bake)
+static bool upload_lookup(struct prt *s, const struct content *c, const struct tensors *bake)
 {
     const uint32_t instances = (uint32_t)s->followed.places.count;
     if (s->receivers.at_vertices)
-        return prt_vertex_map_upload(&s->vertex_map, instances, c->shown, c->texels.emitted,
+        return prt_vertex_map_upload(&s->vertex_map, instances, c->nearest_valid, c->texels.emitted,
                                      &s->tables.texels);
     return light_map_upload_texels(&c->texels, s->host, s->gpu, &s->tables.texels) &&
-           light_map_upload(&s->light_map, instances, c->shown, c->texels.sky, bake);
+           light_map_upload(&s->light_map, instances, c->nearest_valid, c->texels.sky, bake);
 }
 
 static bool upload_all(struct prt *s, struct content *c, const struct tensors *bake)
 {
     if (s->receivers.count == 0) return true;
-    c->shown = prt_receivers_shown(&s->receivers, c->texels.point);
-    return c->shown && upload_transfer(s, c) && upload_matrices(s, c) &&
+    c->nearest_valid = prt_receivers_nearest_valid(&s->receivers, c->texels.point);
+    return c->nearest_valid && upload_transfer(s, c) && upload_matrices(s, c) &&
            upload_clusters(s, &c->vectors, &s->tables.vectors) &&
-           upload_clusters(s, &c->matrices, &s->tables.matrices) && upload_shown(s, c, bake);
+           upload_clusters(s, &c->matrices, &s->tables.matrices) && upload_lookup(s, c, bake);
 }
 
 bool prt_upload(struct prt *s, const struct tensors *bake)
@@ -207,7 +207,7 @@ bool prt_upload(struct prt *s, const struct tensors *bake)
     const bool ok = find_tensors(s, bake, &c) && upload_all(s, &c, bake) &&
                     prt_probes_upload(&s->probes, s->host, s->gpu,
                                       prt_receivers_bounds(&s->receivers), &s->options, bake);
-    host_free(s->host, c.shown);
+    host_free(s->host, c.nearest_valid);
     host_free(s->host, c.emitted);
     return ok;
 }

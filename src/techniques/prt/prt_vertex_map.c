@@ -90,14 +90,14 @@ static bool upload_surfaces(struct prt_vertex_map *map, uint32_t instances)
            ok;
 }
 
-static bool upload_corners(struct prt_vertex_map *map, const uint32_t *shown)
+static bool upload_corners(struct prt_vertex_map *map, const uint32_t *nearest_valid)
 {
     const struct prt_vertices *v = map->vertices;
     const size_t sides = v->count > v->front_count ? 2 : 1, count = sides * v->triangle_count;
     uint32_t(*corners)[4] = host_alloc(map->host, light_map_table_room(count), sizeof *corners);
     for (size_t t = 0; corners && t < count; t++)
         for (size_t k = 0; k < 3; k++)
-            if (v->corners[t][k] != PRT_NO_VERTEX) corners[t][k] = shown[v->corners[t][k]];
+            if (v->corners[t][k] != PRT_NO_VERTEX) corners[t][k] = nearest_valid[v->corners[t][k]];
     return light_map_table_upload(map->host, map->gpu, "corners", GPU_RGBA32U, corners, count,
                                   &map->corners);
 }
@@ -121,11 +121,11 @@ static bool upload_vertices(struct prt_vertex_map *map, const float *emitted, gp
                                   table);
 }
 
-bool prt_vertex_map_upload(struct prt_vertex_map *map, uint32_t instances, const uint32_t *shown,
-                           const float *emitted, gpu_image *table)
+bool prt_vertex_map_upload(struct prt_vertex_map *map, uint32_t instances,
+                           const uint32_t *nearest_valid, const float *emitted, gpu_image *table)
 {
     for (size_t i = 0; i < 12 * (size_t)map->vertices->count; i++) map->emits |= emitted[i] != 0.0f;
-    return upload_surfaces(map, instances) && upload_corners(map, shown) &&
+    return upload_surfaces(map, instances) && upload_corners(map, nearest_valid) &&
            upload_vertices(map, emitted, table);
 }
 

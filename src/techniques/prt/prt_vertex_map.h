@@ -27,10 +27,10 @@ void prt_vertex_map_init(struct prt_vertex_map *out, struct host *host, struct g
 enum { PRT_HAS_EMITTED_AT = LIGHT_MAP_CONSTANTS + 3 };
 void prt_vertex_map_list(const struct prt_vertex_map *map, size_t base, bool specular,
                          struct gpu_objects *out);
-// instances: of the scene. shown: [vertices] whose light each one shows. emitted: [vertices][3][4]
+// instances: of the scene. nearest_valid: [vertices]. emitted: [vertices][3][4]
 // irradiance and vector irradiance of emissive surfaces. table: of the normals and that light.
-bool prt_vertex_map_upload(struct prt_vertex_map *map, uint32_t instances, const uint32_t *shown,
-                           const float *emitted, gpu_image *table);
+bool prt_vertex_map_upload(struct prt_vertex_map *map, uint32_t instances,
+                           const uint32_t *nearest_valid, const float *emitted, gpu_image *table);
 // Irradiance and specular light of a view's pixels. Needs FRAME_ID.
 void prt_vertex_map_record_apply(const struct prt_vertex_map *map, struct gpu_cmd *cmd,
                                  const struct frame_view *view);

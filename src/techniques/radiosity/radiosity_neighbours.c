@@ -27,8 +27,9 @@ static void fill_neighbours(const struct radiosity *s, const struct radiosity_su
         const uint32_t x = t->x + k % 3 - 1, y = t->y + k / 3 - 1; // below 0: beyond the size
         if (x >= width || y >= height) continue;
         const uint32_t texel = chart_texel_of_place(charts, (size_t)(top + y) * width + x);
-        if (texel == CHART_NONE || c->shown[texel] == i) continue;
-        const struct chart_share share = { c->shown[texel], weight_of(c, i, c->shown[texel]) };
+        if (texel == CHART_NONE || c->nearest_valid[texel] == i) continue;
+        const struct chart_share share = { c->nearest_valid[texel],
+                                           weight_of(c, i, c->nearest_valid[texel]) };
         if (share.weight > 0.0f) *light_map_share_at(table, s->map.texel_count, i, count++) = share;
     }
 }

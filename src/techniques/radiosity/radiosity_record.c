@@ -133,8 +133,8 @@ static void record_smooth(struct radiosity *s, struct gpu_cmd *cmd, struct span 
                  &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
-// Of the texels whose light is shown.
-static gpu_image shown_light(const struct radiosity *s)
+// The light of texels that the map gets.
+static gpu_image final_light(const struct radiosity *s)
 {
     return s->options.smooth ? s->tables.smoothed : s->tables.light;
 }
@@ -183,10 +183,10 @@ static void record_rows(struct radiosity *s, struct gpu_cmd *cmd, const struct f
         record_smooth(s, cmd, rows);
         break;
     case RADIOSITY_LIGHT_MAP:
-        light_map_record_show(&s->light_map, cmd, shown_light(s), rows.first, rows.count);
+        light_map_record_show(&s->light_map, cmd, final_light(s), rows.first, rows.count);
         break;
     default:
-        light_map_record_seams(&s->light_map, cmd, shown_light(s), rows.first, rows.count);
+        light_map_record_seams(&s->light_map, cmd, final_light(s), rows.first, rows.count);
     }
 }
 

@@ -95,7 +95,7 @@ void radiosity_destroy_rows(struct radiosity *state, struct radiosity_rows *rows
 struct radiosity_surroundings {
     const struct light_map_texels *texels;
     const float *inverse_distance; // [texels] harmonic mean of the distances of what each one sees
-    const uint32_t *shown;         // [texels] whose light each one shows
+    const uint32_t *nearest_valid; // [texels]
 };
 // The neighbours over which light is smoothed. sky: [texels][4], becomes that of the texels,
 // smoothed.
@@ -122,7 +122,8 @@ void radiosity_record_part(struct radiosity *state, struct gpu_cmd *cmd,
 // ---- radiosity_view.c
 
 extern const struct technique_debug_view radiosity_views[];
-// points: [texels] position (m), share, of a bake; shown: [texels] whose light each one shows.
-bool radiosity_view_init(struct radiosity *state, const float *points, const uint32_t *shown);
+// points: [texels] position (m), share, of a bake.
+bool radiosity_view_init(struct radiosity *state, const float *points,
+                         const uint32_t *nearest_valid);
 void radiosity_view_record(struct radiosity *state, struct gpu_cmd *cmd,
                            const struct frame_view *view, const char *name, gpu_image out);

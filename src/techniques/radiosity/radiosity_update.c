@@ -67,7 +67,7 @@ static void go_on(struct radiosity *s)
     if (at->stage == RADIOSITY_GATHER) s->probes.fresh = false;
     if (at->stage < RADIOSITY_STAGES) return;
     u->running = false;
-    s->light_map.shown = 1 - s->light_map.shown;
+    s->light_map.front = 1 - s->light_map.front;
 }
 
 static void record_rows(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view,

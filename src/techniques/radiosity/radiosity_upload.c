@@ -12,7 +12,7 @@ struct content {
     const uint8_t *part;
     struct light_map_texels texels;
     const float *inverse_distance;
-    uint32_t *shown; // [texels] whose light each one shows
+    uint32_t *nearest_valid; // [texels]
     size_t sources, cluster_sources;
 };
 
@@ -211,11 +211,13 @@ static bool upload_clusters(struct radiosity *s, const struct content *c)
 static bool upload_light_map(struct radiosity *s, const struct content *c,
                              const struct tensors *bake)
 {
-    const struct radiosity_surroundings around = { &c->texels, c->inverse_distance, c->shown };
+    const struct radiosity_surroundings around = { &c->texels, c->inverse_distance,
+                                                   c->nearest_valid };
     float *smoothed = host_alloc(s->host, s->map.texel_count, 4 * sizeof *smoothed);
-    const bool ok = smoothed && radiosity_upload_neighbours(s, &around, smoothed) &&
-                    light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c->shown,
-                                     s->options.smooth ? smoothed : c->texels.sky, bake);
+    const bool ok =
+        smoothed && radiosity_upload_neighbours(s, &around, smoothed) &&
+        light_map_upload(&s->light_map, (uint32_t)s->followed.places.count, c->nearest_valid,
+                         s->options.smooth ? smoothed : c->texels.sky, bake);
     host_free(s->host, smoothed);
     return ok;
 }
@@ -227,7 +229,7 @@ static bool upload_all(struct radiosity *s, const struct content *c, const struc
            radiosity_upload_factors(s, c->source, c->factor, c->cluster_source,
                                     c->cluster_factor) &&
            upload_light_map(s, c, bake) && upload_clusters(s, c) &&
-           radiosity_view_init(s, c->texels.point, c->shown);
+           radiosity_view_init(s, c->texels.point, c->nearest_valid);
 }
 
 bool radiosity_upload(struct radiosity *s, const struct tensors *bake)
@@ -236,8 +238,8 @@ bool radiosity_upload(struct radiosity *s, const struct tensors *bake)
     if (!find_tensors(s, bake, &c)) return false;
     if (s->map.texel_count == 0) return true;
     if (!divide(s, &c) || !check_sources(s, &c) || !check_factors(s, &c)) return false;
-    c.shown = light_map_shown(&c.texels, s->host);
-    const bool ok = c.shown && upload_all(s, &c, bake);
-    host_free(s->host, c.shown);
+    c.nearest_valid = light_map_nearest_valid(&c.texels, s->host);
+    const bool ok = c.nearest_valid && upload_all(s, &c, bake);
+    host_free(s->host, c.nearest_valid);
     return ok;
 }

@@ -34,7 +34,7 @@ static struct radiosity_gpu_label label_of(const struct radiosity *s, const floa
                                          .state = filled ? RADIOSITY_FILLED : state };
 }
 
-bool radiosity_view_init(struct radiosity *s, const float *points, const uint32_t *shown)
+bool radiosity_view_init(struct radiosity *s, const float *points, const uint32_t *nearest_valid)
 {
     const size_t places = charts_place_count(&s->map.charts);
     struct radiosity_gpu_label *labels = host_alloc(s->host, places, sizeof *labels);
@@ -42,7 +42,7 @@ bool radiosity_view_init(struct radiosity *s, const float *points, const uint32_
         const uint32_t texel = chart_texel_of_place(&s->map.charts, i);
         labels[i] = texel == CHART_NONE
                         ? (struct radiosity_gpu_label){ .state = RADIOSITY_NO_TEXEL }
-                        : label_of(s, points, shown[texel], i);
+                        : label_of(s, points, nearest_valid[texel], i);
     }
     return light_map_buffer_upload(s->host, s->gpu, "labels", labels, places * sizeof *labels,
                                    &s->tables.labels);

@@ -120,17 +120,17 @@ TEST(hidden_vertices_show_the_nearest_along_edges)
     bool *hidden = calloc(v.count, sizeof *hidden);
     assert_non_null(hidden);
     for (uint32_t i = 0; i < v.count; i++) hidden[i] = fabsf(v.at[i].position.x) < 3.5f;
-    uint32_t *shown = prt_vertices_fill(&v, hidden);
+    uint32_t *nearest_valid = prt_vertices_fill(&v, hidden);
     for (uint32_t i = 0; i < v.count; i++) {
-        const vec3s p = v.at[i].position, q = v.at[shown[i]].position;
-        CHECK(!hidden[shown[i]] && (hidden[i] || shown[i] == i));
+        const vec3s p = v.at[i].position, q = v.at[nearest_valid[i]].position;
+        CHECK(!hidden[nearest_valid[i]] && (hidden[i] || nearest_valid[i] == i));
         if (p.x != 0) CHECK(p.z == q.z && p.x * q.x > 0);
     }
-    host_free(test_host(), shown);
+    host_free(test_host(), nearest_valid);
     for (uint32_t i = 0; i < v.count; i++) hidden[i] = true;
-    shown = prt_vertices_fill(&v, hidden);
-    for (uint32_t i = 0; i < v.count; i++) CHECK(shown[i] == i);
-    host_free(test_host(), shown);
+    nearest_valid = prt_vertices_fill(&v, hidden);
+    for (uint32_t i = 0; i < v.count; i++) CHECK(nearest_valid[i] == i);
+    host_free(test_host(), nearest_valid);
     free(hidden);
     prt_vertices_finish(&v);
     prt_fixture_close(&f);

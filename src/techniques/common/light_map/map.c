@@ -91,7 +91,7 @@ struct pair {
 };
 
 // Places that show no texel are not in the table.
-static bool upload_owners(struct light_map *map, const uint32_t *shown)
+static bool upload_owners(struct light_map *map, const uint32_t *nearest_valid)
 {
     const size_t places = charts_place_count(map->charts);
     struct pair *owners = host_alloc(map->host, light_map_table_room(places), sizeof *owners);
@@ -99,7 +99,7 @@ static bool upload_owners(struct light_map *map, const uint32_t *shown)
         const uint32_t texel = chart_texel_of_place(map->charts, i);
         if (texel == CHART_NONE) continue;
         owners[map->owner_count++] =
-            (struct pair){ light_map_place_word(map->charts, i), shown[texel] };
+            (struct pair){ light_map_place_word(map->charts, i), nearest_valid[texel] };
     }
     return light_map_table_upload(map->host, map->gpu, "owners", GPU_RG32U, owners,
                                   map->owner_count, &map->owners);
@@ -136,7 +136,7 @@ static bool find_rows(const struct light_map *map, const struct tensors *bake, u
 }
 
 static bool upload_rows(struct light_map *map, const struct light_map_seam_rows *from,
-                        const uint32_t *shown)
+                        const uint32_t *nearest_valid)
 {
     const size_t places = map->seam_count, entries = CHART_SEAM_ENTRIES;
     const size_t count = places * entries / LIGHT_MAP_PAIR;
@@ -144,7 +144,7 @@ static bool upload_rows(struct light_map *map, const struct light_map_seam_rows 
         host_alloc(map->host, light_map_table_room(count), LIGHT_MAP_PAIR * sizeof *rows);
     for (size_t i = 0; rows && i < places * entries; i++)
         *light_map_share_at(rows, places, i / entries, i % entries) =
-            (struct chart_share){ shown[from->texel[i]], from->weight[i] };
+            (struct chart_share){ nearest_valid[from->texel[i]], from->weight[i] };
     return light_map_table_upload(map->host, map->gpu, "seams", GPU_RGBA32U, rows, count,
                                   &map->seam_rows);
 }
@@ -160,18 +160,18 @@ static bool upload_places(struct light_map *map, const struct chart_seams *seams
                                   &map->seam_places);
 }
 
-bool light_map_upload(struct light_map *map, uint32_t instances, const uint32_t *shown,
+bool light_map_upload(struct light_map *map, uint32_t instances, const uint32_t *nearest_valid,
                       const float *sky, const struct tensors *bake)
 {
     struct chart_seams seams;
     struct light_map_seam_rows rows;
     if (!charts_seams_init(&seams, map->charts, CHART_SEAM_POINTS)) return false;
-    const bool ok = find_rows(map, bake, seams.count, &rows) && upload_owners(map, shown) &&
-                    upload_places(map, &seams) && upload_rows(map, &rows, shown) &&
+    const bool ok = find_rows(map, bake, seams.count, &rows) && upload_owners(map, nearest_valid) &&
+                    upload_places(map, &seams) && upload_rows(map, &rows, nearest_valid) &&
                     upload_triangles(map, instances) &&
                     (map->specular != LIGHT_MAP_SPECULAR ||
                      light_map_upload_visible_sky(map->host, map->gpu, map->charts, &seams, &rows,
-                                                  shown, sky, &map->visible_sky));
+                                                  nearest_valid, sky, &map->visible_sky));
     charts_seams_finish(&seams);
     return ok;
 }
@@ -187,13 +187,13 @@ uint64_t light_map_bytes(uint64_t texels)
 
 // ---- passes
 
-// The light of texels, and the image that shows it.
-struct shown {
+// The light of texels, and the image that it is written to.
+struct map_target {
     gpu_image light, image;
     uint32_t layers; // of a side
 };
 
-static void record_show(const struct light_map *map, struct gpu_cmd *cmd, struct shown s,
+static void record_show(const struct light_map *map, struct gpu_cmd *cmd, struct map_target s,
                         uint32_t first, uint32_t count)
 {
     const struct light_map_show_push push = { first, count, map->charts->side_texel_count,
@@ -205,7 +205,7 @@ static void record_show(const struct light_map *map, struct gpu_cmd *cmd, struct
                  &push, sizeof push, gpu_groups(count, LIGHT_MAP_LOCAL), 1, 1);
 }
 
-static void record_seams(const struct light_map *map, struct gpu_cmd *cmd, struct shown s,
+static void record_seams(const struct light_map *map, struct gpu_cmd *cmd, struct map_target s,
                          uint32_t first, uint32_t count)
 {
     const struct light_map_seams_push push = { first,
@@ -222,9 +222,9 @@ static void record_seams(const struct light_map *map, struct gpu_cmd *cmd, struc
                  &push, sizeof push, gpu_groups(count, LIGHT_MAP_LOCAL), 1, 1);
 }
 
-static struct shown newest(const struct light_map *map, gpu_image light)
+static struct map_target newest(const struct light_map *map, gpu_image light)
 {
-    return (struct shown){ light, map->images[1 - map->shown], LIGHT_MAP_LAYERS };
+    return (struct map_target){ light, map->images[1 - map->front], LIGHT_MAP_LAYERS };
 }
 
 void light_map_record_show(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
@@ -239,7 +239,7 @@ void light_map_record_seams(const struct light_map *map, struct gpu_cmd *cmd, gp
     record_seams(map, cmd, newest(map, light), first, count);
 }
 
-static void record_whole(const struct light_map *map, struct gpu_cmd *cmd, struct shown s,
+static void record_whole(const struct light_map *map, struct gpu_cmd *cmd, struct map_target s,
                          bool seams)
 {
     record_show(map, cmd, s, 0, map->owner_count);
@@ -250,14 +250,14 @@ void light_map_record_all(struct light_map *map, struct gpu_cmd *cmd, gpu_image 
 {
     gpu_scope_begin(cmd, "light_map");
     record_whole(map, cmd, newest(map, light), seams);
-    map->shown = 1 - map->shown;
+    map->front = 1 - map->front;
     gpu_scope_end(cmd);
 }
 
 void light_map_record_reflected(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
                                 bool seams)
 {
-    record_whole(map, cmd, (struct shown){ light, map->reflected, 1 }, seams);
+    record_whole(map, cmd, (struct map_target){ light, map->reflected, 1 }, seams);
 }
 
 // One variant for all scenes mirrors the environment: few have both its map and moved instances.
@@ -284,7 +284,7 @@ void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
         GPU_BIND(FRAME_SURFACE_BINDINGS(view), view->environment_binding,
                  { .name = "id", .image = layers[FRAME_ID] },
                  LIGHT_MAP_SURFACE_BINDINGS(&map->surfaces, cmd),
-                 { .name = "light_map", .image = map->images[map->shown], .sampler = map->linear },
+                 { .name = "light_map", .image = map->images[map->front], .sampler = map->linear },
                  { .name = "reflected_map", .image = map->reflected, .sampler = map->linear },
                  { .name = "visible_sky", .image = map->visible_sky, .sampler = map->linear },
                  { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },

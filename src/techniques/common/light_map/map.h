@@ -22,12 +22,12 @@ struct light_map {
     const struct charts *charts; // stay where they are
     enum light_map_specular specular;
     struct light_map_surfaces surfaces;
-    gpu_image owners;                 // places and the texels whose light they show
+    gpu_image owners;                 // places and their nearest valid texels
     gpu_image seam_places, seam_rows; // places beside seams and their sums
     uint32_t owner_count, seam_count; // of places
     gpu_image visible_sky;            // with LIGHT_MAP_SPECULAR (visible_sky.h)
-    gpu_image images[2];              // a map appears whole: one is shown, the other is written
-    int shown;                        // of the images
+    gpu_image images[2];              // a map appears whole: one is looked up, one is written
+    int front;                        // the image that lookups read
     gpu_image reflected;              // with LIGHT_MAP_REFLECTED, of the newest view
     gpu_sampler linear;
     gpu_pipeline show, seams;
@@ -44,25 +44,25 @@ void light_map_init(struct light_map *out, struct host *host, struct gpu *gpu,
 enum { LIGHT_MAP_CONSTANTS = 8 };
 void light_map_list(const struct light_map *map, size_t base, struct gpu_objects *out);
 // Tables of the charts and of the seams of a bake, which is untrusted. instances: of the scene.
-// shown: [side_texel_count] whose light each texel shows (charts_fill). sky: [side_texel_count][4]
-// what a texel sees of the sky, as struct light_map_texels has it.
-bool light_map_upload(struct light_map *map, uint32_t instances, const uint32_t *shown,
+// nearest_valid: [side_texel_count] as of charts_fill. sky: [side_texel_count][4] visible sky of a
+// texel, as struct light_map_texels has it.
+bool light_map_upload(struct light_map *map, uint32_t instances, const uint32_t *nearest_valid,
                       const float *sky, const struct tensors *bake);
 // Approximate bytes on the GPU of a map; texels: of both sides.
 uint64_t light_map_bytes(uint64_t texels);
 
-// Rows first … first + count − 1, of owner_count and seam_count, of the map that is not shown.
-// light: [colour][texel]. The seams overwrite what their places show.
+// Writes rows first … first + count − 1, of owner_count and seam_count, of the back image. light:
+// [colour][texel]. Seams overwrite their places.
 void light_map_record_show(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
                            uint32_t first, uint32_t count);
 void light_map_record_seams(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
                             uint32_t first, uint32_t count);
-// The whole map in a scope, with or without closed seams; it is shown from now on.
+// Writes the whole map in a scope, with or without closed seams, and swaps the images.
 void light_map_record_all(struct light_map *map, struct gpu_cmd *cmd, gpu_image light, bool seams);
 // The radiance that the specular lobes of texels reflect towards a view. light: [texel], four
 // halves each.
 void light_map_record_reflected(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
                                 bool seams);
-// Irradiance and specular light of a view's pixels, from the map that is shown. Needs FRAME_ID.
+// Irradiance and specular light of a view's pixels, from the front image. Needs FRAME_ID.
 void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
                             const struct frame_view *view);

@@ -24,15 +24,15 @@ float light_map_texel_area(const struct light_map_texels *t, uint32_t texel)
     return t->point[4 * (size_t)texel + 3] * chart_texel_of(t->charts, texel)->area_m2;
 }
 
-uint32_t *light_map_shown(const struct light_map_texels *t, struct host *host)
+uint32_t *light_map_nearest_valid(const struct light_map_texels *t, struct host *host)
 {
     const uint32_t count = t->charts->side_texel_count;
     bool *hidden = host_alloc(host, count, sizeof *hidden);
     for (uint32_t i = 0; hidden && i < count; i++)
         hidden[i] = !(t->point[4 * (size_t)i + 3] > 0.0f);
-    uint32_t *shown = hidden ? charts_fill(t->charts, hidden) : NULL;
+    uint32_t *nearest_valid = hidden ? charts_fill(t->charts, hidden) : NULL;
     host_free(host, hidden);
-    return shown;
+    return nearest_valid;
 }
 
 // The mean shading normal, of length 1 or less.

@@ -21,8 +21,9 @@ bool light_map_find_texels(struct light_map_texels *out, struct host *host,
                            const struct charts *charts, const struct tensors *bake);
 // Area of the part of a texel that is not inside geometry, m².
 float light_map_texel_area(const struct light_map_texels *texels, uint32_t texel);
-// [texels] whose light each one shows (charts_fill): hidden ones have no area. Owned by the caller.
-uint32_t *light_map_shown(const struct light_map_texels *texels, struct host *host);
+// [texels] nearest valid texel of each (charts_fill): hidden ones have no area. Owned by the
+// caller.
+uint32_t *light_map_nearest_valid(const struct light_map_texels *texels, struct host *host);
 bool light_map_upload_texels(const struct light_map_texels *texels, struct host *host,
                              struct gpu *gpu, gpu_image *out);
 // The table of the shares of the environment's patches, of the tensor LIGHT_MAP_SKY_SHARES.

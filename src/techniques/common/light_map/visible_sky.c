@@ -16,19 +16,19 @@ static void store(const float *sum, uint16_t *out)
 }
 
 static void fill(const struct charts *charts, const struct chart_seams *seams,
-                 const struct light_map_seam_rows *rows, const uint32_t *shown, const float *sky,
-                 uint16_t *out)
+                 const struct light_map_seam_rows *rows, const uint32_t *nearest_valid,
+                 const float *sky, uint16_t *out)
 {
     for (size_t i = 0; i < charts_place_count(charts); i++) {
         const uint32_t texel = chart_texel_of_place(charts, i);
         float sum[4] = { 0 };
-        if (texel != CHART_NONE) add(sky + 4 * (size_t)shown[texel], 1.0f, sum);
+        if (texel != CHART_NONE) add(sky + 4 * (size_t)nearest_valid[texel], 1.0f, sum);
         store(sum, out + 4 * i);
     }
     for (size_t i = 0; i < seams->count; i++) {
         float sum[4] = { 0 };
         for (size_t k = CHART_SEAM_ENTRIES * i; k < CHART_SEAM_ENTRIES * (i + 1); k++)
-            add(sky + 4 * (size_t)shown[rows->texel[k]], rows->weight[k], sum);
+            add(sky + 4 * (size_t)nearest_valid[rows->texel[k]], rows->weight[k], sum);
         store(sum, out + 4 * (size_t)seams->places[i]);
     }
 }
@@ -50,11 +50,11 @@ static bool upload(struct gpu *gpu, const struct charts *charts, const uint16_t 
 
 bool light_map_upload_visible_sky(struct host *host, struct gpu *gpu, const struct charts *charts,
                                   const struct chart_seams *seams,
-                                  const struct light_map_seam_rows *rows, const uint32_t *shown,
-                                  const float *sky, gpu_image *out)
+                                  const struct light_map_seam_rows *rows,
+                                  const uint32_t *nearest_valid, const float *sky, gpu_image *out)
 {
     uint16_t *values = host_alloc(host, charts_place_count(charts), 4 * sizeof *values);
-    if (values) fill(charts, seams, rows, shown, sky, values);
+    if (values) fill(charts, seams, rows, nearest_valid, sky, values);
     const bool ok = values && upload(gpu, charts, values, out);
     host_free(host, values);
     return ok;

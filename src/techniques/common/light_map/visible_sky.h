@@ -14,9 +14,9 @@ struct light_map_seam_rows {
     const float *weight;
 };
 
-// shown: [side_texel_count] whose light each texel shows. sky: [side_texel_count][4] irradiance and
+// nearest_valid: [side_texel_count] as of charts_fill. sky: [side_texel_count][4] irradiance and
 // vector irradiance under a sky of radiance 1.
 bool light_map_upload_visible_sky(struct host *host, struct gpu *gpu, const struct charts *charts,
                                   const struct chart_seams *seams,
-                                  const struct light_map_seam_rows *rows, const uint32_t *shown,
-                                  const float *sky, gpu_image *out);
+                                  const struct light_map_seam_rows *rows,
+                                  const uint32_t *nearest_valid, const float *sky, gpu_image *out);

@@ -21,13 +21,14 @@ bool prt_sent_init(struct prt_sent *out, const struct bake_task *task)
                               .emitted_bounces = bounces->data,
                               .direct = direct->data,
                               .bounce = bounce->data,
-                              .shown = prt_receivers_shown(&scene->receivers, point->data) };
-    return out->shown != NULL;
+                              .nearest_valid =
+                                  prt_receivers_nearest_valid(&scene->receivers, point->data) };
+    return out->nearest_valid != NULL;
 }
 
 void prt_sent_finish(struct prt_sent *sent)
 {
-    if (sent->scene) host_free(sent->scene->receivers.host, sent->shown);
+    if (sent->scene) host_free(sent->scene->receivers.host, sent->nearest_valid);
     *sent = (struct prt_sent){ 0 };
 }
 
@@ -50,7 +51,7 @@ static vec3s reflectance(const struct prt_sent *sent, uint32_t from)
 
 void prt_sent_radiance(const struct prt_sent *sent, uint32_t receiver, float *out)
 {
-    const uint32_t from = sent->shown[receiver];
+    const uint32_t from = sent->nearest_valid[receiver];
     const vec3s reflected = reflectance(sent, from);
     for (size_t i = 0; i < sent->coefficients; i++) {
         const size_t at = i * sent->receivers + from;
@@ -64,7 +65,7 @@ void prt_sent_radiance(const struct prt_sent *sent, uint32_t receiver, float *ou
 
 vec3s prt_sent_emission(const struct prt_sent *sent, uint32_t receiver)
 {
-    const size_t from = sent->shown[receiver];
+    const size_t from = sent->nearest_valid[receiver];
     vec3s out = reflectance(sent, (uint32_t)from);
     for (size_t c = 0; c < 3; c++)
         out.raw[c] *= sent->emitted[12 * from + 4 * c] + sent->emitted_bounces[3 * from + c];

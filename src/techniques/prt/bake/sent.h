@@ -8,7 +8,7 @@ struct prt_sent {
     size_t receivers, coefficients;
     const float *albedo, *emitted, *emitted_bounces;
     const uint16_t *direct, *bounce;
-    uint32_t *shown; // [receivers] in whose place hidden ones send
+    uint32_t *nearest_valid; // [receivers] hidden ones send its light
 };
 
 // For a bake with bounces. False: a tensor is missing, or no memory. prt_sent_finish accepts zero.

@@ -8,7 +8,7 @@
 void prt_series_finish(struct prt_series *s)
 {
     if (!s->host) return;
-    host_free(s->scene->receivers.host, s->shown);
+    host_free(s->scene->receivers.host, s->nearest_valid);
     host_free(s->host, s->term);
     host_free(s->host, s->sent);
     host_free(s->host, s->sum);
@@ -33,11 +33,11 @@ bool prt_series_init(struct prt_series *s, const struct bake_task *task)
                               .point = point->data,
                               .hits = hits->data };
     s->texels = s->scene->receivers.count;
-    s->shown = prt_receivers_shown(&s->scene->receivers, s->point);
+    s->nearest_valid = prt_receivers_nearest_valid(&s->scene->receivers, s->point);
     s->term = host_alloc(s->host, s->texels, sizeof *s->term);
     s->sent = host_alloc(s->host, s->texels, sizeof *s->sent);
     s->sum = host_alloc(s->host, s->texels, sizeof *s->sum);
-    return s->shown && s->term && s->sent && s->sum;
+    return s->nearest_valid && s->term && s->sent && s->sum;
 }
 
 // The factor of shading normals is that of light from all directions
@@ -49,7 +49,7 @@ static void reflect(struct prt_series *s)
         for (int c = 0; c < 3; c++) s->sent[i].raw[c] = diffuse * albedo[c] * s->term[i].raw[c];
     }
     for (size_t i = 0; i < s->texels; i++)
-        if (is_hidden(s, i)) s->sent[i] = s->sent[s->shown[i]];
+        if (is_hidden(s, i)) s->sent[i] = s->sent[s->nearest_valid[i]];
 }
 
 static vec4s gather(const struct prt_series *s, size_t texel)

@@ -15,10 +15,10 @@ struct prt_series {
     uint32_t texels;
     const float *albedo, *point; // of the first stage
     const uint32_t *hits;
-    uint32_t *shown; // [texels] in whose place hidden ones send
-    vec4s *term;     // [texels] by colour: at first T_0, then of the newest bounce
-    vec4s *sent;     // [texels] reflected of it
-    vec4s *sum;      // [texels] of all bounces
+    uint32_t *nearest_valid; // [texels] hidden ones send its light
+    vec4s *term;             // [texels] by colour: at first T_0, then of the newest bounce
+    vec4s *sent;             // [texels] reflected of it
+    vec4s *sum;              // [texels] of all bounces
 };
 
 // False: a tensor is missing, or no memory. prt_series_finish accepts zero.

@@ -61,13 +61,13 @@ uint32_t prt_receiver_at(const struct prt_receivers *r, const struct prt_point *
     return corner[choice < p->u ? 1 : choice < p->u + p->v ? 2 : 0];
 }
 
-uint32_t *prt_receivers_shown(const struct prt_receivers *r, const float *point)
+uint32_t *prt_receivers_nearest_valid(const struct prt_receivers *r, const float *point)
 {
     bool *hidden = host_alloc(r->host, r->count, sizeof *hidden);
     for (size_t i = 0; hidden && i < r->count; i++) hidden[i] = !(point[4 * i + 3] > 0.0f);
-    uint32_t *shown = !hidden          ? NULL
-                      : r->at_vertices ? prt_vertices_fill(&r->vertices, hidden)
-                                       : charts_fill(r->charts, hidden);
+    uint32_t *nearest_valid = !hidden          ? NULL
+                              : r->at_vertices ? prt_vertices_fill(&r->vertices, hidden)
+                                               : charts_fill(r->charts, hidden);
     host_free(r->host, hidden);
-    return shown;
+    return nearest_valid;
 }

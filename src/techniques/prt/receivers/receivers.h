@@ -41,6 +41,6 @@ struct prt_point {
 uint32_t prt_receiver_at(const struct prt_receivers *receivers, const struct prt_point *point,
                          float choice);
 
-// [count] the receiver whose light each one shows (charts_fill, prt_vertices_fill): hidden ones
-// have no share. point: [count][4] position and share. Owned by the caller.
-uint32_t *prt_receivers_shown(const struct prt_receivers *receivers, const float *point);
+// [count] nearest valid receiver of each (charts_fill, prt_vertices_fill): hidden ones have no
+// share. point: [count][4] position and share. Owned by the caller.
+uint32_t *prt_receivers_nearest_valid(const struct prt_receivers *receivers, const float *point);

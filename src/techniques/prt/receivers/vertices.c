@@ -208,8 +208,8 @@ bool prt_vertices_init(struct prt_vertices *out, struct host *host, const struct
 struct filling {
     const struct prt_vertices *vertices;
     const bool *hidden;
-    uint32_t *shown;
-    float *distance; // along edges, to `shown`
+    uint32_t *nearest_valid;
+    float *distance; // along edges, to `nearest_valid`
 };
 
 // Whether the way over its neighbour is shorter than the shortest yet.
@@ -221,7 +221,7 @@ static bool relax(struct filling *f, uint32_t vertex, uint32_t neighbor)
         f->distance[neighbor] + glms_vec3_distance(at[vertex].position, at[neighbor].position);
     if (!(way < f->distance[vertex])) return false;
     f->distance[vertex] = way;
-    f->shown[vertex] = f->shown[neighbor];
+    f->nearest_valid[vertex] = f->nearest_valid[neighbor];
     return true;
 }
 
@@ -243,16 +243,16 @@ uint32_t *prt_vertices_fill(const struct prt_vertices *v, const bool *hidden)
 {
     struct filling f = { .vertices = v,
                          .hidden = hidden,
-                         .shown = host_alloc(v->host, v->count, sizeof *f.shown),
+                         .nearest_valid = host_alloc(v->host, v->count, sizeof *f.nearest_valid),
                          .distance = host_alloc(v->host, v->count, sizeof *f.distance) };
-    const bool ok = f.shown && f.distance;
+    const bool ok = f.nearest_valid && f.distance;
     for (uint32_t i = 0; ok && i < v->count; i++) {
-        f.shown[i] = i;
+        f.nearest_valid[i] = i;
         f.distance[i] = hidden[i] ? INFINITY : 0.0f;
     }
     while (ok && sweep(&f)) {}
     host_free(v->host, f.distance);
-    if (ok) return f.shown;
-    host_free(v->host, f.shown);
+    if (ok) return f.nearest_valid;
+    host_free(v->host, f.nearest_valid);
     return NULL;
 }

@@ -35,6 +35,6 @@ static inline const uint32_t *prt_vertices_of(const struct prt_vertices *v, int 
     return v->corners[(back ? v->triangle_count : 0) + v->triangle_0[instance] + triangle];
 }
 
-// [count] the vertex whose light each one shows: itself, or where `hidden` the nearest along edges
-// that is not; itself where all are. Owned by the caller.
+// [count] nearest valid vertex of each: itself, or where `hidden` the nearest along edges that is
+// not; itself where all are. Owned by the caller.
 uint32_t *prt_vertices_fill(const struct prt_vertices *vertices, const bool *hidden);

@@ -67,13 +67,13 @@ static bool fill_sources(struct mrt_mapped *out, const struct mrt_clutter *clutt
         place_of[clutter->texels[i]] = i;
         hidden[clutter->texels[i]] = out->inside[i];
     }
-    uint32_t *shown = charts_fill(charts, hidden);
-    for (size_t i = 0; shown && i < charts_place_count(charts); i++) {
+    uint32_t *nearest_valid = charts_fill(charts, hidden);
+    for (size_t i = 0; nearest_valid && i < charts_place_count(charts); i++) {
         const uint32_t texel = chart_texel_of_place(charts, i);
-        out->source[i] = texel == CHART_NONE ? CHART_NONE : place_of[shown[texel]];
+        out->source[i] = texel == CHART_NONE ? CHART_NONE : place_of[nearest_valid[texel]];
     }
-    const bool ok = shown;
-    host_free(charts->host, shown);
+    const bool ok = nearest_valid;
+    host_free(charts->host, nearest_valid);
     return ok;
 }
 
