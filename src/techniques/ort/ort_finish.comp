@@ -32,14 +32,14 @@ void main()
     uint run = ((x / ORT_RUN) * push.height + y) * 6u + x % ORT_RUN / 4u;
     vec3 normal = light_map_texel_part(i, push.texels, TEXEL_NORMAL).xyz;
     vec3 painted = SCATTERS ? vec3(0.0) : light_map_painted_light(i, push.sources);
-    vec4 unbounced[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
-    if (!SCATTERS) unbounced = light_map_unbounced(i, push.texels, push.sources);
+    vec4 area_light[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
+    if (!SCATTERS) area_light = light_map_area_light(i, push.texels, push.sources);
     for (int c = 0; c < 3; c++) {
         float sum = imageLoad(ort_sums, light_map_at(run + 2 * c))[x % 4u] / ORT_MAP_SCALE;
         sum += painted[c];
         // Pixels have (x + n·yzw) / 2. Light that leaves a surface does not depend on n.
         vec4 light = SCATTERS ? vec4(2.0 * sum, vec3(0.0)) : vec4(sum, sum * normal);
-        light += unbounced[c];
+        light += area_light[c];
         imageStore(texel_light, light_map_at(c * push.texels + i),
                    uvec4(light_map_pack(light), 0u, 0u));
     }

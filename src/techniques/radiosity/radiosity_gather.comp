@@ -46,11 +46,11 @@ void store_light(uint texel)
 {
     sum.irradiance += light_map_painted_light(texel, push.sources);
     mat3 basis = basis_of(light_map_texel_part(texel, push.texels, TEXEL_NORMAL).xyz);
-    vec4 unbounced[3] = light_map_unbounced(texel, push.texels, push.sources);
+    vec4 area_light[3] = light_map_area_light(texel, push.texels, push.sources);
     for (int c = 0; c < 3; c++) {
         vec4 light = vec4(sum.irradiance[c], sum.irradiance[c] * basis[2] + sum.by_u[c] * basis[0] +
                                                  sum.by_v[c] * basis[1]) +
-                     unbounced[c];
+                     area_light[c];
         imageStore(texel_light, light_map_at(c * push.texels + texel),
                    uvec4(light_map_pack(light), 0u, 0u));
     }

@@ -37,7 +37,7 @@ vec3 light_map_first_order_of_all(light_map_texel texel, uint i, uint texels,
 {
     vec3 irradiance =
         light_map_painted_light(i, sources) * (0.5 + 0.5 * dot(texel.shading, texel.normal));
-    vec4 light[3] = light_map_unbounced(i, texels, sources);
+    vec4 light[3] = light_map_area_light(i, texels, sources);
     for (int c = 0; c < 3; c++)
         irradiance[c] += max(0.5 * (light[c].x + dot(texel.shading, light[c].yzw)), 0.0);
     return irradiance;

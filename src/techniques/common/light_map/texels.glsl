@@ -37,7 +37,7 @@ vec3 light_map_sky_radiance(uint texel, uint texels, light_map_sources sources)
 }
 
 // Irradiance x and vector irradiance yzw of the environment and of emissive surfaces, by colour.
-vec4[3] light_map_unbounced(uint texel, uint texels, light_map_sources sources)
+vec4[3] light_map_area_light(uint texel, uint texels, light_map_sources sources)
 {
     vec4 light[3];
     for (int c = 0; c < 3; c++)

@@ -38,7 +38,7 @@ struct mrt_clutter_texel *mrt_clutter_light_create(struct host *host, const stru
     struct trace_scene *scene = trace_scene_create(host, pose);
     images.geometry = host_alloc(host, count, sizeof *images.geometry);
     const bool ok = out && scene && images.geometry && look(&images, clutter) &&
-                    mrt_unbounced_texels(&images, pose, scene, count);
+                    mrt_area_light_texels(&images, pose, scene, count);
     for (size_t i = 0; ok && i < count; i++)
         out[i] = (struct mrt_clutter_texel){
             images.geometry[i], chart_texel_of(&clutter->charts, clutter->texels[i])->area_m2,

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "techniques/mrt/clutter/clutter.h"
-#include "techniques/mrt/level/unbounced.h"
+#include "techniques/mrt/level/area_light.h"
 
 struct mrt_clutter_texel {
     struct mrt_geometry_texel at;

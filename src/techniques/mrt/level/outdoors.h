@@ -8,7 +8,7 @@
 
 // Values are premultiplied by `open`.
 struct mrt_outdoor_probe {
-    struct mrt_unbounced_probe light;
+    struct mrt_area_light_probe light;
     // 0: in a block, in a solid or without a view of the sky; 1: outdoors.
     float open;
 };

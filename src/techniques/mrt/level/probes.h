@@ -7,8 +7,8 @@
 
 enum { MRT_PROBE_VALUES = 9 }; // SH coefficients of irradiance by normal
 
-// World frame.
-struct mrt_unbounced_probe {
+// Direct light of area lights at a probe, world frame.
+struct mrt_area_light_probe {
     vec3s emitted[MRT_PROBE_VALUES]; // of emissive surfaces, lux
     float sky[MRT_PROBE_VALUES];     // of a sky of radiance 1/π
 };
@@ -31,8 +31,8 @@ mat3s mrt_block_rotation(const struct mrt_block *block);
 int mrt_probe_of_brick_texel(const struct mrt_block_map *map, int p, int block, int i);
 
 struct trace_scene;
-// Light of emitters and the sky at all probes; those inside solids take that of the nearest probe
-// of their block that is not.
-struct mrt_unbounced_probe *mrt_unbounced_probes_create(struct host *host,
-                                                        const struct mrt_block_map *map, int p,
-                                                        const struct trace_scene *scene);
+// Direct light of area lights at all probes. A probe inside a solid has that of the nearest probe
+// of its block outside.
+struct mrt_area_light_probe *mrt_area_light_probes_create(struct host *host,
+                                                          const struct mrt_block_map *map, int p,
+                                                          const struct trace_scene *scene);

@@ -22,9 +22,9 @@ layout(set = 0, binding = 3, scalar) readonly buffer mrt_probe_light
 {
     vec3 light_table[]; // [probe][9], in the frame of the cell
 };
-layout(set = 0, binding = 4, scalar) readonly buffer mrt_probe_unbounced
+layout(set = 0, binding = 4, scalar) readonly buffer mrt_probe_area_light
 {
-    mrt_gpu_probe unbounced_table[];
+    mrt_gpu_probe area_light_table[];
 };
 layout(set = 0, binding = 5, scalar) readonly buffer mrt_probe_turns
 {
@@ -50,13 +50,13 @@ void main()
     uint probe = source_table[block * texels + i], source = probe / (p * p * p);
     vec3 coefficients[9], environment[9];
     float sky[9]; // of radiance 1
-    for (int k = 0; k < 9; k++) sky[k] = PI * unbounced_table[probe].sky[k];
+    for (int k = 0; k < 9; k++) sky[k] = PI * area_light_table[probe].sky[k];
     environment_through(sky, environment);
     for (int k = 0; k < 9; k++) {
-        vec3 unbounced =
-            unbounced_table[probe].emitted[k] * (frame.radiance_scale * level.emitters) +
+        vec3 area_light =
+            area_light_table[probe].emitted[k] * (frame.radiance_scale * level.emitters) +
             environment[k];
-        coefficients[k] = clamp(turned(probe, source, k) + unbounced, -HALF_MAX, HALF_MAX);
+        coefficients[k] = clamp(turned(probe, source, k) + area_light, -HALF_MAX, HALF_MAX);
     }
     ivec3 at = ivec3(block % level.brick_columns, block / level.brick_columns, 0) * int(edge) +
                ivec3(i % edge, i / edge % edge, i / (edge * edge));

@@ -7,9 +7,9 @@
 
 layout(local_size_x = MRT_LOCAL) in;
 
-layout(set = 0, binding = 6, scalar) writeonly buffer mrt_unbounced
+layout(set = 0, binding = 6, scalar) writeonly buffer mrt_area_light
 {
-    vec3 unbounced_table[]; // irradiance of emissive surfaces and the sky
+    vec3 area_light_table[]; // irradiance of emissive surfaces and the sky
 };
 layout(set = 0, binding = 7, scalar) writeonly buffer mrt_direct
 {
@@ -21,10 +21,10 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i >= level.texels) return;
     mrt_texel texel = texel_table[i];
-    vec3 unbounced =
-             unbounced_of(texel.emitted, vec3(texel.sky), environment_irradiance_at(texel.normal)),
-         irradiance = unbounced;
+    vec3 area_light =
+             area_light_of(texel.emitted, vec3(texel.sky), environment_irradiance_at(texel.normal)),
+         irradiance = area_light;
     add_lights(texel, irradiance);
-    unbounced_table[i] = unbounced;
+    area_light_table[i] = area_light;
     direct_table[i] = texel.albedo * irradiance;
 }

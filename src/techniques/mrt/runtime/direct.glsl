@@ -20,7 +20,7 @@ layout(set = 0, binding = 5, scalar) readonly buffer frame_lights
 };
 
 // Light of emissive surfaces, and a share of that of the environment.
-vec3 unbounced_of(vec3 emitted, vec3 share, vec3 environment)
+vec3 area_light_of(vec3 emitted, vec3 share, vec3 environment)
 {
     return emitted * (frame.radiance_scale * level.emitters) + share * environment;
 }

@@ -20,9 +20,9 @@ layout(set = 0, binding = 4, scalar) readonly buffer mrt_irradiance
 {
     vec3 irradiance_table[]; // [texel][value]
 };
-layout(set = 0, binding = 6, scalar) readonly buffer mrt_unbounced
+layout(set = 0, binding = 6, scalar) readonly buffer mrt_area_light
 {
-    vec3 unbounced_table[]; // [texel]
+    vec3 area_light_table[]; // [texel]
 };
 // VALUES 1: one layer of RGB. VALUES 4: a layer for each of red, green, blue, with four values.
 layout(set = 0, binding = 5, rgba16f) writeonly uniform image2DArray light_map;
@@ -42,7 +42,7 @@ void store(ivec2 at, vec3 values[4])
 void add(uint texel, float weight, inout vec3 sum[4])
 {
     for (uint v = 0u; v < VALUES; v++) sum[v] += weight * irradiance_table[texel * VALUES + v];
-    if (VALUES == 1u) sum[0] += weight * unbounced_table[texel];
+    if (VALUES == 1u) sum[0] += weight * area_light_table[texel];
 }
 
 void main()

@@ -9,7 +9,7 @@
 #include "techniques/mrt/clutter/clutter_light.h"
 #include "techniques/mrt/level/probes.h"
 #include "techniques/mrt/level/published.h"
-#include "techniques/mrt/level/unbounced.h"
+#include "techniques/mrt/level/area_light.h"
 #include "techniques/mrt/level/wall.h"
 
 // Operators of blocks with the same openings. n texels of mrt_block_shape(resolution).

@@ -72,7 +72,7 @@ static void fill_turns(const struct mrt_runtime_input *input, void *items)
         fill_turn(mrt_block_rotation(&input->map->blocks[b]), turns + VALUES * VALUES * b);
 }
 
-_Static_assert(sizeof(struct mrt_unbounced_probe) == sizeof(struct mrt_gpu_probe),
+_Static_assert(sizeof(struct mrt_area_light_probe) == sizeof(struct mrt_gpu_probe),
                "shaders read what the level has");
 
 static bool upload_tables(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
@@ -89,8 +89,8 @@ static bool upload_tables(struct mrt_runtime *runtime, const struct mrt_runtime_
                             &p->sources) &&
            mrt_table_upload(runtime, input, "probe_turns", blocks, VALUES * VALUES * sizeof(float),
                             fill_turns, &p->turns) &&
-           mrt_buffer_of(runtime, "probe_unbounced", input->images->unbounced,
-                         probes * sizeof(struct mrt_gpu_probe), &p->unbounced);
+           mrt_buffer_of(runtime, "probe_area_light", input->images->area_light,
+                         probes * sizeof(struct mrt_gpu_probe), &p->area_light);
 }
 
 // ---- images

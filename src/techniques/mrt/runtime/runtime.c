@@ -19,7 +19,7 @@ static bool make_buffers(struct mrt_runtime *runtime, const struct mrt_runtime_i
     struct mrt_runtime_buffers *b = &runtime->buffers;
     const size_t light = (size_t)runtime->level.texels * VEC3_BYTES;
     const size_t quad = 3 * 4 * sizeof(float);
-    return mrt_buffer_of(runtime, "unbounced", NULL, light, &b->unbounced) &&
+    return mrt_buffer_of(runtime, "area_light", NULL, light, &b->area_light) &&
            mrt_buffer_of(runtime, "direct", NULL, light, &b->direct) &&
            mrt_buffer_of(runtime, "b_direct", NULL,
                          runtime->block_count * mrt_quads(input->k_b) * quad, &b->b_direct) &&

@@ -22,7 +22,7 @@ struct mrt_runtime_buffers {
     gpu_buffer cells, candidates;                                 // lookup grid of blocks
     gpu_buffer t_db, u_b, u_r, t_br;                              // operators
     gpu_buffer u_b_vector, u_r_vector;
-    gpu_buffer direct, unbounced;    // vec3 per texel: radiosity, irradiance
+    gpu_buffer direct, area_light;   // vec3 per texel: radiosity, irradiance
     gpu_buffer b_direct, b, r;       // coefficients
     gpu_buffer reflection;           // of b and r into b, by the albedo of each block
     gpu_buffer irradiance, vector;   // vec3 per texel and value
@@ -38,11 +38,11 @@ struct mrt_runtime_pipelines {
 
 // Volume probes; without them `bricks` is 1×1×1.
 struct mrt_runtime_probes {
-    gpu_buffer tiles, openings, u_b, u_r; // as those of texels
-    gpu_buffer sources, turns, unbounced; // tables of bricks.comp
-    gpu_buffer radiosity;                 // vec3 per texel, of a solver on the host
-    gpu_buffer sight;                     // mrt_runtime_input.sight
-    gpu_buffer light;                     // vec3 [block][probe][9], in the frame of the cell
+    gpu_buffer tiles, openings, u_b, u_r;  // as those of texels
+    gpu_buffer sources, turns, area_light; // tables of bricks.comp
+    gpu_buffer radiosity;                  // vec3 per texel, of a solver on the host
+    gpu_buffer sight;                      // mrt_runtime_input.sight
+    gpu_buffer light;                      // vec3 [block][probe][9], in the frame of the cell
     gpu_image bricks;
     gpu_pipeline fill;
     struct frame_probes grid; // published

@@ -18,7 +18,7 @@ void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     gpu_dispatch(cmd, runtime->pipelines.direct,
                  GPU_BIND(FRAME_LIGHT_BINDINGS(view), level_binding(runtime, cmd),
                           { .name = "mrt_texels", .buffer = b->texels },
-                          { .name = "mrt_unbounced", .buffer = b->unbounced },
+                          { .name = "mrt_area_light", .buffer = b->area_light },
                           { .name = "mrt_direct", .buffer = b->direct }),
                  NULL, 0, gpu_groups(runtime->level.texels, MRT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
@@ -113,7 +113,7 @@ static void record_fill(struct mrt_runtime *runtime, struct gpu_cmd *cmd, bool v
         cmd, vector ? p->fill_vector : p->fill,
         GPU_BIND(level_binding(runtime, cmd), { .name = "mrt_tiles", .buffer = b->tiles },
                  { .name = "mrt_borders", .buffer = b->borders },
-                 { .name = "mrt_unbounced", .buffer = b->unbounced },
+                 { .name = "mrt_area_light", .buffer = b->area_light },
                  { .name = "mrt_irradiance", .buffer = vector ? b->vector : b->irradiance },
                  { .name = "light_map", .image = vector ? b->vector_map : b->light_map }),
         NULL, 0, gpu_groups(level->texels + level->borders, MRT_LOCAL), 1, 1);
@@ -150,7 +150,7 @@ static void record_bricks(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                  GPU_BIND(level_binding(runtime, cmd), view->constants_binding,
                           { .name = "mrt_brick_sources", .buffer = p->sources },
                           { .name = "mrt_probe_light", .buffer = p->light },
-                          { .name = "mrt_probe_unbounced", .buffer = p->unbounced },
+                          { .name = "mrt_probe_area_light", .buffer = p->area_light },
                           { .name = "mrt_probe_turns", .buffer = p->turns },
                           { .name = "bricks", .image = p->bricks }),
                  NULL, 0, gpu_groups(texels, MRT_LOCAL), runtime->block_count, 1);

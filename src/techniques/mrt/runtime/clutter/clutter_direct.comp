@@ -54,7 +54,7 @@ void main()
             sum += radiosity[3u * k + c];
             sky += environment[3u * k + c];
         }
-        sum += unbounced_of(face.emitted, face.sky, vec3(sky))[c];
+        sum += area_light_of(face.emitted, face.sky, vec3(sky))[c];
         c_direct[(face.clutter * 3u + c) * 4u * QUADS_R + face.slot] = sum;
     }
 }

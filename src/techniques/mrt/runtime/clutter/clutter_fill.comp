@@ -45,11 +45,11 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.places) return;
     mrt_gpu_clutter_place place = place_table[i];
-    vec3 unbounced = texel_table[place.texel].emitted * push.emitted;
-    unbounced += texel_table[place.texel].sky * environment_at(texel_table[place.texel].normal);
+    vec3 area_light = texel_table[place.texel].emitted * push.emitted;
+    area_light += texel_table[place.texel].sky * environment_at(texel_table[place.texel].normal);
     vec3 values[4];
     for (uint v = 0u; v < 4u; v++) values[v] = light_table[place.light * 4u + v];
-    values[0] += unbounced / SH_Y0;
+    values[0] += area_light / SH_Y0;
     uvec3 at = light_map_place(place.place);
     for (int c = 0; c < 3; c++) {
         vec4 texel = vec4(values[0][c], values[1][c], values[2][c], values[3][c]);

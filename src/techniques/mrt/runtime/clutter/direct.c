@@ -70,9 +70,9 @@ static void fill_groups(const struct mrt_runtime_input *input, void *items)
 }
 
 // Means over the area of a face of what its texels reflect of emissive surfaces and of the sky.
-static void add_unbounced(const struct mrt_runtime_input *input,
-                          const struct mrt_clutter_face_input *from,
-                          struct mrt_gpu_clutter_face *to)
+static void add_area_light(const struct mrt_runtime_input *input,
+                           const struct mrt_clutter_face_input *from,
+                           struct mrt_gpu_clutter_face *to)
 {
     float area = 0.0f;
     for (int t = from->first_texel; t < from->first_texel + from->texel_count; t++) {
@@ -98,7 +98,7 @@ static void fill_faces(const struct mrt_runtime_input *input, void *items)
             .first_sample = pack(&packer, from),
             .samples = samples_of(from),
         };
-        add_unbounced(input, from, &faces[i]);
+        add_area_light(input, from, &faces[i]);
     }
 }
 
@@ -153,7 +153,7 @@ bool mrt_clutter_direct_upload(struct mrt_runtime *runtime, const struct mrt_run
 // ---- pass
 
 // The light map adds light of emissive surfaces and the sky at its texels.
-static void note_unbounced(struct mrt_runtime *runtime, const struct frame_view *view)
+static void note_area_light(struct mrt_runtime *runtime, const struct frame_view *view)
 {
     struct mrt_clutter_fill_push *push = &runtime->clutter.map.fill_push;
     push->emitted = runtime->level.emitters * view->constants->radiance_scale;
@@ -164,7 +164,7 @@ void mrt_record_clutter_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                                const struct frame_view *view)
 {
     const struct mrt_runtime_clutter *c = &runtime->clutter;
-    note_unbounced(runtime, view);
+    note_area_light(runtime, view);
     if (c->opening_count == 0) return;
     gpu_scope_begin(cmd, "clutter");
     gpu_dispatch(cmd, c->light,

@@ -1,7 +1,7 @@
 // Probes outside of all blocks.
 #include "outdoors.h"
 
-#include "techniques/mrt/level/unbounced_points.h"
+#include "techniques/mrt/level/area_light_points.h"
 
 #include <math.h>
 
@@ -47,7 +47,7 @@ static void premultiply(struct mrt_outdoor_probe *probe)
 }
 
 // A sky of radiance 1/π gives each normal the irradiance 1, which is √4π Y₀.
-static float sky_share(const struct mrt_unbounced_probe *probe)
+static float sky_share(const struct mrt_area_light_probe *probe)
 {
     return probe->sky[0] / sqrtf(4.0f * GLM_PIf);
 }
@@ -57,7 +57,7 @@ struct points {
     int count;
     int *index;
     vec3s *position;
-    struct mrt_unbounced_probe *light;
+    struct mrt_area_light_probe *light;
     bool *solid;
 };
 
@@ -113,10 +113,10 @@ bool mrt_outdoors_init(struct host *host, const struct mrt_block_map *map, struc
     bool ok = out->probes && points_alloc(&points, host, (size_t)count);
     if (ok) {
         find_points(&points, map, out->grid, count);
-        ok = mrt_unbounced_points(host, scene, RAYS,
-                                  &(struct mrt_unbounced_points){ (size_t)points.count,
-                                                                  points.position, points.light,
-                                                                  points.solid });
+        ok = mrt_area_light_points(host, scene, RAYS,
+                                   &(struct mrt_area_light_points){ (size_t)points.count,
+                                                                    points.position, points.light,
+                                                                    points.solid });
     }
     if (ok && !place_points(&points, out->probes)) mrt_outdoors_finish(out);
     points_finish(&points, host);

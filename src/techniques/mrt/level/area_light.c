@@ -1,7 +1,7 @@
 // Irradiance of emissive surfaces and of the sky at texels.
-#include "unbounced.h"
+#include "area_light.h"
 
-#include "techniques/mrt/level/unbounced_points.h"
+#include "techniques/mrt/level/area_light_points.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"
@@ -70,11 +70,11 @@ static bool gather_probes(struct job *job, const struct level_points *level)
     const size_t count = (size_t)level->map->count * (size_t)mrt_probes_of_block(level->probes);
     // Texels have found neither emitters nor the sky.
     if (job->rays == PROBES)
-        images->unbounced = host_alloc(images->host, count, sizeof *images->unbounced);
+        images->area_light = host_alloc(images->host, count, sizeof *images->area_light);
     else
-        images->unbounced =
-            mrt_unbounced_probes_create(images->host, level->map, level->probes, job->scene);
-    return images->unbounced;
+        images->area_light =
+            mrt_area_light_probes_create(images->host, level->map, level->probes, job->scene);
+    return images->area_light;
 }
 
 // level: of the probes; NULL: texels alone.
@@ -130,8 +130,8 @@ bool mrt_scene_images_init(struct host *host, const struct scene_pose *pose,
     return ok;
 }
 
-bool mrt_unbounced_texels(struct mrt_scene_images *images, const struct scene_pose *pose,
-                          const struct trace_scene *scene, size_t texels)
+bool mrt_area_light_texels(struct mrt_scene_images *images, const struct scene_pose *pose,
+                           const struct trace_scene *scene, size_t texels)
 {
     images->emitted = host_alloc(images->host, texels, sizeof *images->emitted);
     images->sky = host_alloc(images->host, texels, sizeof *images->sky);
@@ -144,7 +144,7 @@ void mrt_scene_images_finish(struct mrt_scene_images *images)
     host_free(images->host, images->geometry);
     host_free(images->host, images->emitted);
     host_free(images->host, images->sky);
-    host_free(images->host, images->unbounced);
+    host_free(images->host, images->area_light);
     mrt_outdoors_finish(&images->outdoors);
     *images = (struct mrt_scene_images){ 0 };
 }

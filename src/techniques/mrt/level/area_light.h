@@ -1,6 +1,5 @@
-// Light that reaches the texels and the probes of a level without a bounce, from sources that the
-// frame has no shadow maps for: emissive surfaces and the sky. Traced once, with the geometry
-// image.
+// Direct light of area lights at the texels and probes of a level: emissive surfaces and the sky,
+// for which the frame has no shadow maps. Traced once, with the geometry image.
 #pragma once
 
 #include "techniques/mrt/level/geometry.h"
@@ -9,10 +8,10 @@
 
 struct mrt_scene_images {
     struct host *host;
-    struct mrt_geometry_texel *geometry;   // [texels]
-    vec3s *emitted;                        // [texels] irradiance of emissive surfaces, lux
-    float *sky;                            // [texels] irradiance of a sky of radiance 1/π
-    struct mrt_unbounced_probe *unbounced; // [blocks · p³]
+    struct mrt_geometry_texel *geometry;     // [texels]
+    vec3s *emitted;                          // [texels] irradiance of emissive surfaces, lux
+    float *sky;                              // [texels] irradiance of a sky of radiance 1/π
+    struct mrt_area_light_probe *area_light; // [blocks · p³]
     struct mrt_outdoors outdoors;
 };
 
@@ -23,6 +22,6 @@ bool mrt_scene_images_init(struct host *host, const struct scene_pose *pose,
                            const struct mrt_atlas *atlas, int probes,
                            const struct mrt_geometry_texel *kept, struct mrt_scene_images *out);
 // Light at texels whose geometry is set, without probes.
-bool mrt_unbounced_texels(struct mrt_scene_images *images, const struct scene_pose *pose,
-                          const struct trace_scene *scene, size_t texels);
+bool mrt_area_light_texels(struct mrt_scene_images *images, const struct scene_pose *pose,
+                           const struct trace_scene *scene, size_t texels);
 void mrt_scene_images_finish(struct mrt_scene_images *images); // accepts zero

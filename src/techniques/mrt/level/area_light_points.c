@@ -1,5 +1,5 @@
 // Light of emitters and the sky at points.
-#include "unbounced_points.h"
+#include "area_light_points.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"
@@ -13,10 +13,10 @@
 struct job {
     const struct trace_scene *scene;
     struct mrt_rays rays;
-    const struct mrt_unbounced_points *points;
+    const struct mrt_area_light_points *points;
 };
 
-static void add(vec3s light, const float weight[MRT_PROBE_VALUES], struct mrt_unbounced_probe *out)
+static void add(vec3s light, const float weight[MRT_PROBE_VALUES], struct mrt_area_light_probe *out)
 {
     for (int i = 0; i < MRT_PROBE_VALUES; i++)
         out->emitted[i] = glms_vec3_muladds(light, weight[i], out->emitted[i]);
@@ -24,7 +24,7 @@ static void add(vec3s light, const float weight[MRT_PROBE_VALUES], struct mrt_un
 
 // Whether the point is inside a solid.
 static bool gather_rays(const struct job *job, const struct texel_receiver *at,
-                        struct mrt_unbounced_probe *out)
+                        struct mrt_area_light_probe *out)
 {
     const float per_sr = (float)job->rays.count / (4.0f * GLM_PIf);
     int backs = 0;
@@ -45,7 +45,7 @@ static bool gather_rays(const struct job *job, const struct texel_receiver *at,
 }
 
 static void sample_emitters(const struct job *job, const struct texel_receiver *at,
-                            struct mrt_unbounced_probe *out)
+                            struct mrt_area_light_probe *out)
 {
     const uint32_t count = (uint32_t)at->light_samples;
     for (uint32_t k = 0; k < count; k++) {
@@ -71,8 +71,8 @@ static void gather(void *user, size_t i)
     sample_emitters(job, &at, &job->points->light[i]);
 }
 
-bool mrt_unbounced_points(struct host *host, const struct trace_scene *scene, int rays,
-                          const struct mrt_unbounced_points *points)
+bool mrt_area_light_points(struct host *host, const struct trace_scene *scene, int rays,
+                           const struct mrt_area_light_points *points)
 {
     struct job job = { .scene = scene, .points = points };
     if (!mrt_rays_init(host, MRT_PROBE, rays, &job.rays)) return false;

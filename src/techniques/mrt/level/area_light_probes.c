@@ -1,5 +1,5 @@
 // Light of emitters and the sky at the probes of blocks.
-#include "techniques/mrt/level/unbounced_points.h"
+#include "techniques/mrt/level/area_light_points.h"
 
 #include <math.h>
 
@@ -9,7 +9,7 @@ struct job {
     const struct mrt_block_map *map;
     int p;
     vec3s *position;
-    struct mrt_unbounced_probe *probes;
+    struct mrt_area_light_probe *probes;
     bool *solid;
 };
 
@@ -46,9 +46,9 @@ static void find_positions(const struct job *job)
             mrt_probe_position(&job->map->blocks[i / per_block], job->p, i % per_block);
 }
 
-struct mrt_unbounced_probe *mrt_unbounced_probes_create(struct host *host,
-                                                        const struct mrt_block_map *map, int p,
-                                                        const struct trace_scene *scene)
+struct mrt_area_light_probe *mrt_area_light_probes_create(struct host *host,
+                                                          const struct mrt_block_map *map, int p,
+                                                          const struct trace_scene *scene)
 {
     const size_t count = (size_t)map->count * (size_t)mrt_probes_of_block(p);
     struct job job = { .map = map, .p = p };
@@ -58,9 +58,9 @@ struct mrt_unbounced_probe *mrt_unbounced_probes_create(struct host *host,
     bool ok = job.probes && job.position && job.solid;
     if (ok) {
         find_positions(&job);
-        ok = mrt_unbounced_points(
+        ok = mrt_area_light_points(
             host, scene, RAYS,
-            &(struct mrt_unbounced_points){ count, job.position, job.probes, job.solid });
+            &(struct mrt_area_light_points){ count, job.position, job.probes, job.solid });
     }
     if (ok) {
         replace_solid(&job);
