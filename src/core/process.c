@@ -73,7 +73,8 @@ static double now_s(void)
 }
 
 // Doubles the buffer, up to max_bytes and one more, which tells that there is more.
-static bool make_room(struct host *host, struct file_bytes *out, size_t *capacity, size_t max_bytes)
+static bool grow_buffer(struct host *host, struct file_bytes *out, size_t *capacity,
+                        size_t max_bytes)
 {
     if (out->size < *capacity) return true;
     size_t grown = *capacity ? 2 * *capacity : (size_t)1 << 16;
@@ -98,7 +99,7 @@ static bool collect(struct host *host, const char *program, int fd, size_t max_b
         if (polled < 0 && errno == EINTR) continue;
         *timed_out = polled == 0;
         if (polled <= 0) return true;
-        if (!make_room(host, out, &capacity, max_bytes)) return false;
+        if (!grow_buffer(host, out, &capacity, max_bytes)) return false;
         ssize_t got = read(fd, out->data + out->size, capacity - out->size);
         if (got < 0 && errno == EINTR) continue;
         if (got <= 0) return true;

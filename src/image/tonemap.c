@@ -31,8 +31,8 @@ vec3s tonemap_pbr_neutral(vec3s exposed)
     float peak = fmaxf(c.x, fmaxf(c.y, c.z));
     if (peak < COMPRESSION_START) return c;
 
-    float room = 1.0f - COMPRESSION_START;
-    float new_peak = 1.0f - room * room / (peak + room - COMPRESSION_START);
+    float headroom = 1.0f - COMPRESSION_START;
+    float new_peak = 1.0f - headroom * headroom / (peak + headroom - COMPRESSION_START);
     c = glms_vec3_scale(c, new_peak / peak);
     float to_white = 1.0f - 1.0f / (DESATURATION * (peak - new_peak) + 1.0f);
     return glms_vec3_add(glms_vec3_scale(c, 1.0f - to_white),

@@ -20,8 +20,8 @@ vec3 tonemap_pbr_neutral(vec3 exposed)
     float peak = max(c.r, max(c.g, c.b));
     if (peak < compression_start) return c;
 
-    float room = 1.0 - compression_start;
-    float new_peak = 1.0 - room * room / (peak + room - compression_start);
+    float headroom = 1.0 - compression_start;
+    float new_peak = 1.0 - headroom * headroom / (peak + headroom - compression_start);
     c *= new_peak / peak;
     float to_white = 1.0 - 1.0 / (desaturation * (peak - new_peak) + 1.0);
     return mix(c, vec3(new_peak), to_white);

@@ -82,14 +82,14 @@ static bool take_mesh(struct scene_snapshot *s, const struct mesh *from, struct 
     return to->positions && to->normals && (!from->tangents || to->tangents);
 }
 
-static bool make_room(struct scene_snapshot *s, int meshes)
+static bool grow_vertices(struct scene_snapshot *s, int meshes)
 {
     if (meshes <= s->vertices_count) return true;
-    struct snapshot_mesh *room =
+    struct snapshot_mesh *grown =
         host_realloc(s->host, s->vertices, (size_t)meshes, sizeof *s->vertices);
-    if (!room) return false;
-    memset(room + s->vertices_count, 0, (size_t)(meshes - s->vertices_count) * sizeof *room);
-    s->vertices = room;
+    if (!grown) return false;
+    memset(grown + s->vertices_count, 0, (size_t)(meshes - s->vertices_count) * sizeof *grown);
+    s->vertices = grown;
     s->vertices_count = meshes;
     return true;
 }
@@ -97,7 +97,7 @@ static bool make_room(struct scene_snapshot *s, int meshes)
 // Copies the vertices of meshes with instances. An array that meshes share is never overwritten.
 static bool take_vertices(struct scene_snapshot *s, const struct scene *scene)
 {
-    if (!make_room(s, scene->mesh_count)) return false;
+    if (!grow_vertices(s, scene->mesh_count)) return false;
     for (int i = 0; i < scene->instance_count; i++) {
         const int m = scene->instances[i].mesh;
         if (m < 0 || !scene->meshes[m].own_arrays) continue;

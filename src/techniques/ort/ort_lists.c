@@ -71,15 +71,17 @@ bool ort_upload_lists(struct ort *s, const struct ort_maps *maps, const struct o
                       const float *scale)
 {
     const size_t count = (size_t)s->options.parts * ort_columns(&s->map) * ort_blocks(s);
-    struct lists l = {
-        s,   maps, bins, scale, host_alloc(s->host, light_map_table_room(count), sizeof *l.lists),
-        NULL
-    };
+    struct lists l = { s,
+                       maps,
+                       bins,
+                       scale,
+                       host_alloc(s->host, light_map_table_capacity(count), sizeof *l.lists),
+                       NULL };
     size_t entries = 0;
     if (l.lists) {
         add_pieces(&l);
         entries = start_lists(&l, count);
-        l.entries = host_alloc(s->host, light_map_table_room(entries), sizeof *l.entries);
+        l.entries = host_alloc(s->host, light_map_table_capacity(entries), sizeof *l.entries);
     }
     if (l.entries) add_pieces(&l);
     const bool ok = light_map_table_upload(s->host, s->gpu, "entries", GPU_RGBA32U, l.entries,

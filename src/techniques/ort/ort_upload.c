@@ -96,12 +96,12 @@ static bool upload_maps(struct ort *s, struct content *c)
     if (!ort_bins_init(&bins, s->host, &wish)) return false;
     const bool ok =
         ort_upload_bins(s, &c->maps, &bins) && ort_upload_lists(s, &c->maps, &bins, c->scale);
-    const double side = ORT_BIN_SIDE, room = fmax(bins.bin_count * side * side, 1.0);
+    const double side = ORT_BIN_SIDE, texels = fmax(bins.bin_count * side * side, 1.0);
     host_log(s->host, LOG_INFO,
              "ort: %u maps of %u x %u texels in %u pieces and %u bins, occupied by %.0f %%; energy "
              "of the offsets %.3f",
              c->maps.count, s->map.width, s->map.height, bins.piece_count, bins.bin_count,
-             100.0 * (double)bins.occupied / room, (double)ort_energy_ratio(c->energy));
+             100.0 * (double)bins.occupied / texels, (double)ort_energy_ratio(c->energy));
     ort_bins_finish(&bins);
     return ok;
 }
@@ -109,7 +109,7 @@ static bool upload_maps(struct ort *s, struct content *c)
 static bool upload_places(struct ort *s)
 {
     const uint32_t count = s->map.texel_count;
-    uint32_t *places = host_alloc(s->host, light_map_table_room(count), sizeof *places);
+    uint32_t *places = host_alloc(s->host, light_map_table_capacity(count), sizeof *places);
     for (uint32_t i = 0; places && i < count; i++) {
         const struct ort_place at = ort_place_of(&s->map, i);
         places[i] = at.y << 16 | at.x;

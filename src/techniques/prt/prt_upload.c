@@ -139,7 +139,7 @@ static bool upload_transfer(struct prt *s, const struct content *c)
 {
     const size_t rows = row_count(s), count = prt_row_entries(&s->options) * rows;
     uint16_t *table =
-        host_alloc(s->host, light_map_table_room(count), sizeof(uint16_t[PRT_VECTOR_HALVES]));
+        host_alloc(s->host, light_map_table_capacity(count), sizeof(uint16_t[PRT_VECTOR_HALVES]));
     for (size_t k = 0; table && k < prt_dimension(&s->options); k++)
         for (size_t row = 0; row < rows; row++)
             *prt_table_half(table, PRT_VECTOR_HALVES, rows, row, k) = value_of(s, c, row, k);
@@ -154,7 +154,7 @@ static bool upload_matrices(struct prt *s, const struct content *c)
     const uint16_t *from = c->matrices.rows ? c->matrices.rows : c->matrix;
     if (!from) return true;
     uint16_t *table =
-        host_alloc(s->host, light_map_table_room(count), sizeof(uint16_t[PRT_VECTOR_HALVES]));
+        host_alloc(s->host, light_map_table_capacity(count), sizeof(uint16_t[PRT_VECTOR_HALVES]));
     for (size_t i = 0; table && i < matrices; i++)
         for (size_t out = 0; out < PRT_OUTGOING; out++)
             for (size_t k = 0; k < numbers; k++)
@@ -169,8 +169,8 @@ static bool upload_clusters(struct prt *s, const struct compressed *c, struct pr
     const size_t texels = s->receivers.count, vectors = prt_vectors(&s->options);
     const size_t count = prt_weight_entries(&s->options) * texels;
     if (!c->rows) return true;
-    uint32_t *clusters = host_alloc(s->host, light_map_table_room(texels), sizeof *clusters);
-    uint16_t *weights = host_alloc(s->host, light_map_table_room(count), 4 * sizeof *weights);
+    uint32_t *clusters = host_alloc(s->host, light_map_table_capacity(texels), sizeof *clusters);
+    uint16_t *weights = host_alloc(s->host, light_map_table_capacity(count), 4 * sizeof *weights);
     for (size_t i = 0; clusters && i < texels; i++) clusters[i] = c->cluster[i];
     for (size_t i = 0; weights && i < texels; i++)
         for (size_t k = 0; k < vectors; k++)

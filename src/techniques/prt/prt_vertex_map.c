@@ -94,7 +94,7 @@ static bool upload_corners(struct prt_vertex_map *map, const uint32_t *nearest_v
 {
     const struct prt_vertices *v = map->vertices;
     const size_t sides = v->count > v->front_count ? 2 : 1, count = sides * v->triangle_count;
-    uint32_t(*corners)[4] = host_alloc(map->host, light_map_table_room(count), sizeof *corners);
+    uint32_t(*corners)[4] = host_alloc(map->host, light_map_table_capacity(count), sizeof *corners);
     for (size_t t = 0; corners && t < count; t++)
         for (size_t k = 0; k < 3; k++)
             if (v->corners[t][k] != PRT_NO_VERTEX) corners[t][k] = nearest_valid[v->corners[t][k]];
@@ -107,7 +107,7 @@ static bool upload_corners(struct prt_vertex_map *map, const uint32_t *nearest_v
 static bool upload_vertices(struct prt_vertex_map *map, const float *emitted, gpu_image *table)
 {
     const size_t count = map->vertices->count, parts = map->emits ? PRT_VERTEX_PARTS : 1;
-    vec4s *out = host_alloc(map->host, light_map_table_room(parts * count), sizeof *out);
+    vec4s *out = host_alloc(map->host, light_map_table_capacity(parts * count), sizeof *out);
     for (size_t i = 0; out && i < count; i++) {
         const vec3s n = map->vertices->at[i].normal;
         out[PRT_VERTEX_NORMAL * count + i] = vec4_of(n, 0.0f);

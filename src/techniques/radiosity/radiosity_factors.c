@@ -79,7 +79,7 @@ static bool layout_init(struct layout *out, struct radiosity *s, const struct so
 {
     out->tile_count = (from->rows + RADIOSITY_TILE - 1) / RADIOSITY_TILE;
     out->rows = host_alloc(s->host, (size_t)out->tile_count * RADIOSITY_TILE, sizeof *out->rows);
-    out->tiles = host_alloc(s->host, light_map_table_room(out->tile_count), sizeof *out->tiles);
+    out->tiles = host_alloc(s->host, light_map_table_capacity(out->tile_count), sizeof *out->tiles);
     if (!out->rows || !out->tiles) return false;
     order_rows(from, out->rows);
     return true;
@@ -132,7 +132,7 @@ static bool upload_block(struct radiosity *s, const struct source_rows *from, st
     uint32_t end;
     const size_t texels = find_block(from, l, first, &end);
     uint32_t *words =
-        host_alloc(s->host, light_map_table_room(texels), TEXEL_WORDS * sizeof *words);
+        host_alloc(s->host, light_map_table_capacity(texels), TEXEL_WORDS * sizeof *words);
     for (uint32_t t = first; words && t < end; t++)
         for (uint32_t r = 0; r < RADIOSITY_TILE; r++)
             pack_row(from, &rows_of(l, t)[r], words + TEXEL_WORDS * (l->tiles[t].first + r));
@@ -160,7 +160,7 @@ static bool upload_blocks(struct radiosity *s, const struct source_rows *from, s
 static bool upload_order(struct radiosity *s, const struct source_rows *from,
                          const struct layout *l, gpu_image *out)
 {
-    uint32_t *order = host_alloc(s->host, light_map_table_room(from->rows), sizeof *order);
+    uint32_t *order = host_alloc(s->host, light_map_table_capacity(from->rows), sizeof *order);
     for (size_t i = 0; order && i < from->rows; i++) order[i] = l->rows[i].index;
     return light_map_table_upload(s->host, s->gpu, "order", GPU_R32U, order, from->rows, out);
 }

@@ -54,7 +54,7 @@ bool radiosity_upload_neighbours(struct radiosity *s, const struct radiosity_sur
 {
     const size_t count = (size_t)s->map.texel_count * RADIOSITY_NEIGHBOURS / LIGHT_MAP_PAIR;
     struct chart_share *table =
-        host_alloc(s->host, light_map_table_room(count), LIGHT_MAP_PAIR * sizeof *table);
+        host_alloc(s->host, light_map_table_capacity(count), LIGHT_MAP_PAIR * sizeof *table);
     for (uint32_t i = 0; table && i < s->map.texel_count; i++) fill_neighbours(s, c, i, table);
     for (uint32_t i = 0; table && i < s->map.texel_count; i++)
         smooth(s, table, i, c->texels->sky, sky + 4 * (size_t)i);

@@ -1,7 +1,7 @@
 // A hierarchy of the clusters, by which a row of form factors is made short: there is one entry for
 // each cluster that its rays meet, and if only the largest entries were kept, which ones these are
 // would be chance. The nodes of a binary tree are strata instead: each one is an entry, of one of
-// the groups in it that were met.
+// the groups in it that were hit.
 //
 // A group is a node of a few clusters, which are near to each other and face one way. It is a
 // source with their mean radiosity. Larger nodes are not: they have both sides of walls.

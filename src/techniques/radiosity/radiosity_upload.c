@@ -169,7 +169,7 @@ static bool upload_groups(struct radiosity *s)
 {
     const struct radiosity_tree *tree = &s->map.tree;
     const size_t most = tree->count - tree->leaves;
-    struct pair *groups = host_alloc(s->host, light_map_table_room(most), sizeof *groups);
+    struct pair *groups = host_alloc(s->host, light_map_table_capacity(most), sizeof *groups);
     for (uint32_t i = tree->leaves; groups && i < tree->count; i++) {
         const struct radiosity_node *node = &tree->nodes[i];
         if (node->count > RADIOSITY_GROUP) continue;
@@ -184,8 +184,8 @@ static bool upload_members(struct radiosity *s)
 {
     const struct radiosity_map *map = &s->map;
     const size_t texels = map->texel_count, clusters = map->cluster_count;
-    uint32_t *members = host_alloc(s->host, light_map_table_room(texels), sizeof *members);
-    struct pair *spans = host_alloc(s->host, light_map_table_room(clusters), sizeof *spans);
+    uint32_t *members = host_alloc(s->host, light_map_table_capacity(texels), sizeof *members);
+    struct pair *spans = host_alloc(s->host, light_map_table_capacity(clusters), sizeof *spans);
     if (members) memcpy(members, map->members, texels * sizeof *members);
     for (size_t i = 0; spans && i < clusters; i++)
         spans[i] = (struct pair){ map->first[i], map->first[i + 1] - map->first[i] };
@@ -199,7 +199,7 @@ static bool upload_members(struct radiosity *s)
 static bool upload_clusters(struct radiosity *s, const struct content *c)
 {
     const uint32_t count = s->map.cluster_count;
-    vec4s *clusters = host_alloc(s->host, light_map_table_room(count), sizeof *clusters);
+    vec4s *clusters = host_alloc(s->host, light_map_table_capacity(count), sizeof *clusters);
     for (uint32_t i = 0; clusters && i < count; i++) clusters[i] = cluster_of(s, c, i);
     const bool ok = clusters && find_spectral_radius(s, c, clusters);
     return light_map_table_upload(s->host, s->gpu, "clusters", GPU_RGBA32F, clusters, count,

@@ -81,9 +81,8 @@ void vct_report_overflow(struct vct *vct)
             continue;
         vct->overflow.reported[i] = true;
         host_log(vct->host, LOG_WARNING,
-                 "gi %s: level %d, voxels of %.3g m: surfaces occupy more than the %u faces of "
-                 "voxels for which there is room; those beyond along z have no %s; use a lower "
-                 "resolution",
+                 "gi %s: level %d, voxels of %.3g m: surfaces occupy more faces of voxels than the "
+                 "capacity of %u; those beyond along z have no %s; use a lower resolution",
                  vct->name, i + 1, (double)vct->clips[i].grid.cell_m,
                  (unsigned)vct_capacity(&vct->options), result_of(&vct->options));
     }

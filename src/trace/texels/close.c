@@ -95,7 +95,7 @@ void seam_closing_finish(struct seam_closing *closing)
 
 // ---- places around one
 
-struct seam_closing_room {
+struct seam_closing_scratch {
     struct host *host;
     uint32_t *local;            // [places] number in `place`, from 1; all 0 between the calls
     bool *has;                  // [points] it is in `point`; likewise
@@ -104,41 +104,41 @@ struct seam_closing_room {
     double x[MOST_LOCAL], r[MOST_LOCAL], d[MOST_LOCAL], q[MOST_LOCAL]; // of conjugate gradients
 };
 
-struct seam_closing_room *seam_closing_room_create(struct host *host,
-                                                   const struct seam_closing *closing)
+struct seam_closing_scratch *seam_closing_scratch_create(struct host *host,
+                                                         const struct seam_closing *closing)
 {
     const struct chart_seams *seams = &closing->seams;
-    struct seam_closing_room *room = host_alloc(host, 1, sizeof *room);
-    if (!room) return NULL;
-    room->host = host;
-    room->local = host_alloc(host, seams->count, sizeof *room->local);
-    room->has = host_alloc(host, seams->point_count, sizeof *room->has);
-    room->point = host_alloc(host, seams->point_count, sizeof *room->point);
-    if (room->local && room->has && room->point) return room;
-    seam_closing_room_destroy(room);
+    struct seam_closing_scratch *scratch = host_alloc(host, 1, sizeof *scratch);
+    if (!scratch) return NULL;
+    scratch->host = host;
+    scratch->local = host_alloc(host, seams->count, sizeof *scratch->local);
+    scratch->has = host_alloc(host, seams->point_count, sizeof *scratch->has);
+    scratch->point = host_alloc(host, seams->point_count, sizeof *scratch->point);
+    if (scratch->local && scratch->has && scratch->point) return scratch;
+    seam_closing_scratch_destroy(scratch);
     return NULL;
 }
 
-void seam_closing_room_destroy(struct seam_closing_room *room)
+void seam_closing_scratch_destroy(struct seam_closing_scratch *scratch)
 {
-    if (!room) return;
-    host_free(room->host, room->local);
-    host_free(room->host, room->has);
-    host_free(room->host, room->point);
-    host_free(room->host, room);
+    if (!scratch) return;
+    host_free(scratch->host, scratch->local);
+    host_free(scratch->host, scratch->has);
+    host_free(scratch->host, scratch->point);
+    host_free(scratch->host, scratch);
 }
 
 struct near {
     const struct seam_closing *closing;
-    struct seam_closing_room *room;
+    struct seam_closing_scratch *scratch;
     uint32_t places, points;
 };
 
 static void add_place(struct near *n, uint32_t place)
 {
-    if (n->room->local[place] > 0 || n->places == MOST_LOCAL) return;
-    n->room->place[n->places++] = place;
-    n->room->local[place] = n->places;
+    if (n->scratch->local[place] > 0 || n->places == MOST_LOCAL) return;
+    n->scratch->place[n->places++] = place;
+    n->scratch->local[place] = n->places;
 }
 
 // Places that share points with it, breadth first. Farther ones keep their light.
@@ -147,12 +147,12 @@ static void find_near(struct near *n, uint32_t place)
     const struct seam_closing *c = n->closing;
     add_place(n, place);
     for (uint32_t i = 0; i < n->places; i++) {
-        const uint32_t at = n->room->place[i];
+        const uint32_t at = n->scratch->place[i];
         for (uint32_t k = c->first[at]; k < c->first[at + 1]; k++) {
             const uint32_t point = c->points[k];
-            if (n->room->has[point]) continue;
-            n->room->has[point] = true;
-            n->room->point[n->points++] = point;
+            if (n->scratch->has[point]) continue;
+            n->scratch->has[point] = true;
+            n->scratch->point[n->points++] = point;
             for (int j = 0; j < CHART_SEAM_PLACES; j++)
                 add_place(n, c->seams.points[point].place[j]);
         }
@@ -161,8 +161,8 @@ static void find_near(struct near *n, uint32_t place)
 
 static void forget(struct near *n)
 {
-    for (uint32_t i = 0; i < n->places; i++) n->room->local[n->room->place[i]] = 0;
-    for (uint32_t i = 0; i < n->points; i++) n->room->has[n->room->point[i]] = false;
+    for (uint32_t i = 0; i < n->places; i++) n->scratch->local[n->scratch->place[i]] = 0;
+    for (uint32_t i = 0; i < n->points; i++) n->scratch->has[n->scratch->point[i]] = false;
 }
 
 // ---- conjugate gradients
@@ -170,18 +170,18 @@ static void forget(struct near *n)
 // q = (λ I + Σ l a aᵀ) d
 static void apply(const struct near *n)
 {
-    const double *d = n->room->d;
-    double *q = n->room->q;
+    const double *d = n->scratch->d;
+    double *q = n->scratch->q;
     for (uint32_t i = 0; i < n->places; i++) q[i] = LAMBDA * d[i];
     for (uint32_t i = 0; i < n->points; i++) {
-        const struct chart_seam_point *p = &n->closing->seams.points[n->room->point[i]];
+        const struct chart_seam_point *p = &n->closing->seams.points[n->scratch->point[i]];
         double sum = 0.0;
         for (int k = 0; k < CHART_SEAM_PLACES; k++) {
-            const uint32_t at = n->room->local[p->place[k]];
+            const uint32_t at = n->scratch->local[p->place[k]];
             if (at > 0) sum += (double)p->weight[k] * d[at - 1];
         }
         for (int k = 0; k < CHART_SEAM_PLACES; k++) {
-            const uint32_t at = n->room->local[p->place[k]];
+            const uint32_t at = n->scratch->local[p->place[k]];
             if (at > 0) q[at - 1] += (double)p->length * sum * (double)p->weight[k];
         }
     }
@@ -197,7 +197,7 @@ static double dot(const double *a, const double *b, uint32_t count)
 // x = λ (λ I + Σ l a aᵀ)⁻¹ e, with e of the first place.
 static void solve(const struct near *n)
 {
-    struct seam_closing_room *m = n->room;
+    struct seam_closing_scratch *m = n->scratch;
     for (uint32_t i = 0; i < n->places; i++) m->x[i] = m->r[i] = m->d[i] = 0.0;
     m->r[0] = m->d[0] = LAMBDA;
     double square = LAMBDA * LAMBDA;
@@ -235,9 +235,10 @@ static uint32_t merge(const struct near *n, struct chart_share *row)
     const struct seam_closing *c = n->closing;
     uint32_t count = 0, merged = 0;
     for (uint32_t i = 0; i < n->places; i++) {
-        const uint32_t place = c->seams.places[n->room->place[i]];
+        const uint32_t place = c->seams.places[n->scratch->place[i]];
         const uint32_t texel = chart_texel_of_place(c->charts, place);
-        if (texel != CHART_NONE) row[count++] = (struct chart_share){ texel, (float)n->room->x[i] };
+        if (texel != CHART_NONE)
+            row[count++] = (struct chart_share){ texel, (float)n->scratch->x[i] };
     }
     qsort(row, count, sizeof *row, by_texel);
     for (uint32_t i = 0; i < count; i++) {
@@ -261,10 +262,10 @@ static void write_row(const struct chart_share *row, uint32_t count, struct char
     out[0].weight += rest;
 }
 
-void seam_close(const struct seam_closing *closing, struct seam_closing_room *room, uint32_t place,
-                struct chart_share out[CHART_SEAM_ENTRIES])
+void seam_close(const struct seam_closing *closing, struct seam_closing_scratch *scratch,
+                uint32_t place, struct chart_share out[CHART_SEAM_ENTRIES])
 {
-    struct near near = { closing, room, 0, 0 };
+    struct near near = { closing, scratch, 0, 0 };
     struct chart_share row[MOST_LOCAL];
     find_near(&near, place);
     solve(&near);

@@ -4,7 +4,7 @@
 #include "scene/charts/seams.h"
 #include "trace/trace_scene.h"
 
-struct seam_closing_room;
+struct seam_closing_scratch;
 
 // seam_closing_finish accepts zero.
 struct seam_closing {
@@ -19,11 +19,11 @@ bool seam_closing_init(struct seam_closing *out, struct host *host, const struct
                        const struct trace_scene *trace);
 void seam_closing_finish(struct seam_closing *closing);
 
-// Scratch memory of a task. NULL: no memory; seam_closing_room_destroy accepts it.
-struct seam_closing_room *seam_closing_room_create(struct host *host,
-                                                   const struct seam_closing *closing);
-void seam_closing_room_destroy(struct seam_closing_room *room);
+// Scratch memory of a task. NULL: no memory; seam_closing_scratch_destroy accepts it.
+struct seam_closing_scratch *seam_closing_scratch_create(struct host *host,
+                                                         const struct seam_closing *closing);
+void seam_closing_scratch_destroy(struct seam_closing_scratch *scratch);
 
 // Weights of a place, which sum to 1; unused entries have weight 0.
-void seam_close(const struct seam_closing *closing, struct seam_closing_room *room, uint32_t place,
-                struct chart_share out[CHART_SEAM_ENTRIES]);
+void seam_close(const struct seam_closing *closing, struct seam_closing_scratch *scratch,
+                uint32_t place, struct chart_share out[CHART_SEAM_ENTRIES]);

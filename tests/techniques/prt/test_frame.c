@@ -87,7 +87,7 @@ static double compare_texels(struct prt_fixture *f, const struct prt_baked *bake
                              const struct prt_light *light, float factor)
 {
     const uint32_t texels = f->charts.side_texel_count;
-    const size_t room = light_map_table_room(3 * (size_t)texels);
+    const size_t room = light_map_table_capacity(3 * (size_t)texels);
     double worst = 0, most = 0;
     uint32_t *words = calloc(2 * room, sizeof *words);
     assert_non_null(words);
@@ -116,7 +116,7 @@ static double compare_reflected(struct prt_fixture *f, const struct prt_baked *b
                                 const struct prt_light *light)
 {
     const uint32_t texels = f->charts.side_texel_count;
-    const size_t room = light_map_table_room(texels);
+    const size_t room = light_map_table_capacity(texels);
     const float *point = tensors_find(baked->tensors, LIGHT_MAP_POINT)->data;
     double worst = 0, most = 0;
     uint32_t *words = calloc(2 * room, sizeof *words);

@@ -158,7 +158,7 @@ static int warnings;
 static void record_log(void *user, enum log_level level, const char *message)
 {
     (void)user;
-    if (level == LOG_WARNING && strstr(message, "for which there is room")) warnings++;
+    if (level == LOG_WARNING && strstr(message, "capacity of")) warnings++;
 }
 
 // A stack of sheets one voxel apart.

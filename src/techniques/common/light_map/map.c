@@ -94,7 +94,7 @@ struct pair {
 static bool upload_owners(struct light_map *map, const uint32_t *nearest_valid)
 {
     const size_t places = charts_place_count(map->charts);
-    struct pair *owners = host_alloc(map->host, light_map_table_room(places), sizeof *owners);
+    struct pair *owners = host_alloc(map->host, light_map_table_capacity(places), sizeof *owners);
     for (size_t i = 0; owners && i < places; i++) {
         const uint32_t texel = chart_texel_of_place(map->charts, i);
         if (texel == CHART_NONE) continue;
@@ -141,7 +141,7 @@ static bool upload_rows(struct light_map *map, const struct light_map_seam_rows 
     const size_t places = map->seam_count, entries = CHART_SEAM_ENTRIES;
     const size_t count = places * entries / LIGHT_MAP_PAIR;
     struct chart_share *rows =
-        host_alloc(map->host, light_map_table_room(count), LIGHT_MAP_PAIR * sizeof *rows);
+        host_alloc(map->host, light_map_table_capacity(count), LIGHT_MAP_PAIR * sizeof *rows);
     for (size_t i = 0; rows && i < places * entries; i++)
         *light_map_share_at(rows, places, i / entries, i % entries) =
             (struct chart_share){ nearest_valid[from->texel[i]], from->weight[i] };
@@ -152,7 +152,7 @@ static bool upload_rows(struct light_map *map, const struct light_map_seam_rows 
 static bool upload_places(struct light_map *map, const struct chart_seams *seams)
 {
     const size_t count = seams->count;
-    uint32_t *places = host_alloc(map->host, light_map_table_room(count), sizeof *places);
+    uint32_t *places = host_alloc(map->host, light_map_table_capacity(count), sizeof *places);
     for (size_t i = 0; places && i < count; i++)
         places[i] = light_map_place_word(map->charts, seams->places[i]);
     map->seam_count = (uint32_t)count;

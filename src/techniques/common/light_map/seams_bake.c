@@ -11,12 +11,12 @@ static bool run_seams(const struct bake_task *task)
 {
     const struct seam_closing *closing = task->argument;
     uint64_t count, first = bake_task_rows(task, 0, &count);
-    struct seam_closing_room *room = seam_closing_room_create(task->host, closing);
-    bool ok = room != NULL;
+    struct seam_closing_scratch *scratch = seam_closing_scratch_create(task->host, closing);
+    bool ok = scratch != NULL;
     for (uint64_t i = 0; ok && i < count && first + i < closing->seams.count; i++) {
         struct chart_share row[CHART_SEAM_ENTRIES];
         ok = !bake_task_cancelled(task);
-        seam_close(closing, room, (uint32_t)(first + i), row);
+        seam_close(closing, scratch, (uint32_t)(first + i), row);
         uint32_t *texel = bake_row(task, 0, i);
         float *weight = bake_row(task, 1, i);
         for (uint32_t k = 0; k < CHART_SEAM_ENTRIES; k++) {
@@ -24,7 +24,7 @@ static bool run_seams(const struct bake_task *task)
             weight[k] = row[k].weight;
         }
     }
-    seam_closing_room_destroy(room);
+    seam_closing_scratch_destroy(scratch);
     return ok;
 }
 

@@ -6,7 +6,7 @@ static size_t rows_of(size_t count)
     return count > 0 ? (count + LIGHT_MAP_TABLE_WIDTH - 1) / LIGHT_MAP_TABLE_WIDTH : 1;
 }
 
-size_t light_map_table_room(size_t count)
+size_t light_map_table_capacity(size_t count)
 {
     return rows_of(count) * LIGHT_MAP_TABLE_WIDTH;
 }
@@ -36,7 +36,7 @@ static bool create_table(struct host *host, struct gpu *gpu, const char *name,
 bool light_map_table_upload(struct host *host, struct gpu *gpu, const char *name,
                             enum gpu_format format, void *entries, size_t count, gpu_image *out)
 {
-    const size_t bytes = light_map_table_room(count) * (size_t)gpu_format_bytes(format);
+    const size_t bytes = light_map_table_capacity(count) * (size_t)gpu_format_bytes(format);
     const bool ok = entries && create_table(host, gpu, name, format, count, out) &&
                     gpu_image_upload(gpu, *out, 0, 0, entries, bytes);
     host_free(host, entries);

@@ -9,10 +9,10 @@
 #include "techniques/common/light_map/map_shared.h"
 
 // Entries that the image has, at least `count` and 1: whole rows of it.
-size_t light_map_table_room(size_t count);
+size_t light_map_table_capacity(size_t count);
 // The image, without a name.
 struct gpu_image_desc light_map_table(enum gpu_format format, size_t count);
-// A table with these entries, in memory for light_map_table_room(count), which is freed with
+// A table with these entries, in memory for light_map_table_capacity(count), which is freed with
 // host_free in any case. NULL: false, as beyond the limits of the device.
 bool light_map_table_upload(struct host *host, struct gpu *gpu, const char *name,
                             enum gpu_format format, void *entries, size_t count, gpu_image *out);
@@ -22,7 +22,7 @@ bool light_map_buffer_upload(struct host *host, struct gpu *gpu, const char *nam
 
 static inline uint64_t light_map_table_bytes(uint64_t entries, uint64_t bytes)
 {
-    return light_map_table_room((size_t)entries) * bytes;
+    return light_map_table_capacity((size_t)entries) * bytes;
 }
 
 // Sums of texels in a table, entries in pairs: [pair][row][LIGHT_MAP_PAIR].

@@ -64,7 +64,7 @@ bool light_map_upload_texels(const struct light_map_texels *t, struct host *host
                              gpu_image *out)
 {
     const size_t count = (size_t)t->charts->side_texel_count * TEXEL_PARTS;
-    vec4s *parts = host_alloc(host, light_map_table_room(count), sizeof *parts);
+    vec4s *parts = host_alloc(host, light_map_table_capacity(count), sizeof *parts);
     for (uint32_t i = 0; parts && i < t->charts->side_texel_count; i++) fill_texel(t, i, parts);
     return light_map_table_upload(host, gpu, "texels", GPU_RGBA32F, parts, count, out);
 }
@@ -77,7 +77,7 @@ bool light_map_upload_sky(const struct light_map_texels *t, struct host *host, s
         TENSORS_EXPECT(host, bake, LIGHT_MAP_SKY_SHARES, TENSOR_U8,
                        light_map_rows(t->charts->side_texel_count), ENVIRONMENT_PATCHES);
     uint8_t(*table)[16] =
-        shares ? host_alloc(host, light_map_table_room(words), sizeof *table) : NULL;
+        shares ? host_alloc(host, light_map_table_capacity(words), sizeof *table) : NULL;
     for (size_t i = 0; table && i < count; i++)
         for (size_t k = 0; k < TEXEL_SKY_WORDS; k++)
             memcpy(table[k * count + i], shares + ENVIRONMENT_PATCHES * i + 16 * k, 16);

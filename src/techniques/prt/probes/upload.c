@@ -32,7 +32,7 @@ static bool upload_matrices(struct prt_probes *p, struct host *host, struct gpu 
     const size_t probes = p->count, rows = p->rows, numbers = prt_dimension(options);
     const size_t count = prt_row_entries(options) * rows * probes;
     uint16_t *table =
-        host_alloc(host, light_map_table_room(count), sizeof(uint16_t[PRT_VECTOR_HALVES]));
+        host_alloc(host, light_map_table_capacity(count), sizeof(uint16_t[PRT_VECTOR_HALVES]));
     for (size_t i = 0; table && i < probes; i++)
         for (size_t row = 0; row < rows; row++)
             for (size_t k = 0; k < numbers; k++)
@@ -46,7 +46,7 @@ static bool upload_table(struct prt_probes *p, struct host *host, struct gpu *gp
                          const struct content *c)
 {
     const size_t probes = p->count, rows = p->rows, count = (PRT_PROBE_LIGHT + rows) * probes;
-    vec4s *table = host_alloc(host, light_map_table_room(count), sizeof *table);
+    vec4s *table = host_alloc(host, light_map_table_capacity(count), sizeof *table);
     for (size_t i = 0; table && i < probes; i++) {
         table[PRT_PROBE_OFFSET * probes + i] =
             probe_offset(p->volume.grid, (uint32_t)i, c->place[i]);

@@ -29,22 +29,23 @@ static uint32_t most_vertices(const struct mesh *mesh)
     return mesh->vertex_count < mesh->index_count ? mesh->vertex_count : mesh->index_count;
 }
 
-struct room {
+// Vertices and triangles to allocate memory for.
+struct capacity {
     size_t vertices, triangles; // of all instances
     uint32_t mesh;              // vertices of the largest mesh
 };
 
-static struct room room_of(const struct scene *scene)
+static struct capacity capacity_of(const struct scene *scene)
 {
-    struct room room = { 0 };
+    struct capacity capacity = { 0 };
     for (int i = 0; i < scene->instance_count; i++) {
         const struct mesh *mesh = scene_mesh_of(scene, i);
         if (scene->instances[i].mesh < 0) continue;
-        room.vertices += (is_double_sided(scene, i) ? 2 : 1) * (size_t)most_vertices(mesh);
-        room.triangles += mesh->index_count / 3;
-        if (mesh->vertex_count > room.mesh) room.mesh = mesh->vertex_count;
+        capacity.vertices += (is_double_sided(scene, i) ? 2 : 1) * (size_t)most_vertices(mesh);
+        capacity.triangles += mesh->index_count / 3;
+        if (mesh->vertex_count > capacity.mesh) capacity.mesh = mesh->vertex_count;
     }
-    return room;
+    return capacity;
 }
 
 // ---- equal vertices
@@ -185,18 +186,18 @@ static bool find_fans(struct prt_vertices *v)
 
 bool prt_vertices_init(struct prt_vertices *out, struct host *host, const struct scene_pose *pose)
 {
-    const struct room room = room_of(pose->scene);
-    *out = (struct prt_vertices){ .host = host, .triangle_count = room.triangles };
-    if (room.triangles > UINT32_MAX / 8)
+    const struct capacity capacity = capacity_of(pose->scene);
+    *out = (struct prt_vertices){ .host = host, .triangle_count = capacity.triangles };
+    if (capacity.triangles > UINT32_MAX / 8)
         return host_fail(host, FAIL_MEMORY, "prt: vertices of %s: more than %u triangles",
                          pose->scene->name, UINT32_MAX / 8);
-    out->at = host_alloc(host, room.vertices, sizeof *out->at);
+    out->at = host_alloc(host, capacity.vertices, sizeof *out->at);
     out->triangle_0 =
         host_alloc(host, (size_t)pose->scene->instance_count + 1, sizeof *out->triangle_0);
-    out->corners = host_alloc(host, 2 * room.triangles, sizeof *out->corners);
-    out->face = host_alloc(host, room.triangles, sizeof *out->face);
+    out->corners = host_alloc(host, 2 * capacity.triangles, sizeof *out->corners);
+    out->face = host_alloc(host, capacity.triangles, sizeof *out->face);
     if (!out->at || !out->triangle_0 || !out->corners || !out->face ||
-        !add_all_fronts(out, pose, room.mesh))
+        !add_all_fronts(out, pose, capacity.mesh))
         return false;
     find_faces(out, pose);
     add_backs(out, pose->scene);

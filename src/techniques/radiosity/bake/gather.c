@@ -56,7 +56,7 @@ static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit
     v->gather->inverse_distance += 1.0f / (fmaxf(hit->distance, LEAST_DISTANCE_M) * rays);
     if (cluster == CHART_NONE) return;
     struct radiosity_factor *factor = &v->gather->factor[cluster];
-    if (factor->weight == 0.0f) v->gather->met[v->gather->met_count++] = cluster;
+    if (factor->weight == 0.0f) v->gather->hit[v->gather->hit_count++] = cluster;
     factor->weight += 1.0f / rays;
     factor->along[0] += local.x / (local.z * rays);
     factor->along[1] += local.y / (local.z * rays);
@@ -65,10 +65,10 @@ static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit
 void radiosity_gather_clear(struct radiosity_gather *gather)
 {
     struct radiosity_factor *factor = gather->factor;
-    uint32_t *met = gather->met;
-    for (uint32_t i = 0; i < gather->met_count; i++)
-        factor[met[i]] = (struct radiosity_factor){ 0 };
-    *gather = (struct radiosity_gather){ .factor = factor, .met = met };
+    uint32_t *hit = gather->hit;
+    for (uint32_t i = 0; i < gather->hit_count; i++)
+        factor[hit[i]] = (struct radiosity_factor){ 0 };
+    *gather = (struct radiosity_gather){ .factor = factor, .hit = hit };
 }
 
 void radiosity_gather(const struct radiosity_scene *scene, uint32_t texel, vec3s position,

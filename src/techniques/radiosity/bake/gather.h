@@ -31,8 +31,8 @@ struct radiosity_factor {
 
 struct radiosity_gather {
     struct radiosity_factor *factor; // [clusters], in shares of 1
-    uint32_t *met;                   // clusters whose factor is not 0, in the order of the rays
-    uint32_t met_count;
+    uint32_t *hit;                   // clusters whose factor is not 0, in the order of the rays
+    uint32_t hit_count;
     struct texel_lights light;
     float inverse_distance; // mean over the rays, 1/m
 };

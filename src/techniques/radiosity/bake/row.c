@@ -80,16 +80,16 @@ static uint32_t root_of(const struct radiosity_tree *tree)
     return tree->leaves > 1 ? tree->leaves : 0;
 }
 
-// Replaces an entry by those of its children that were met. False: there is no room, or it is a
-// cluster.
-static bool refine(struct radiosity_rows *rows, uint32_t node, uint32_t room, uint32_t *heap)
+// Replaces an entry by those of its children that rays hit. False: there is no spare entry, or it
+// is a cluster.
+static bool refine(struct radiosity_rows *rows, uint32_t node, uint32_t spare, uint32_t *heap)
 {
     const uint32_t *child = rows->tree->nodes[node].child;
     if (child[0] == RADIOSITY_NO_NODE) return false;
-    const bool met[2] = { rows->sum[child[0]].weight > 0.0f, rows->sum[child[1]].weight > 0.0f };
-    if (met[0] && met[1] && room == 0) return false;
+    const bool hit[2] = { rows->sum[child[0]].weight > 0.0f, rows->sum[child[1]].weight > 0.0f };
+    if (hit[0] && hit[1] && spare == 0) return false;
     for (int k = 0; k < 2; k++)
-        if (met[k]) push(rows->heap, heap, entry_of(rows, child[k]));
+        if (hit[k]) push(rows->heap, heap, entry_of(rows, child[k]));
     return true;
 }
 
@@ -101,7 +101,7 @@ static uint32_t group_of(const struct radiosity_rows *rows, uint32_t node, struc
         const uint32_t *child = nodes[node].child;
         const float low = rows->sum[child[0]].weight, high = rows->sum[child[1]].weight;
         node = child[rng_float(rng) * (low + high) < low ? 0 : 1];
-        // Rounding may choose a child that was not met.
+        // Rounding may choose a child that no ray hit.
         if (rows->sum[node].weight == 0.0f) node = child[low > 0.0f ? 0 : 1];
     }
     return node;
@@ -112,14 +112,14 @@ uint32_t radiosity_make_row(struct radiosity_rows *rows, const struct radiosity_
 {
     uint32_t touched = 0, count = 0, heap = 0;
     struct rng rng = rng_for((uint32_t)seed, (uint32_t)(seed >> 32), 0);
-    for (uint32_t i = 0; i < gather->met_count; i++)
-        touched = add_upwards(rows, gather->met[i], gather->factor[gather->met[i]], touched);
+    for (uint32_t i = 0; i < gather->hit_count; i++)
+        touched = add_upwards(rows, gather->hit[i], gather->factor[gather->hit[i]], touched);
     if (touched > 0) push(rows->heap, &heap, entry_of(rows, root_of(rows->tree)));
     while (heap > 0) {
         struct radiosity_entry entry = pop(rows->heap, &heap);
         // Entries in the heap stay, in the end.
-        const uint32_t room = most - (count + heap + 1);
-        if (refine(rows, entry.node, room, &heap)) continue;
+        const uint32_t spare = most - (count + heap + 1);
+        if (refine(rows, entry.node, spare, &heap)) continue;
         entry.node = group_of(rows, entry.node, &rng);
         out[count++] = entry;
     }

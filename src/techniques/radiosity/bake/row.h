@@ -13,7 +13,7 @@ struct radiosity_rows {
     struct host *host;
     const struct radiosity_tree *tree;
     const bool *is_group;         // [nodes]
-    struct radiosity_factor *sum; // [nodes] of the clusters that were met; all 0 between the calls
+    struct radiosity_factor *sum; // [nodes] of the clusters that rays hit; all 0 between the calls
     uint32_t *touched;            // [nodes] those that are not
     struct radiosity_entry *heap;
 };
@@ -22,7 +22,8 @@ bool radiosity_rows_init(struct radiosity_rows *rows, struct host *host,
 void radiosity_rows_finish(struct radiosity_rows *rows);
 
 // Writes at most `most` entries and returns their number: from the root downwards the heaviest node
-// is replaced by its children while there is room. Of a node larger than a group a group in it
-// stands for all, chosen by weight: the sum of the row is exact, and its light is without bias.
+// is replaced by its children while there are spare entries. Of a node larger than a group a group
+// in it stands for all, chosen by weight: the sum of the row is exact, and its light is without
+// bias.
 uint32_t radiosity_make_row(struct radiosity_rows *rows, const struct radiosity_gather *gather,
                             uint32_t most, uint64_t seed, struct radiosity_entry *out);

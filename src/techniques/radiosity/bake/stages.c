@@ -44,35 +44,35 @@ static void destroy(void *argument)
 }
 
 // Room of a task: factors of all clusters, and one row.
-struct room {
+struct scratch {
     struct radiosity_gather gather;
     struct radiosity_rows rows;
     struct radiosity_entry *row;
 };
 
-static bool room_init(struct room *room, struct host *host, const struct job *job)
+static bool scratch_init(struct scratch *scratch, struct host *host, const struct job *job)
 {
     const struct radiosity_tree *tree = &job->scene.map.tree;
     const size_t entries = 2 * (size_t)job->options.sources;
-    *room = (struct room){ .row = host_alloc(host, entries, sizeof *room->row) };
-    room->gather.factor = host_alloc(host, tree->leaves, sizeof *room->gather.factor);
-    room->gather.met = host_alloc(host, tree->leaves, sizeof *room->gather.met);
-    return room->row && room->gather.factor && room->gather.met &&
-           radiosity_rows_init(&room->rows, host, &job->scene);
+    *scratch = (struct scratch){ .row = host_alloc(host, entries, sizeof *scratch->row) };
+    scratch->gather.factor = host_alloc(host, tree->leaves, sizeof *scratch->gather.factor);
+    scratch->gather.hit = host_alloc(host, tree->leaves, sizeof *scratch->gather.hit);
+    return scratch->row && scratch->gather.factor && scratch->gather.hit &&
+           radiosity_rows_init(&scratch->rows, host, &job->scene);
 }
 
-static size_t room_bytes(uint64_t clusters)
+static size_t scratch_size(uint64_t clusters)
 {
     const size_t sum = sizeof(struct radiosity_factor) + sizeof(uint32_t);
     return (size_t)clusters * (sum + 2 * (sum + sizeof(struct radiosity_entry)));
 }
 
-static void room_finish(struct room *room, struct host *host)
+static void scratch_finish(struct scratch *scratch, struct host *host)
 {
-    radiosity_rows_finish(&room->rows);
-    host_free(host, room->gather.factor);
-    host_free(host, room->gather.met);
-    host_free(host, room->row);
+    radiosity_rows_finish(&scratch->rows);
+    host_free(host, scratch->gather.factor);
+    host_free(host, scratch->gather.hit);
+    host_free(host, scratch->row);
 }
 
 // ---- texels
@@ -101,21 +101,22 @@ static void write_row(const struct radiosity_entry *row, uint32_t count, uint32_
     }
 }
 
-static void gather_texel(const struct bake_task *task, struct room *room, uint64_t first,
+static void gather_texel(const struct bake_task *task, struct scratch *scratch, uint64_t first,
                          uint64_t i)
 {
     const struct job *job = task->job;
     const uint32_t texel = (uint32_t)(first + i);
-    struct radiosity_gather *gather = &room->gather;
+    struct radiosity_gather *gather = &scratch->gather;
     const struct charts *charts = &job->scene.map.charts;
     const struct texel_point point = texel_find_point(job->scene.trace, charts, texel);
     memcpy(bake_row(task, OUT_POINT, i), &point, sizeof point);
     *(uint8_t *)bake_row(task, OUT_PART, i) = job->scene.part[texel];
     if (point.share == 0.0f) return;
     radiosity_gather(&job->scene, texel, point.position, task->bake_seed, gather);
-    const uint32_t count = radiosity_make_row(&room->rows, gather, (uint32_t)job->options.sources,
-                                              task->bake_seed ^ (uint64_t)texel << 32, room->row);
-    write_row(room->row, count, bake_row(task, OUT_SOURCE, i), bake_row(task, OUT_FACTOR, i));
+    const uint32_t count =
+        radiosity_make_row(&scratch->rows, gather, (uint32_t)job->options.sources,
+                           task->bake_seed ^ (uint64_t)texel << 32, scratch->row);
+    write_row(scratch->row, count, bake_row(task, OUT_SOURCE, i), bake_row(task, OUT_FACTOR, i));
     memcpy(bake_row(task, OUT_SKY, i), &gather->light.sky, sizeof gather->light.sky);
     texel_sky_shares(&gather->light, bake_row(task, OUT_SKY_SHARES, i));
     memcpy(bake_row(task, OUT_EMITTED, i), gather->light.emitted, sizeof gather->light.emitted);
@@ -128,14 +129,14 @@ static bool run_texels(const struct bake_task *task)
 {
     const struct job *job = task->job;
     uint64_t count, first = bake_task_rows(task, OUT_SOURCE, &count);
-    struct room room;
-    bool ok = room_init(&room, task->host, job);
+    struct scratch scratch;
+    bool ok = scratch_init(&scratch, task->host, job);
     if (job->scene.map.texel_count == 0) count = 0;
     for (uint64_t i = 0; ok && i < count; i++) {
         ok = !bake_task_cancelled(task);
-        if (ok) gather_texel(task, &room, first, i);
+        if (ok) gather_texel(task, &scratch, first, i);
     }
-    room_finish(&room, task->host);
+    scratch_finish(&scratch, task->host);
     return ok;
 }
 
@@ -169,7 +170,7 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
                                     .output_count = OUT_COUNT,
                                     .rays = (double)texels * job->options.rays / (double)tasks,
                                     .texels = (double)texels / (double)tasks,
-                                    .scratch_bytes = room_bytes(clusters) });
+                                    .scratch_bytes = scratch_size(clusters) });
 }
 
 // ---- probes
@@ -177,12 +178,12 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
 static bool run_probes(const struct bake_task *task)
 {
     const struct job *job = task->job;
-    struct room room;
-    const bool ok =
-        room_init(&room, task->host, job) &&
-        radiosity_probe_run(task, &job->scene,
-                            &(struct radiosity_probe_room){ &room.gather, &room.rows, room.row });
-    room_finish(&room, task->host);
+    struct scratch scratch;
+    const bool ok = scratch_init(&scratch, task->host, job) &&
+                    radiosity_probe_run(task, &job->scene,
+                                        &(struct radiosity_probe_scratch){
+                                            &scratch.gather, &scratch.rows, scratch.row });
+    scratch_finish(&scratch, task->host);
     return ok;
 }
 
@@ -217,7 +218,7 @@ static void add_node(const struct clusters *of, const struct radiosity_node *nod
     for (uint32_t c = node->first; c < node->first + node->count; c++) {
         const float part = area > 0.0f ? weight * of->area[c] / area : 0.0f;
         if (!(part > 0.0f)) continue;
-        if (sum->factor[c].weight == 0.0f) sum->met[sum->met_count++] = c;
+        if (sum->factor[c].weight == 0.0f) sum->hit[sum->hit_count++] = c;
         sum->factor[c].weight += part;
     }
 }
@@ -235,8 +236,8 @@ static void add_row(const struct clusters *of, uint32_t texel, float share,
 
 static void sum_texels(const struct clusters *of, uint32_t cluster, struct radiosity_gather *sum)
 {
-    for (uint32_t i = 0; i < sum->met_count; i++) sum->factor[sum->met[i]].weight = 0.0f;
-    sum->met_count = 0;
+    for (uint32_t i = 0; i < sum->hit_count; i++) sum->factor[sum->hit[i]].weight = 0.0f;
+    sum->hit_count = 0;
     if (!(of->area[cluster] > 0.0f)) return;
     for (uint32_t m = of->map->first[cluster]; m < of->map->first[cluster + 1]; m++) {
         const uint32_t texel = of->map->members[m];
@@ -244,19 +245,21 @@ static void sum_texels(const struct clusters *of, uint32_t cluster, struct radio
     }
 }
 
-static void merge_rows(const struct bake_task *task, const struct clusters *of, struct room *room)
+static void merge_rows(const struct bake_task *task, const struct clusters *of,
+                       struct scratch *scratch)
 {
     const size_t most = 2 * of->sources;
     uint64_t count, first = bake_task_rows(task, 0, &count);
     for (uint64_t i = 0; i < count && first + i < of->map->cluster_count; i++) {
-        sum_texels(of, (uint32_t)(first + i), &room->gather);
-        const uint32_t entries = radiosity_make_row(&room->rows, &room->gather, (uint32_t)most,
-                                                    task->bake_seed ^ (first + i), room->row);
+        sum_texels(of, (uint32_t)(first + i), &scratch->gather);
+        const uint32_t entries =
+            radiosity_make_row(&scratch->rows, &scratch->gather, (uint32_t)most,
+                               task->bake_seed ^ (first + i), scratch->row);
         uint32_t *source = bake_row(task, 0, i);
         uint16_t *factor = bake_row(task, 1, i);
         for (uint32_t k = 0; k < entries; k++) {
-            source[k] = room->row[k].node;
-            factor[k] = half_from_float(room->row[k].factor.weight);
+            source[k] = scratch->row[k].node;
+            factor[k] = half_from_float(scratch->row[k].factor.weight);
         }
     }
 }
@@ -275,13 +278,13 @@ static bool run_clusters(const struct bake_task *task)
                                  points->data,
                                  (size_t)job->options.sources,
                                  host_alloc(task->host, map->cluster_count, sizeof(float)) };
-    struct room room;
-    const bool ok = room_init(&room, task->host, job) && of.area;
+    struct scratch scratch;
+    const bool ok = scratch_init(&scratch, task->host, job) && of.area;
     if (ok) {
         find_areas(&of);
-        merge_rows(task, &of, &room);
+        merge_rows(task, &of, &scratch);
     }
-    room_finish(&room, task->host);
+    scratch_finish(&scratch, task->host);
     host_free(task->host, of.area);
     return ok;
 }
@@ -305,7 +308,7 @@ static bool add_clusters(struct bake_plan *plan, const struct job *job, uint64_t
                                     .output_count = 2,
                                     .others = (double)texels * (double)job->options.sources /
                                               (double)tasks,
-                                    .scratch_bytes = room_bytes(clusters) });
+                                    .scratch_bytes = scratch_size(clusters) });
 }
 
 // Of the map and of what a trace scene has for each triangle: its hierarchy (Embree's quads take
@@ -346,7 +349,7 @@ static bool add_stages(struct bake_plan *plan, struct job *job, const struct sce
     const uint64_t clusters = radiosity_cluster_rows(map);
     const struct frame_probes grid = radiosity_probe_grid(map, &job->options);
     return add_texels(plan, job, texels, clusters) &&
-           radiosity_probe_plan(plan, grid, &job->options, run_probes, room_bytes(clusters)) &&
+           radiosity_probe_plan(plan, grid, &job->options, run_probes, scratch_size(clusters)) &&
            add_clusters(plan, job, texels, clusters) &&
            light_map_add_seams(plan, &job->closing, &map->charts);
 }

@@ -48,7 +48,7 @@ static void add_cluster(struct radiosity_gather *gather, uint32_t cluster, vec3s
                         float share)
 {
     struct radiosity_factor *factor = &gather->factor[cluster];
-    if (factor->weight == 0.0f) gather->met[gather->met_count++] = cluster;
+    if (factor->weight == 0.0f) gather->hit[gather->hit_count++] = cluster;
     factor->weight += share;
     for (int a = 0; a < 3; a++) factor->along[a] += share * direction.raw[a];
 }
@@ -131,7 +131,7 @@ static void gather_probe(const struct radiosity_scene *scene, struct frame_probe
 
 bool radiosity_probe_plan(struct bake_plan *plan, struct frame_probes grid,
                           const struct radiosity_options *options,
-                          bool (*run)(const struct bake_task *task), size_t room_bytes)
+                          bool (*run)(const struct bake_task *task), size_t scratch_bytes)
 {
     const uint64_t probes = probe_grid_count(grid), most = 2 * (uint64_t)options->sources;
     const struct bake_output out[OUT_COUNT] = {
@@ -151,7 +151,7 @@ bool radiosity_probe_plan(struct bake_plan *plan, struct frame_probes grid,
                                     .outputs = out,
                                     .output_count = OUT_COUNT,
                                     .rays = (double)probes * 2 * options->rays / (double)tasks,
-                                    .scratch_bytes = room_bytes });
+                                    .scratch_bytes = scratch_bytes });
 }
 
 static void write_row(const struct bake_task *task, uint64_t i, const struct radiosity_entry *row,
@@ -177,7 +177,7 @@ static void write_probe(const struct bake_task *task, uint64_t i, const struct p
 }
 
 bool radiosity_probe_run(const struct bake_task *task, const struct radiosity_scene *scene,
-                         const struct radiosity_probe_room *room)
+                         const struct radiosity_probe_scratch *scratch)
 {
     const struct frame_probes grid = radiosity_probe_grid(&scene->map, &scene->options);
     const uint64_t most = 2 * (uint64_t)scene->options.sources;
@@ -185,10 +185,11 @@ bool radiosity_probe_run(const struct bake_task *task, const struct radiosity_sc
     for (uint64_t i = 0; i < count; i++) {
         struct probe probe;
         if (bake_task_cancelled(task)) return false;
-        gather_probe(scene, grid, (uint32_t)(first + i), task->bake_seed, room->gather, &probe);
-        const uint32_t entries = radiosity_make_row(room->rows, room->gather, (uint32_t)most,
-                                                    task->bake_seed ^ (first + i) << 32, room->row);
-        write_row(task, i, room->row, entries);
+        gather_probe(scene, grid, (uint32_t)(first + i), task->bake_seed, scratch->gather, &probe);
+        const uint32_t entries =
+            radiosity_make_row(scratch->rows, scratch->gather, (uint32_t)most,
+                               task->bake_seed ^ (first + i) << 32, scratch->row);
+        write_row(task, i, scratch->row, entries);
         write_probe(task, i, &probe);
     }
     return true;

@@ -6,15 +6,15 @@
 #include "techniques/radiosity/probes/grid.h"
 
 // Room of a task. row: [2 · sources].
-struct radiosity_probe_room {
+struct radiosity_probe_scratch {
     struct radiosity_gather *gather;
     struct radiosity_rows *rows;
     struct radiosity_entry *row;
 };
 
-// `run` calls radiosity_probe_run. room_bytes: of its room.
+// `run` calls radiosity_probe_run. scratch_bytes: of `scratch`.
 bool radiosity_probe_plan(struct bake_plan *plan, struct frame_probes grid,
                           const struct radiosity_options *options,
-                          bool (*run)(const struct bake_task *task), size_t room_bytes);
+                          bool (*run)(const struct bake_task *task), size_t scratch_bytes);
 bool radiosity_probe_run(const struct bake_task *task, const struct radiosity_scene *scene,
-                         const struct radiosity_probe_room *room);
+                         const struct radiosity_probe_scratch *scratch);

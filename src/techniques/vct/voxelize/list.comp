@@ -39,10 +39,10 @@ layout(set = 0, binding = 6, scalar) buffer vct_arguments
 };
 
 // The first bits of a word whose slots are within the capacity.
-uint with_room(uint word, uint slot)
+uint within_capacity(uint word, uint slot)
 {
-    for (uint room = vct.capacity - min(slot, vct.capacity); uint(bitCount(word)) > room;)
-        word &= ~(1u << uint(findMSB(word)));
+    uint free_slots = vct.capacity - min(slot, vct.capacity);
+    while (uint(bitCount(word)) > free_slots) word &= ~(1u << uint(findMSB(word)));
     return word;
 }
 
@@ -54,7 +54,7 @@ void main()
     uint slot = blocks[block], accumulated_count = 0u;
     for (uint i = first; i < end; i++) {
         offsets[i] = slot;
-        uint word = with_room(mask[i], slot);
+        uint word = within_capacity(mask[i], slot);
         accumulated_count += uint(bitCount(accumulated[i] & word));
         for (; word != 0u; word &= word - 1u, slot++) list[slot] = i * 32u + uint(findLSB(word));
     }
@@ -63,7 +63,7 @@ void main()
     atomicMax(counts.accumulated_groups[0], (to + accumulated_count + VCT_LOCAL - 1u) / VCT_LOCAL);
     slot = blocks[block];
     for (uint i = first; i < end; i++) {
-        uint word = with_room(mask[i], slot);
+        uint word = within_capacity(mask[i], slot);
         for (uint bits = accumulated[i] & word; bits != 0u; bits &= bits - 1u, to++)
             accumulated_list[to] = slot + uint(bitCount(word & ((bits & -bits) - 1u)));
         slot += uint(bitCount(word));
