@@ -7,16 +7,17 @@
 
 #include <math.h>
 
-struct texel_seen texel_seen_at(const struct trace_scene *scene, const struct ray *ray,
-                                const struct ray_hit *hit)
+struct texel_hit texel_hit_at(const struct trace_scene *scene, const struct ray *ray,
+                              const struct ray_hit *hit)
 {
     const struct trace_mesh *mesh = &scene->meshes[hit->geometry];
     const float along = -glms_vec3_dot(mesh->facets[hit->triangle].normal, ray->direction);
-    struct texel_seen seen = { .back = along<0.0f, .inside = inside_side_of(scene, ray, hit)> 0 };
-    if (seen.inside || !mesh->material->emissive) return seen;
-    seen.emission = surface_emission(mesh, hit->triangle, hit->u, hit->v);
-    seen.pdf = light_emitter_pdf(scene, hit->geometry, hit->triangle, hit->distance, fabsf(along));
-    return seen;
+    struct texel_hit at_hit = { .back = along<0.0f, .inside = inside_side_of(scene, ray, hit)> 0 };
+    if (at_hit.inside || !mesh->material->emissive) return at_hit;
+    at_hit.emission = surface_emission(mesh, hit->triangle, hit->u, hit->v);
+    at_hit.pdf =
+        light_emitter_pdf(scene, hit->geometry, hit->triangle, hit->distance, fabsf(along));
+    return at_hit;
 }
 
 float texel_sample_density(const struct texel_receiver *r, vec3s direction, float pdf_light)
@@ -81,10 +82,10 @@ void texel_gather(const struct trace_scene *scene, const struct texel_receiver *
             if (visitor->miss) visitor->miss(visitor->user, ray.direction);
             continue;
         }
-        const struct texel_seen seen = texel_seen_at(scene, &ray, &hit);
-        if (glms_vec3_max(seen.emission) > 0.0f)
-            add_emission(out, r, ray.direction, seen.emission, seen.pdf);
-        if (visitor->hit) visitor->hit(visitor->user, &ray, &hit, local, &seen);
+        const struct texel_hit at_hit = texel_hit_at(scene, &ray, &hit);
+        if (glms_vec3_max(at_hit.emission) > 0.0f)
+            add_emission(out, r, ray.direction, at_hit.emission, at_hit.pdf);
+        if (visitor->hit) visitor->hit(visitor->user, &ray, &hit, local, &at_hit);
     }
     for (uint32_t k = 0; k < (uint32_t)r->light_samples; k++) {
         struct emitter_sample s;

@@ -21,13 +21,13 @@ static inline int texel_light_samples(const struct trace_scene *scene, int rays)
 }
 
 // The first hit of a ray.
-struct texel_seen {
+struct texel_hit {
     bool back, inside; // inside: the back of a single-sided surface
     vec3s emission;    // cd/m²; 0: none
     float pdf;         // of light_sample_emitter, sr⁻¹
 };
-struct texel_seen texel_seen_at(const struct trace_scene *scene, const struct ray *ray,
-                                const struct ray_hit *hit);
+struct texel_hit texel_hit_at(const struct trace_scene *scene, const struct ray *ray,
+                              const struct ray_hit *hit);
 
 // Samples of a direction per steradian, of both kinds; pdf_light: of light_sample_emitter.
 float texel_sample_density(const struct texel_receiver *receiver, vec3s direction, float pdf_light);
@@ -52,7 +52,7 @@ struct texel_lights {
 // Calls `visit`, which may be NULL, for each ray that meets a surface; local: its direction in the
 // basis of the normal (basis_of). The receiver is a surface.
 typedef void (*texel_visit)(void *user, const struct ray *ray, const struct ray_hit *hit,
-                            vec3s local, const struct texel_seen *seen);
+                            vec3s local, const struct texel_hit *at_hit);
 void texel_gather_light(const struct trace_scene *scene, const struct texel_receiver *receiver,
                         texel_visit visit, void *user, struct texel_lights *out);
 // The same, and `miss` for each ray that reaches the sky. Either may be NULL.

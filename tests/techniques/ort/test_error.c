@@ -16,7 +16,7 @@ struct exact {
     float *albedo; // [texels][3]
 };
 
-static uint32_t texel_seen(const struct ort_fixture *f, uint32_t texel, vec2s u)
+static uint32_t texel_hit(const struct ort_fixture *f, uint32_t texel, vec2s u)
 {
     const vec3s normal = chart_texel_normal(&f->map.charts, texel);
     const vec3s helper = fabsf(normal.y) < 0.9f ? vec3_of(0, 1, 0) : vec3_of(1, 0, 0);
@@ -40,7 +40,7 @@ static void find_factors(struct exact *exact, uint32_t texel)
     for (int i = 0; i < RAYS_SIDE * RAYS_SIDE; i++) {
         const vec2s u = { { ((float)(i % RAYS_SIDE) + 0.5f) / RAYS_SIDE,
                             ((float)(i / RAYS_SIDE) + 0.5f) / RAYS_SIDE } };
-        const uint32_t seen = texel_seen(exact->f, texel, u);
+        const uint32_t seen = texel_hit(exact->f, texel, u);
         if (seen != CHART_NONE) row[seen] += share;
     }
 }

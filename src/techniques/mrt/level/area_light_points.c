@@ -36,10 +36,10 @@ static bool gather_rays(const struct job *job, const struct texel_receiver *at,
             for (int i = 0; i < MRT_PROBE_VALUES; i++) out->sky[i] += weight[i];
             continue;
         }
-        const struct texel_seen seen = texel_seen_at(job->scene, &ray, &hit);
-        const float density = texel_sample_density(at, ray.direction, seen.pdf);
-        backs += seen.back;
-        add(glms_vec3_scale(seen.emission, GLM_PIf * per_sr / density), weight, out);
+        const struct texel_hit at_hit = texel_hit_at(job->scene, &ray, &hit);
+        const float density = texel_sample_density(at, ray.direction, at_hit.pdf);
+        backs += at_hit.back;
+        add(glms_vec3_scale(at_hit.emission, GLM_PIf * per_sr / density), weight, out);
     }
     return is_inside(backs, job->rays.count);
 }

@@ -32,7 +32,7 @@ static float look(void *user, const struct probe_ray *from, bool *inside)
     const struct ray ray = { from->from, from->direction, 0.0f, INFINITY };
     struct ray_hit hit;
     const bool met = embree_closest(job->trace->embree, &ray, NULL, false, &hit);
-    *inside = met && texel_seen_at(job->trace, &ray, &hit).inside;
+    *inside = met && texel_hit_at(job->trace, &ray, &hit).inside;
     return met ? hit.distance : INFINITY;
 }
 

@@ -78,7 +78,8 @@ static bool make_samples(struct importance *im)
     for (uint32_t k = 0; im->samples && k < wanted; k++) {
         const uint32_t texel = map->members[first + (uint64_t)k * texels / wanted];
         struct sample *s = &im->samples[im->count];
-        if (!s->receiver.seen && !ort_receiver_init(&s->receiver, host, im->transfer.patch_count))
+        if (!s->receiver.indirect &&
+            !ort_receiver_init(&s->receiver, host, im->transfer.patch_count))
             return false;
         s->place = ort_place_of(map, texel);
         if (ort_receive(&im->transfer, texel, &s->receiver)) im->count++;

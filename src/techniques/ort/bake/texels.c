@@ -62,7 +62,7 @@ static bool sees_texel(const struct ort_scene *scene, vec3s from, uint32_t texel
 
 // A texel may reach through a thin wall. Where a hit does not see its middle, the hit is of a
 // neighbour in the chart that it sees.
-static uint32_t texel_seen_from(const struct ort_scene *scene, vec3s hit, uint32_t texel)
+static uint32_t hit_texel(const struct ort_scene *scene, vec3s hit, uint32_t texel)
 {
     static const int32_t NEAR[8][2] = { { -1, 0 },  { 1, 0 },  { 0, -1 }, { 0, 1 },
                                         { -1, -1 }, { 1, -1 }, { -1, 1 }, { 1, 1 } };
@@ -84,16 +84,16 @@ static uint32_t texel_seen_from(const struct ort_scene *scene, vec3s hit, uint32
 
 // Rays that meet no texel leave no entry: those that do come first.
 static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit, vec3s local,
-                    const struct texel_seen *seen)
+                    const struct texel_hit *at_hit)
 {
     struct visit *v = user;
     const int instance = v->scene->trace->meshes[hit->geometry].instance;
-    const uint32_t texel =
-        chart_texel_at(&v->scene->map.charts, instance, hit->triangle, hit->u, hit->v, seen->back);
+    const uint32_t texel = chart_texel_at(&v->scene->map.charts, instance, hit->triangle, hit->u,
+                                          hit->v, at_hit->back);
     const vec3s at = glms_vec3_muladds(ray->direction, hit->distance, ray->origin);
     (void)local;
-    if (!seen->inside && texel != CHART_NONE)
-        v->hits[v->count++] = texel_seen_from(v->scene, at, texel);
+    if (!at_hit->inside && texel != CHART_NONE)
+        v->hits[v->count++] = hit_texel(v->scene, at, texel);
 }
 
 static void gather(const struct bake_task *task, uint32_t texel, vec3s position, uint64_t row)

@@ -19,15 +19,15 @@ bool ort_transfer_init(struct ort_transfer *out, const struct bake_task *task)
 
 bool ort_receiver_init(struct ort_receiver *out, struct host *host, uint32_t patches)
 {
-    *out = (struct ort_receiver){ .seen = host_alloc(host, 3 * (size_t)patches, sizeof(float)),
+    *out = (struct ort_receiver){ .indirect = host_alloc(host, 3 * (size_t)patches, sizeof(float)),
                                   .hit = host_alloc(host, 3 * (size_t)patches, sizeof(float)),
                                   .sent = host_alloc(host, 3 * (size_t)patches, sizeof(float)) };
-    return out->seen && out->hit && out->sent;
+    return out->indirect && out->hit && out->sent;
 }
 
 void ort_receiver_finish(struct ort_receiver *receiver, struct host *host)
 {
-    host_free(host, receiver->seen);
+    host_free(host, receiver->indirect);
     host_free(host, receiver->hit);
     host_free(host, receiver->sent);
 }
@@ -61,11 +61,11 @@ static void add_bounces(const struct ort_transfer *transfer, struct ort_receiver
 {
     const size_t n = transfer->patch_count;
     for (size_t c = 0; c < 3; c++) {
-        float *seen = r->seen + c * n;
+        float *indirect = r->indirect + c * n;
         for (size_t p = 0; p < n; p++)
             if (r->sent[c * n + p] > 0.0f)
-                add_scaled(seen, transfer->bounces + (c * n + p) * n, r->sent[c * n + p], n);
-        for (size_t q = 0; q < n; q++) r->multiple[c] += seen[q];
+                add_scaled(indirect, transfer->bounces + (c * n + p) * n, r->sent[c * n + p], n);
+        for (size_t q = 0; q < n; q++) r->multiple[c] += indirect[q];
     }
 }
 
@@ -95,7 +95,7 @@ bool ort_receive(const struct ort_transfer *transfer, uint32_t texel, struct ort
     const size_t bytes = 3 * (size_t)transfer->patch_count * sizeof(float);
     r->texel = texel;
     r->at = ort_texel_of(&transfer->texels, texel);
-    memset(r->seen, 0, bytes);
+    memset(r->indirect, 0, bytes);
     memset(r->hit, 0, bytes);
     memset(r->sent, 0, bytes);
     memset(r->single, 0, sizeof r->single);
@@ -162,7 +162,7 @@ void ort_transfer_patch(const struct ort_transfer *transfer, const struct ort_re
 void ort_transfer_multiple(const struct ort_transfer *transfer, const struct ort_receiver *to,
                            uint32_t from, float out[3])
 {
-    share_patch(transfer, to->seen, from, out);
+    share_patch(transfer, to->indirect, from, out);
 }
 
 void ort_transfer_scattered(const struct ort_transfer *transfer, const struct ort_receiver *to,

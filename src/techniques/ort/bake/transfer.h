@@ -21,7 +21,7 @@ struct ort_receiver {
     float single[3];    // transfer of one bounce: the sum of its row
     float multiple[3];  // and of more
     float scattered[3]; // below the surface
-    float *seen;        // [3][patches] transfer of more than one bounce from each patch
+    float *indirect;    // [3][patches] transfer of more than one bounce from each patch
     float *hit;         // [3][patches] of one bounce, by the rays
     float *sent;        // [3][patches] of one bounce, times that of the second: within a call
 };

@@ -119,8 +119,8 @@ static void trace(const struct work *w, const struct frame *frame, size_t s)
         return;
     }
     if (!prt_has_bounces(&scene->options)) return;
-    const struct texel_seen seen = texel_seen_at(scene->trace, &ray, &hit);
-    const uint32_t texel = prt_sent_receiver(scene, &hit, &seen, 0.0f);
+    const struct texel_hit at_hit = texel_hit_at(scene->trace, &ray, &hit);
+    const uint32_t texel = prt_sent_receiver(scene, &hit, &at_hit, 0.0f);
     if (texel != CHART_NONE) prt_sent_radiance(&w->sent, texel, out);
 }
 

@@ -29,7 +29,7 @@ struct work {
     int bands;              // of the rows
     size_t rows, coefficients, planes;
     bool gathers;        // else rays look for a place
-    uint32_t seed, seen; // of the probe; rays that met a surface
+    uint32_t seed, hits; // of the probe; rays that hit a surface
     float matrix[PRT_OUTGOING * PRT_MAX_COEFFICIENTS * 4];
     float emitted[PRT_OUTGOING][3];
 };
@@ -60,15 +60,15 @@ static void add_sky(struct work *w, const struct probe_ray *ray)
     add_radiance(w, ray->direction, ray->solid_angle, radiance);
 }
 
-static void add_seen(struct work *w, const struct probe_ray *ray, const struct ray_hit *hit,
-                     const struct texel_seen *seen)
+static void add_hit(struct work *w, const struct probe_ray *ray, const struct ray_hit *hit,
+                    const struct texel_hit *at_hit)
 {
-    if (glms_vec3_max(seen->emission) > 0.0f)
-        add_emission(w, ray->direction, seen->emission,
-                     1.0f / ray->solid_angle + (float)w->light_samples * seen->pdf);
-    const float choice = rng_unit(pcg_hash(w->seed + w->seen++));
+    if (glms_vec3_max(at_hit->emission) > 0.0f)
+        add_emission(w, ray->direction, at_hit->emission,
+                     1.0f / ray->solid_angle + (float)w->light_samples * at_hit->pdf);
+    const float choice = rng_unit(pcg_hash(w->seed + w->hits++));
     const uint32_t receiver = prt_has_bounces(&w->scene->options)
-                                  ? prt_sent_receiver(w->scene, hit, seen, choice)
+                                  ? prt_sent_receiver(w->scene, hit, at_hit, choice)
                                   : CHART_NONE;
     if (receiver == CHART_NONE) return;
     float radiance[4 * PRT_MAX_COEFFICIENTS];
@@ -87,9 +87,9 @@ static float trace_ray(void *user, const struct probe_ray *from, bool *inside)
         if (w->gathers) add_sky(w, from);
         return INFINITY;
     }
-    const struct texel_seen seen = texel_seen_at(w->scene->trace, &ray, &hit);
-    *inside = seen.inside;
-    if (w->gathers) add_seen(w, from, &hit, &seen);
+    const struct texel_hit at_hit = texel_hit_at(w->scene->trace, &ray, &hit);
+    *inside = at_hit.inside;
+    if (w->gathers) add_hit(w, from, &hit, &at_hit);
     return hit.distance;
 }
 
@@ -116,7 +116,7 @@ static void make_probe(struct work *w, uint32_t probe, uint64_t row)
     vec3s position;
     w->gathers = false;
     w->seed = (uint32_t)rng_mix(w->task->bake_seed ^ (uint64_t)probe << 32) | 1u;
-    w->seen = 0;
+    w->hits = 0;
     if (!probe_find_place(&tracer, probe_grid_point(grid, probe), grid.spacing_m, &position))
         return;
     memcpy(place, position.raw, sizeof position.raw);

@@ -22,14 +22,14 @@ struct visit {
 
 // Rays that meet no receiver leave no entry: those that do come first.
 static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit, vec3s local,
-                    const struct texel_seen *seen)
+                    const struct texel_hit *at_hit)
 {
     struct visit *v = user;
     const struct prt_point point = { v->scene->trace->meshes[hit->geometry].instance, hit->triangle,
-                                     hit->u, hit->v, seen->back };
+                                     hit->u, hit->v, at_hit->back };
     (void)ray;
     (void)local;
-    if (!v->hits || seen->inside) return;
+    if (!v->hits || at_hit->inside) return;
     const float choice = rng_unit(pcg_hash(v->seed + v->count));
     const uint32_t receiver = prt_receiver_at(&v->scene->receivers, &point, choice);
     if (receiver != CHART_NONE) v->hits[v->count++] = receiver;

@@ -33,11 +33,11 @@ void prt_sent_finish(struct prt_sent *sent)
 }
 
 uint32_t prt_sent_receiver(const struct prt_scene *scene, const struct ray_hit *hit,
-                           const struct texel_seen *seen, float choice)
+                           const struct texel_hit *at_hit, float choice)
 {
     const struct prt_point point = { scene->trace->meshes[hit->geometry].instance, hit->triangle,
-                                     hit->u, hit->v, seen->back };
-    return seen->inside ? CHART_NONE : prt_receiver_at(&scene->receivers, &point, choice);
+                                     hit->u, hit->v, at_hit->back };
+    return at_hit->inside ? CHART_NONE : prt_receiver_at(&scene->receivers, &point, choice);
 }
 
 // Over π; the factor of shading normals is that of light from all directions

@@ -18,7 +18,7 @@ void prt_sent_finish(struct prt_sent *sent);
 // The receiver that a ray meets, by `choice` in [0, 1) (prt_receiver_at); CHART_NONE: none that
 // sends light.
 uint32_t prt_sent_receiver(const struct prt_scene *scene, const struct ray_hit *hit,
-                           const struct texel_seen *seen, float choice);
+                           const struct texel_hit *at_hit, float choice);
 // For each coefficient of distant light the radiance that a receiver sends by colour, after one 0:
 // [coefficients][4].
 void prt_sent_radiance(const struct prt_sent *sent, uint32_t receiver, float *out);

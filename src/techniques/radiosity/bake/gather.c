@@ -31,12 +31,13 @@ void radiosity_scene_finish(struct radiosity_scene *scene)
 // ----
 
 uint32_t radiosity_cluster_at(const struct radiosity_scene *scene, const struct ray_hit *hit,
-                              const struct texel_seen *seen)
+                              const struct texel_hit *at_hit)
 {
     const int instance = scene->trace->meshes[hit->geometry].instance;
-    const uint32_t texel = seen->inside ? CHART_NONE
-                                        : chart_texel_at(&scene->map.charts, instance,
-                                                         hit->triangle, hit->u, hit->v, seen->back);
+    const uint32_t texel = at_hit->inside
+                               ? CHART_NONE
+                               : chart_texel_at(&scene->map.charts, instance, hit->triangle, hit->u,
+                                                hit->v, at_hit->back);
     return texel == CHART_NONE ? CHART_NONE : scene->map.cluster_of[texel];
 }
 
@@ -46,12 +47,12 @@ struct visit {
 };
 
 static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit, vec3s local,
-                    const struct texel_seen *seen)
+                    const struct texel_hit *at_hit)
 {
     static const float LEAST_DISTANCE_M = 1e-6f;
     const struct visit *v = user;
     const float rays = (float)v->scene->options.rays;
-    const uint32_t cluster = radiosity_cluster_at(v->scene, hit, seen);
+    const uint32_t cluster = radiosity_cluster_at(v->scene, hit, at_hit);
     (void)ray;
     v->gather->inverse_distance += 1.0f / (fmaxf(hit->distance, LEAST_DISTANCE_M) * rays);
     if (cluster == CHART_NONE) return;

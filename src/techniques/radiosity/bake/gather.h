@@ -39,7 +39,7 @@ struct radiosity_gather {
 
 // The cluster that a ray meets; CHART_NONE: none.
 uint32_t radiosity_cluster_at(const struct radiosity_scene *scene, const struct ray_hit *hit,
-                              const struct texel_seen *seen);
+                              const struct texel_hit *at_hit);
 
 // ---- divide.c
 

@@ -64,12 +64,12 @@ struct job {
     struct probe *out;
 };
 
-static void add_seen(const struct job *job, const struct probe_ray *ray,
-                     const struct texel_seen *seen, uint32_t cluster)
+static void add_hit(const struct job *job, const struct probe_ray *ray,
+                    const struct texel_hit *at_hit, uint32_t cluster)
 {
-    if (glms_vec3_max(seen->emission) > 0.0f)
-        add_emission(job->out, ray->direction, seen->emission,
-                     1.0f / ray->solid_angle + (float)job->light_samples * seen->pdf);
+    if (glms_vec3_max(at_hit->emission) > 0.0f)
+        add_emission(job->out, ray->direction, at_hit->emission,
+                     1.0f / ray->solid_angle + (float)job->light_samples * at_hit->pdf);
     if (cluster != CHART_NONE)
         add_cluster(job->gather, cluster, ray->direction, ray->solid_angle / (4.0f * GLM_PIf));
 }
@@ -84,9 +84,9 @@ static float trace_ray(void *user, const struct probe_ray *from, bool *inside)
         if (job->gather) add_sh(ray.direction, from->solid_angle, job->out->sky, 1);
         return INFINITY;
     }
-    const struct texel_seen seen = texel_seen_at(job->scene->trace, &ray, &hit);
-    *inside = seen.inside;
-    if (job->gather) add_seen(job, from, &seen, radiosity_cluster_at(job->scene, &hit, &seen));
+    const struct texel_hit at_hit = texel_hit_at(job->scene->trace, &ray, &hit);
+    *inside = at_hit.inside;
+    if (job->gather) add_hit(job, from, &at_hit, radiosity_cluster_at(job->scene, &hit, &at_hit));
     return hit.distance;
 }
 
