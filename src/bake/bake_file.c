@@ -18,17 +18,17 @@ static const char BAKE[] = "bake", PARTIAL[] = "partial", ANY_SCENE[] = "any";
 
 // ---- metadata
 
-static void put(struct identity_text *text, const char *key, const char *value)
+static void add_metadata(struct identity_text *text, const char *key, const char *value)
 {
     text->metadata[text->count++] = (struct tensor_metadata){ key, value };
 }
 
-static void put_scene(struct identity_text *text, const struct bake_identity *id)
+static void add_scene(struct identity_text *text, const struct bake_identity *id)
 {
-    if (id->scene_name) put(text, SCENE_NAME, id->scene_name);
+    if (id->scene_name) add_metadata(text, SCENE_NAME, id->scene_name);
     if (!(id->scene_scale > 0.0f) || id->scene_scale == 1.0f) return;
     snprintf(text->scale, sizeof text->scale, "%.9g", (double)id->scene_scale);
-    put(text, SCENE_SCALE, text->scale);
+    add_metadata(text, SCENE_SCALE, text->scale);
 }
 
 void identity_print(const struct bake *bake, const char *kind, double seconds,
@@ -40,18 +40,18 @@ void identity_print(const struct bake *bake, const char *kind, double seconds,
     snprintf(out->seed, sizeof out->seed, "%" PRIu64, id->seed);
     snprintf(out->scene, sizeof out->scene, "%s", ANY_SCENE);
     if (bake->plan.depends_on_scene) hash128_print(bake->plan.scene, out->scene);
-    put(out, KIND, kind);
-    put(out, TECHNIQUE, id->technique);
-    put(out, VERSION, out->version);
-    put(out, OPTIONS, id->options);
-    put(out, SCENE, out->scene);
-    put(out, SEED, out->seed);
-    put(out, PROGRAM, id->program);
-    if (strcmp(kind, PARTIAL) == 0 && id->gi) put(out, GI, id->gi);
-    if (strcmp(kind, PARTIAL) == 0) put_scene(out, id);
+    add_metadata(out, KIND, kind);
+    add_metadata(out, TECHNIQUE, id->technique);
+    add_metadata(out, VERSION, out->version);
+    add_metadata(out, OPTIONS, id->options);
+    add_metadata(out, SCENE, out->scene);
+    add_metadata(out, SEED, out->seed);
+    add_metadata(out, PROGRAM, id->program);
+    if (strcmp(kind, PARTIAL) == 0 && id->gi) add_metadata(out, GI, id->gi);
+    if (strcmp(kind, PARTIAL) == 0) add_scene(out, id);
     if (isnan(seconds)) return;
     snprintf(out->seconds, sizeof out->seconds, "%.3f", seconds);
-    put(out, SECONDS, out->seconds);
+    add_metadata(out, SECONDS, out->seconds);
 }
 
 void bake_key(const struct bake *bake, char out[HASH128_TEXT])
@@ -100,7 +100,7 @@ bool identity_write(struct host *host, const char *path, struct identity_text *t
                     const struct tensor *at, size_t count)
 {
     hash128_print(content_hash(text->metadata, text->count, at, count), text->content);
-    put(text, CONTENT, text->content);
+    add_metadata(text, CONTENT, text->content);
     const struct tensors set = { at, count, text->metadata, text->count };
     return safetensors_write(host, path, &set);
 }
@@ -206,7 +206,7 @@ static double parse_stage_seconds(const char *text, const char *name)
     return (double)NAN;
 }
 
-static void take_seconds(struct bake *bake, const struct tensors *set)
+static void read_seconds(struct bake *bake, const struct tensors *set)
 {
     const char *stages = tensors_metadata(set, STAGE_SECONDS);
     bake->seconds = identity_seconds(set);
@@ -217,11 +217,11 @@ static void take_seconds(struct bake *bake, const struct tensors *set)
 // ---- bake_save, bake_load
 
 // They are known after a run, not after reading a file without them.
-static bool put_seconds(struct bake *bake, struct identity_text *text)
+static bool add_stage_seconds(struct bake *bake, struct identity_text *text)
 {
     if (isnan(bake->seconds)) return true;
     const char *stages = print_stage_seconds(bake);
-    if (stages) put(text, STAGE_SECONDS, stages);
+    if (stages) add_metadata(text, STAGE_SECONDS, stages);
     return stages != NULL;
 }
 
@@ -233,8 +233,8 @@ bool bake_save(struct bake *bake, const char *path, bool record_run)
         return host_fail(bake->host, FAIL_ARGUMENT,
                          "cannot write %s: the bake is incomplete; run it first", path);
     identity_print(bake, BAKE, record_run ? bake->seconds : (double)NAN, &text);
-    if (record_run) put_scene(&text, &bake->identity);
-    if (record_run && !put_seconds(bake, &text)) return false;
+    if (record_run) add_scene(&text, &bake->identity);
+    if (record_run && !add_stage_seconds(bake, &text)) return false;
     const size_t count = bake->file.memory ? tensors->count : bake->saved_count;
     if (!identity_write(bake->host, path, &text, tensors->at, count)) return false;
     if (bake->checkpoint) remove(bake->checkpoint);
@@ -275,7 +275,7 @@ bool bake_load(struct bake *bake, const char *path)
     }
     safetensors_finish(bake->host, &bake->file);
     bake->file = file;
-    take_seconds(bake, &bake->file.set);
+    read_seconds(bake, &bake->file.set);
     return true;
 }
 
@@ -297,7 +297,7 @@ static float scale_of(const struct tensors *set)
     return isfinite(scale) && scale > 0.0f ? scale : 0.0f;
 }
 
-static bool take_origin(struct host *host, const char *path, const struct tensors *set,
+static bool read_origin(struct host *host, const char *path, const struct tensors *set,
                         struct bake_origin *out)
 {
     const char *gi = tensors_metadata(set, GI), *name = tensors_metadata(set, SCENE_NAME);
@@ -329,7 +329,7 @@ bool bake_partial_origin(struct host *host, const char *path, struct bake_origin
     struct safetensors file;
     *out = (struct bake_origin){ 0 };
     if (!safetensors_read(host, path, &file)) return false;
-    const bool ok = take_origin(host, path, &file.set, out);
+    const bool ok = read_origin(host, path, &file.set, out);
     safetensors_finish(host, &file);
     if (!ok) bake_origin_finish(host, out);
     return ok;

@@ -298,7 +298,8 @@ static bool begin_waves(const struct reading *r)
     return true;
 }
 
-static bool take(struct host *host, struct bake *bake, const char *path, const struct tensors *set)
+static bool restore(struct host *host, struct bake *bake, const char *path,
+                    const struct tensors *set)
 {
     struct reading r = { .host = host, .bake = bake, .path = path, .set = set };
     const double seconds = identity_seconds(set);
@@ -314,7 +315,7 @@ bool partial_read(struct host *host, struct bake *bake, const char *path)
 {
     struct safetensors file;
     if (!safetensors_read(host, path, &file)) return false;
-    const bool ok = take(host, bake, path, &file.set);
+    const bool ok = restore(host, bake, path, &file.set);
     safetensors_finish(host, &file);
     return ok;
 }

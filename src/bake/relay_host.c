@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-static void take_message(void *user, enum log_level level, const char *text)
+static void relay_message(void *user, enum log_level level, const char *text)
 {
     struct relay_host *relay = user;
     if (level == LOG_ERROR)
@@ -12,7 +12,7 @@ static void take_message(void *user, enum log_level level, const char *text)
         relay->message(relay->user, level, text);
 }
 
-static void *take_memory(void *user, void *old, size_t bytes)
+static void *relay_memory(void *user, void *old, size_t bytes)
 {
     struct relay_host *relay = user;
     if (relay->memory) pthread_mutex_lock(relay->memory);
@@ -24,8 +24,8 @@ static void *take_memory(void *user, void *old, size_t bytes)
 void relay_host_init(struct relay_host *relay, struct host *to, pthread_mutex_t *memory)
 {
     *relay = (struct relay_host){ .to = to, .memory = memory };
-    relay->host = (struct host){ .log = take_message,
-                                 .reallocate = to->reallocate ? take_memory : NULL,
+    relay->host = (struct host){ .log = relay_message,
+                                 .reallocate = to->reallocate ? relay_memory : NULL,
                                  .user = relay,
                                  .log_up_to = to->log_up_to };
 }

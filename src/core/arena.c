@@ -45,7 +45,7 @@ void arena_finish(struct arena *arena)
 }
 
 // Aligns the address, not the offset: the host's allocator may align to less than 16 bytes.
-static void *block_take(struct arena_block *block, size_t bytes)
+static void *block_alloc(struct arena_block *block, size_t bytes)
 {
     if (!block) return NULL;
     uintptr_t at = (uintptr_t)(block->data + block->used);
@@ -81,7 +81,7 @@ void *arena_alloc(struct arena *arena, size_t count, size_t size)
         return NULL;
     }
     if (bytes == 0) bytes = 1;
-    void *memory = ARENA_ISOLATES ? NULL : block_take(arena->blocks, bytes);
+    void *memory = ARENA_ISOLATES ? NULL : block_alloc(arena->blocks, bytes);
     if (!memory) {
         bool large = ARENA_ISOLATES || padded > ARENA_BLOCK_BYTES / 4;
         struct arena_block *block =
@@ -91,7 +91,7 @@ void *arena_alloc(struct arena *arena, size_t count, size_t size)
         struct arena_block **link = large && arena->blocks ? &arena->blocks->next : &arena->blocks;
         block->next = *link;
         *link = block;
-        memory = block_take(block, bytes);
+        memory = block_alloc(block, bytes);
         if (ARENA_ISOLATES) isolate(block);
     }
     arena->bytes += bytes;

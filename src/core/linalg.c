@@ -370,7 +370,7 @@ void linalg_svd_finish(struct host *host, struct linalg_svd *svd)
 }
 
 // syev's rows are the eigenvectors of ascending values; the columns of `out` descend.
-static void take_eigen(const double *rows, const double *ascending, struct linalg_eigen *out)
+static void copy_eigen(const double *rows, const double *ascending, struct linalg_eigen *out)
 {
     const size_t n = out->vectors.rows;
     for (size_t i = 0; i < n; i++) {
@@ -403,7 +403,7 @@ static bool run_syev(struct host *host, const char *what, struct aligned *a,
     bool ok = aligned_init(host, &values, n) && aligned_init(host, &work, (size_t)wanted);
     if (ok) info = call_syev(a->at, n, values.at, work.at, (lapack_int)wanted);
     if (info != 0) ok = fail_lapack(host, what, info);
-    if (ok) take_eigen(a->at, values.at, out);
+    if (ok) copy_eigen(a->at, values.at, out);
     host_free(host, values.block);
     host_free(host, work.block);
     return ok;

@@ -65,7 +65,7 @@ static bool is_temporary(const char *name, const char *stem, size_t stem_size)
 
 // False: another process found it without a lock, just after its creation, and removes or has
 // removed it. Without locks in the file system nothing is removed.
-static bool take_lock(int fd, const char *path)
+static bool acquire_lock(int fd, const char *path)
 {
     struct stat opened, named;
     if (flock(fd, LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;
@@ -92,7 +92,7 @@ static bool create(struct temporary *t, const char *target, int (*make)(const ch
     for (int i = 0; i < TRIES; i++) {
         if (!make_name(t->path, target)) break;
         t->lock = make(t->path);
-        if (t->lock >= 0 && take_lock(t->lock, t->path)) return true;
+        if (t->lock >= 0 && acquire_lock(t->lock, t->path)) return true;
         if (t->lock < 0 && errno != EEXIST) break;
         if (t->lock >= 0) close(t->lock);
         t->lock = -1;

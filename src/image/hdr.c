@@ -62,7 +62,7 @@ static bool is_digit(char c)
 }
 
 // A side of the resolution line; values above the limit become limit + 1.
-static bool take_side(const char **at, int *out)
+static bool parse_side(const char **at, int *out)
 {
     if (!is_digit(**at)) return false;
     int value = 0;
@@ -72,14 +72,14 @@ static bool take_side(const char **at, int *out)
     return true;
 }
 
-static int take_digits(const char **at, double *value)
+static int parse_digits(const char **at, double *value)
 {
     int count = 0;
     for (; is_digit(**at); ++*at, count++) *value = *value * 10.0 + (**at - '0');
     return count;
 }
 
-static bool take_exponent(const char **at, int *out)
+static bool parse_exponent(const char **at, int *out)
 {
     enum { EXPONENT_MAX = 1000 }; // beyond a double's
     *out = 0;
@@ -101,9 +101,9 @@ static bool parse_positive(const char *at, double *out)
     *out = 0.0;
     while (*at == ' ' || *at == '\t') at++;
     if (*at == '+') at++;
-    int digits = take_digits(&at, out);
-    if (*at == '.') at++, decimals = take_digits(&at, out);
-    if (digits + decimals == 0 || !take_exponent(&at, &exponent)) return false;
+    int digits = parse_digits(&at, out);
+    if (*at == '.') at++, decimals = parse_digits(&at, out);
+    if (digits + decimals == 0 || !parse_exponent(&at, &exponent)) return false;
     while (*at == ' ' || *at == '\t') at++;
     *out *= pow(10.0, exponent - decimals);
     return *at == 0 && *out > 0.0 && isfinite(*out);
@@ -163,11 +163,11 @@ static bool read_resolution(struct reader *reader, struct input *input)
     const char axis = line[0] ? line[1] : 0;
     const char *at = line + 3, *second_axis;
     if (!is_axis(line, 'Y') && !is_axis(line, 'X')) goto malformed;
-    if (!take_side(&at, &first) || *at++ != ' ') goto malformed;
+    if (!parse_side(&at, &first) || *at++ != ' ') goto malformed;
     second_axis = at;
     if (!is_axis(second_axis, axis == 'Y' ? 'X' : 'Y')) goto malformed;
     at += 3;
-    if (!take_side(&at, &second) || *at) goto malformed;
+    if (!parse_side(&at, &second) || *at) goto malformed;
     if (strncmp(line, "-Y", 2) != 0 || strncmp(second_axis, "+X", 2) != 0)
         return host_fail(reader->host, FAIL_UNSUPPORTED,
                          "cannot read %s: its orientation is %.2s %.2s, only -Y +X is supported",

@@ -75,7 +75,7 @@ static bool fill(struct lightmap *map, const bool *hidden)
 
 // ---- light of the path tracer
 
-static void take_rows(struct lightmap *map, const float *punctual, const float *rest, bool *hidden)
+static void add_rows(struct lightmap *map, const float *punctual, const float *rest, bool *hidden)
 {
     for (uint32_t i = 0; i < map->charts.side_texel_count; i++) {
         float *out = texel_at(map, i);
@@ -94,7 +94,7 @@ bool lightmap_set_paths(struct lightmap *map, const struct tensors *bake, bool p
                                        (const uint64_t[]){ rows, 4 });
     bool *hidden = lights && rest ? host_alloc(map->host, rows, sizeof *hidden) : NULL;
     if (!hidden) return false;
-    take_rows(map, punctual ? lights : NULL, rest, hidden);
+    add_rows(map, punctual ? lights : NULL, rest, hidden);
     const bool ok = fill(map, hidden);
     host_free(map->host, hidden);
     return ok;

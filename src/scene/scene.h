@@ -210,7 +210,7 @@ struct scene {
     uint64_t file_environment; // environment_map_use_key of the environment that the file has
     uint64_t content_hash; // of the file's bytes or of the built-in's name, and of another scale
     float scale;           // metres per unit of length of the file (rescale.h)
-    // A warning has said that unwraps are broken: light maps are planned several times. Shared with
+    // Broken unwraps were warned of: light maps are planned several times. Shared with
     // copies of this struct.
     atomic_bool *warned_of_unwraps;
 };

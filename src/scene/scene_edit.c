@@ -9,7 +9,7 @@
 // ---- Nodes of one object ------------------------------------------------------------------------
 
 // A node for one object, by preference one that was released. `name` is a literal, or a node's.
-static int take_node(struct scene *scene, const char *name)
+static int acquire_node(struct scene *scene, const char *name)
 {
     const int node = scene->free_node;
     struct node fresh = node_default();
@@ -30,9 +30,9 @@ static void release_node(struct scene *scene, int node)
 // Gives an object a node of its own where it shares one. False when out of memory.
 static bool own_node(struct scene *scene, const char *name, int *node, bool *own)
 {
-    const int taken = *own ? *node : take_node(scene, name);
-    if (taken < 0) return false;
-    *node = taken;
+    const int acquired = *own ? *node : acquire_node(scene, name);
+    if (acquired < 0) return false;
+    *node = acquired;
     *own = true;
     return true;
 }
@@ -75,7 +75,7 @@ void scene_remove_instance(struct scene *scene, int instance)
 int scene_add_placed_instance(struct scene *scene, int mesh, mat4s world_from_mesh, bool movable)
 {
     struct instance instance = {
-        .node = take_node(scene, "instance"), .mesh = mesh, .skin = -1, .movable = movable
+        .node = acquire_node(scene, "instance"), .mesh = mesh, .skin = -1, .movable = movable
     };
     if (instance.node < 0) return -1;
     instance.own_node = true;
@@ -176,7 +176,7 @@ int scene_add_placed_light(struct scene *scene, const struct placed_light *from)
     struct light light;
     mat4s world_from_node;
     if (!checked(scene, from, &light, &world_from_node)) return -1;
-    light.node = take_node(scene, "light");
+    light.node = acquire_node(scene, "light");
     if (light.node < 0) return -1;
     light.own_node = true;
     scene->nodes[light.node].matrix = world_from_node;

@@ -29,7 +29,7 @@ static void *copy_of(struct host *host, const void *from, size_t count, size_t s
 #define TAKE(to, from, count)                                                                      \
     (host_free(s->host, to), (to) = copy_of(s->host, from, (size_t)(count), sizeof *(to)))
 
-static bool take_arrays(struct scene_snapshot *s, const struct scene_pose *pose)
+static bool copy_arrays(struct scene_snapshot *s, const struct scene_pose *pose)
 {
     const struct scene old = s->scene;
     environment_map_retain(pose->scene->environment.map);
@@ -69,7 +69,7 @@ static void free_mesh(struct scene_snapshot *s, struct snapshot_mesh *mesh)
     *mesh = (struct snapshot_mesh){ 0 };
 }
 
-static bool take_mesh(struct scene_snapshot *s, const struct mesh *from, struct snapshot_mesh *to)
+static bool copy_mesh(struct scene_snapshot *s, const struct mesh *from, struct snapshot_mesh *to)
 {
     const size_t count = from->vertex_count;
     if (to->positions && to->revision == from->revision) return true;
@@ -95,13 +95,13 @@ static bool grow_vertices(struct scene_snapshot *s, int meshes)
 }
 
 // Copies the vertices of meshes with instances. An array that meshes share is never overwritten.
-static bool take_vertices(struct scene_snapshot *s, const struct scene *scene)
+static bool copy_vertices(struct scene_snapshot *s, const struct scene *scene)
 {
     if (!grow_vertices(s, scene->mesh_count)) return false;
     for (int i = 0; i < scene->instance_count; i++) {
         const int m = scene->instances[i].mesh;
         if (m < 0 || !scene->meshes[m].own_arrays) continue;
-        if (!take_mesh(s, &scene->meshes[m], &s->vertices[m])) return false;
+        if (!copy_mesh(s, &scene->meshes[m], &s->vertices[m])) return false;
         s->scene.meshes[m].positions = s->vertices[m].positions;
         s->scene.meshes[m].normals = s->vertices[m].normals;
         s->scene.meshes[m].tangents = s->vertices[m].tangents;
@@ -120,7 +120,7 @@ static void free_deformed(struct scene_snapshot *s, int instances)
     s->deformed = NULL;
 }
 
-static bool take_deformed_mesh(struct scene_snapshot *s, const struct deformed_mesh *from,
+static bool copy_deformed_mesh(struct scene_snapshot *s, const struct deformed_mesh *from,
                                size_t vertices, struct snapshot_deformed *to)
 {
     to->positions = copy_of(s->host, from->positions, vertices, sizeof *to->positions);
@@ -130,7 +130,7 @@ static bool take_deformed_mesh(struct scene_snapshot *s, const struct deformed_m
     return to->positions && to->normals && (!from->tangents || to->tangents);
 }
 
-static bool take_deformed(struct scene_snapshot *s, const struct scene_pose *pose)
+static bool copy_deformed(struct scene_snapshot *s, const struct scene_pose *pose)
 {
     const int count = pose->scene->instance_count;
     s->deformed = host_alloc(s->host, (size_t)count, sizeof *s->deformed);
@@ -139,7 +139,7 @@ static bool take_deformed(struct scene_snapshot *s, const struct scene_pose *pos
     for (int i = 0; i < count; i++) {
         struct snapshot_deformed *to = &s->deformed[i];
         if (!pose->deformed[i].positions) continue;
-        if (!take_deformed_mesh(s, &pose->deformed[i], scene_mesh_of(pose->scene, i)->vertex_count,
+        if (!copy_deformed_mesh(s, &pose->deformed[i], scene_mesh_of(pose->scene, i)->vertex_count,
                                 to))
             return false;
         s->pose.deformed[i] = (struct deformed_mesh){ to->positions, to->normals, to->tangents };
@@ -152,7 +152,7 @@ bool scene_snapshot_take(struct scene_snapshot *s, const struct scene_pose *pose
     free_deformed(s, s->scene.instance_count);
     host_free(s->host, s->pose.deformed);
     s->materials = pose->scene->revisions.materials;
-    if (take_arrays(s, pose) && take_vertices(s, pose->scene) && take_deformed(s, pose))
+    if (copy_arrays(s, pose) && copy_vertices(s, pose->scene) && copy_deformed(s, pose))
         return true;
     struct host *host = s->host;
     scene_snapshot_finish(s);

@@ -173,12 +173,12 @@ bool gi_resize_view(struct gi *gi, int view, const struct scene_pose *pose, uint
 // Once for each technique that cannot follow changed surfaces.
 static void warn_of_change(struct gi *gi, int term)
 {
-    if (!gi->said_fixed[term])
+    if (!gi->warned_fixed[term])
         host_log(gi->host, LOG_WARNING,
                  "%s: the scene's geometry or materials changed, but indirect light keeps those at "
                  "the renderer's creation; lpv and vct follow them",
                  gi->spec.technique[term]->name);
-    gi->said_fixed[term] = true;
+    gi->warned_fixed[term] = true;
 }
 
 static bool is_fixed(const struct gi *gi, int term)
@@ -190,15 +190,15 @@ static bool is_fixed(const struct gi *gi, int term)
 bool gi_would_warn_of_movement(const struct gi *gi)
 {
     for (int i = 0; i < gi->spec.count; i++)
-        if (is_fixed(gi, i) && !gi->said_fixed[i]) return true;
+        if (is_fixed(gi, i) && !gi->warned_fixed[i]) return true;
     return false;
 }
 
 void gi_warn_of_movement(struct gi *gi)
 {
     for (int i = 0; i < gi->spec.count; i++) {
-        if (!is_fixed(gi, i) || gi->said_fixed[i]) continue;
-        gi->said_fixed[i] = true;
+        if (!is_fixed(gi, i) || gi->warned_fixed[i]) continue;
+        gi->warned_fixed[i] = true;
         host_log(gi->host, LOG_WARNING,
                  "%s: the animation moves surfaces, but indirect light keeps those of the first "
                  "pose; lpv and vct follow them",
@@ -289,8 +289,8 @@ static void hand_probes(const struct gi *gi, int term)
 {
     struct probe_volume probes;
     const struct technique *technique = gi->spec.technique[term];
-    if (technique->take_probes && probes_of(gi, 0, &probes))
-        technique->take_probes(gi->state[term], &probes);
+    if (technique->set_probes && probes_of(gi, 0, &probes))
+        technique->set_probes(gi->state[term], &probes);
 }
 
 static void gi_update(void *user, struct gpu_cmd *cmd, const struct frame_view *view)

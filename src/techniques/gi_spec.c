@@ -176,7 +176,7 @@ static bool add_default_source(struct gi_spec *spec, const struct technique *con
     const struct technique *source = known[0];
     const struct technique *first = spec->count > 0 ? spec->technique[0] : NULL;
     if (first && first->role == ROLE_DELTA)
-        source = first->take_probes ? source_with_probes(known) : NULL;
+        source = first->set_probes ? source_with_probes(known) : NULL;
     else if (first)
         source = find_named(known, "ambient");
     if (!source)
@@ -190,7 +190,7 @@ static bool add_default_source(struct gi_spec *spec, const struct technique *con
 static bool ask_for_probes(struct gi_spec *spec)
 {
     const struct technique *source = spec->technique[0];
-    if (spec->count < 2 || !spec->technique[1]->take_probes) return true;
+    if (spec->count < 2 || !spec->technique[1]->set_probes) return true;
     if (!(source->capabilities & PUBLISHES_PROBES))
         return host_fail(spec->host, FAIL_ARGUMENT,
                          "cannot use %s with %s, which has no probes: try lpv+%s",

@@ -18,7 +18,7 @@ struct gi {
     uint32_t width, height; // of view 0
     void *state[GI_MAX_TERMS];
     struct gi_view views[FRAME_MAX_VIEWS]; // the first is not used
-    bool said_fixed[GI_MAX_TERMS];         // the warning of gi_invalidate
+    bool warned_fixed[GI_MAX_TERMS];       // the warning of gi_invalidate
     int debug_term;                        // the technique of the debug view
     const char *debug_name;                // NULL: none
     gpu_image debug_image;

@@ -132,7 +132,7 @@ struct technique {
     // is off.
     bool (*probes)(void *state, struct probe_volume *out);
     // For a delta that needs the probes of its source: called before each `update`.
-    void (*take_probes)(void *state, const struct probe_volume *source);
+    void (*set_probes)(void *state, const struct probe_volume *source);
     // The light map: the charts of static surfaces (scene/statics.h), and for each side and colour
     // a layer of irradiance along the surface's normal and vector irradiance, scaled radiance,
     // RGBA16F, that the newest update filled.

@@ -350,11 +350,11 @@ struct batch {
     int count;
 };
 
-static void keep_active(struct batch *batch, bool (*go_on)(struct path *path))
+static void keep_active(struct batch *batch, bool (*continues)(struct path *path))
 {
     int kept = 0;
     for (int i = 0; i < batch->count; i++)
-        if (go_on(batch->active[i])) batch->active[kept++] = batch->active[i];
+        if (continues(batch->active[i])) batch->active[kept++] = batch->active[i];
     batch->count = kept;
 }
 

@@ -38,8 +38,8 @@ static void place_triangle(struct chart_triangle *out, const struct chart *chart
     }
 }
 
-static void take_triangle(struct charts *out, const struct surface *surface,
-                          const struct grown *grown, uint32_t at)
+static void add_triangle(struct charts *out, const struct surface *surface,
+                         const struct grown *grown, uint32_t at)
 {
     const uint32_t source = grown->order[at];
     const struct surface_triangle *from = &surface->triangles[source];
@@ -85,7 +85,7 @@ static bool finish_charts(struct charts *out, const struct surface *surface,
     out->triangle_count = surface->count;
     out->triangles = host_alloc(out->host, surface->count, sizeof *out->triangles);
     if (!out->triangles) return false;
-    for (uint32_t i = 0; i < surface->count; i++) take_triangle(out, surface, grown, i);
+    for (uint32_t i = 0; i < surface->count; i++) add_triangle(out, surface, grown, i);
     return make_chart_texels(out);
 }
 

@@ -23,7 +23,7 @@ struct growth {
     const struct surface *surface;
     double texels_per_m;
     struct cover cover;
-    uint32_t *queue, *seen; // seen: the pass that has met a triangle
+    uint32_t *queue, *visited; // visited: the pass that has met a triangle
     uint32_t queued, pass;
     bool failed;
 };
@@ -83,7 +83,7 @@ static bool is_free(void *user, int32_t x, int32_t y)
     return growth->cover.chart[at] != growth->out->count + 1;
 }
 
-static bool take(void *user, int32_t x, int32_t y)
+static bool cover_texel(void *user, int32_t x, int32_t y)
 {
     struct growth *growth = user;
     struct cover *cover = &growth->cover;
@@ -131,15 +131,15 @@ static void grow_from(struct growth *growth, uint32_t seed, const struct frame *
 {
     growth->pass++;
     growth->queued = 0;
-    growth->seen[seed] = growth->pass;
+    growth->visited[seed] = growth->pass;
     if (accept(growth, frame, seed)) growth->queue[growth->queued++] = seed;
     for (uint32_t i = 0; i < growth->queued && !growth->failed; i++) {
         const struct surface_triangle *t = &growth->surface->triangles[growth->queue[i]];
         for (int k = 0; k < 3; k++) {
             const uint32_t next = t->neighbor[k];
             if (next == CHART_NONE || growth->out->chart_of[next] != CHART_NONE) continue;
-            if (growth->seen[next] == growth->pass) continue;
-            growth->seen[next] = growth->pass;
+            if (growth->visited[next] == growth->pass) continue;
+            growth->visited[next] = growth->pass;
             if (accept(growth, frame, next)) growth->queue[growth->queued++] = next;
         }
     }
@@ -168,7 +168,7 @@ static bool accept_free(struct growth *growth, const struct frame *frame, uint32
     const struct raster_triangle placed = place(frame, t);
     if (!is_in_range(&placed)) return false;
     if (!raster_centres(&placed, is_free, growth)) return false;
-    if (!raster_centres(&placed, take, growth)) return false;
+    if (!raster_centres(&placed, cover_texel, growth)) return false;
     memcpy(growth->out->place[triangle], placed.at, sizeof placed.at);
     return true;
 }
@@ -357,11 +357,11 @@ bool grow_charts(struct grown *out, struct host *host, const struct surface *sur
     out->place = host_alloc(host, count, sizeof *out->place);
     out->charts = host_alloc(host, count, sizeof *out->charts);
     growth.queue = host_alloc(host, count, sizeof *growth.queue);
-    growth.seen = host_alloc(host, count, sizeof *growth.seen);
+    growth.visited = host_alloc(host, count, sizeof *growth.visited);
     const bool ok = out->order && out->chart_of && out->place && out->charts && growth.queue &&
-                    growth.seen && cover_resize(host, &growth.cover, 4096) && grow_all(&growth);
+                    growth.visited && cover_resize(host, &growth.cover, 4096) && grow_all(&growth);
     host_free(host, growth.queue);
-    host_free(host, growth.seen);
+    host_free(host, growth.visited);
     host_free(host, growth.cover.texel);
     host_free(host, growth.cover.chart);
     if (!ok) grown_finish(out);

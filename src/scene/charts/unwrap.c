@@ -20,7 +20,7 @@ struct raster_bits {
     uint64_t covered, twice;
 };
 
-static bool take(void *user, int32_t x, int32_t y)
+static bool cover_texel(void *user, int32_t x, int32_t y)
 {
     struct raster_bits *raster = user;
     if (x < 0 || y < 0 || x >= raster->side || y >= raster->side) return true;
@@ -58,7 +58,7 @@ static enum unwrap_fault check_triangle(const struct mesh *mesh, int set, uint32
     if (raster_area2(&texels) == 0.0)
         areas->collapsed += (double)area;
     else
-        raster_centres(&texels, take, raster);
+        raster_centres(&texels, cover_texel, raster);
     return UNWRAP_VALID;
 }
 

@@ -169,14 +169,14 @@ static size_t add_elements(struct elements *e)
     return gltf_doc_add(doc, "accessors", copy);
 }
 
-static bool take_elements(struct elements *e, const uint32_t *source, size_t count)
+static bool gather_elements(struct elements *e, const uint32_t *source, size_t count)
 {
-    uint8_t *taken = host_alloc(e->doc->host, count, e->size);
-    if (!taken) return false;
+    uint8_t *gathered = host_alloc(e->doc->host, count, e->size);
+    if (!gathered) return false;
     for (size_t i = 0; i < count; i++)
-        memcpy(taken + i * e->size, e->bytes + source[i] * e->size, e->size);
+        memcpy(gathered + i * e->size, e->bytes + source[i] * e->size, e->size);
     host_free(e->doc->host, e->bytes);
-    e->bytes = taken;
+    e->bytes = gathered;
     e->count = count;
     return true;
 }
@@ -192,7 +192,7 @@ bool gltf_doc_gather_accessor(struct gltf_doc *doc, size_t accessor, size_t give
     if (!e.bytes) return false;
     const bool found =
         e.size > 0 && number(e.json, "count", 0) == given && read_base(&e) && read_sparse(&e);
-    const bool ok = found && take_elements(&e, source, count);
+    const bool ok = found && gather_elements(&e, source, count);
     if (ok) *out = add_elements(&e);
     host_free(doc->host, e.bytes);
     return found ? ok

@@ -171,7 +171,7 @@ static void place_object(struct dnrt *s, const struct scene_pose *pose, int obje
     };
 }
 
-static void take_probes(void *state, const struct probe_volume *source)
+static void set_probes(void *state, const struct probe_volume *source)
 {
     struct dnrt *s = state;
     s->source = *source;
@@ -379,7 +379,7 @@ const struct technique technique_dnrt = {
     .load = load,
     .resize = resize,
     .follow = dnrt_follow,
-    .take_probes = take_probes,
+    .set_probes = set_probes,
     .update = update,
     .record = record,
     .destroy = destroy,

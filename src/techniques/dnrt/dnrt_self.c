@@ -19,8 +19,8 @@ struct part_of_bake {
 };
 
 // The tensor has this shape but for its first axis. An object without triangles has no tensors.
-static bool take(struct dnrt *s, const struct tensors *bake, const char *format, int volume,
-                 enum tensor_type type, int rank, uint64_t shape[3], const void **out)
+static bool find_tensor(struct dnrt *s, const struct tensors *bake, const char *format, int volume,
+                        enum tensor_type type, int rank, uint64_t shape[3], const void **out)
 {
     char name[NAME_SIZE];
     snprintf(name, sizeof name, format, volume);
@@ -30,7 +30,7 @@ static bool take(struct dnrt *s, const struct tensors *bake, const char *format,
     return *out != NULL;
 }
 
-static bool take_part(struct dnrt *s, const struct tensors *bake, int volume,
+static bool find_part(struct dnrt *s, const struct tensors *bake, int volume,
                       struct part_of_bake *out)
 {
     const uint64_t coefficients = (uint64_t)dnrt_coefficients(&s->options);
@@ -38,9 +38,9 @@ static bool take_part(struct dnrt *s, const struct tensors *bake, int volume,
     const void *data[3];
     *out = (struct part_of_bake){ .count = 0 };
     if (!(s->volumes[volume].radius > 0.0f)) return true;
-    if (!take(s, bake, DNRT_CORNERS, volume, TENSOR_F32, 3, corners, &data[0]) ||
-        !take(s, bake, DNRT_PATCHES, volume, TENSOR_U32, 2, patches, &data[1]) ||
-        !take(s, bake, DNRT_SELF, volume, TENSOR_F16, 3, self, &data[2]))
+    if (!find_tensor(s, bake, DNRT_CORNERS, volume, TENSOR_F32, 3, corners, &data[0]) ||
+        !find_tensor(s, bake, DNRT_PATCHES, volume, TENSOR_U32, 2, patches, &data[1]) ||
+        !find_tensor(s, bake, DNRT_SELF, volume, TENSOR_F16, 3, self, &data[2]))
         return false;
     *out = (struct part_of_bake){ data[0], data[1], data[2], corners[0], self[0] };
     bool ok = patches[0] == corners[0];
@@ -109,7 +109,7 @@ bool dnrt_upload_self(struct dnrt *s, const struct tensors *bake)
     s->patches = host_alloc(s->host, volumes, sizeof *s->patches);
     bool ok = parts && s->patches;
     for (size_t v = 0; v < volumes && ok; v++) {
-        ok = take_part(s, bake, (int)v, &parts[v]);
+        ok = find_part(s, bake, (int)v, &parts[v]);
         count += parts[v].count;
         points += parts[v].points;
     }

@@ -64,7 +64,7 @@ struct dnrt {
     struct dnrt_map *maps;               // [map_count]
     int map_count;                       // of the first objects
     int views;                           // one more than the largest number of a view
-    struct probe_volume source;          // of the newest `take_probes`
+    struct probe_volume source;          // of the newest `set_probes`
     struct dnrt_gpu_object *gpu_objects; // [DNRT_MAX_OBJECTS] of the frame
     uint32_t *tiles;                     // scratch memory for the tiles of a view
     size_t most_tiles;                   // of a view

@@ -35,7 +35,7 @@ static bool is_near(const struct dnrt_volume *volume, const struct dnrt_frame *f
            limits_position(half) && volume->radius * frame->scale <= SCENE_MAX_DISTANCE_M;
 }
 
-static bool take_bounds(struct dnrt *s, int index, const float *sphere, const float *box)
+static bool read_bounds(struct dnrt *s, int index, const float *sphere, const float *box)
 {
     const struct dnrt_volume volume = { vec3_of(sphere[0], sphere[1], sphere[2]), sphere[3],
                                         vec3_of(box[0], box[1], box[2]),
@@ -56,7 +56,7 @@ static size_t planes_of(const struct dnrt_options *options)
     return (size_t)dnrt_planes(options) * (size_t)dnrt_coefficients(options);
 }
 
-static bool take_shape(struct dnrt *s, const struct tensors *bake, int shape, struct content *out)
+static bool read_shape(struct dnrt *s, const struct tensors *bake, int shape, struct content *out)
 {
     const uint64_t n = (uint64_t)dnrt_size(&s->options),
                    c = (uint64_t)dnrt_coefficients(&s->options),
@@ -69,7 +69,7 @@ static bool take_shape(struct dnrt *s, const struct tensors *bake, int shape, st
                                 (uint64_t[]){ normals, c, of_coefficient });
     const uint8_t *volume = expect(s, bake, DNRT_VOLUME, shape, type, 6,
                                    (uint64_t[]){ normals, c, of_coefficient, n, n, n });
-    if (!sphere || !box || !scale || !volume || !take_bounds(s, shape, sphere, box)) return false;
+    if (!sphere || !box || !scale || !volume || !read_bounds(s, shape, sphere, box)) return false;
     const size_t first = (size_t)shape * normals, planes = planes_of(&s->options);
     for (size_t i = 0; i < normals; i++) {
         struct dnrt_gpu_shape *to = &out->shapes[first + i];
@@ -87,12 +87,12 @@ static bool make(struct dnrt *s, const char *name, const void *items, size_t byt
            gpu_buffer_upload(s->gpu, *out, 0, items, bytes);
 }
 
-static bool take_shapes(struct dnrt *s, const struct tensors *bake, struct content *content)
+static bool read_shapes(struct dnrt *s, const struct tensors *bake, struct content *content)
 {
     const size_t count = (size_t)s->baked.volume_count * (size_t)dnrt_normals(&s->options);
     if (!content->shapes || !content->samples) return false;
     for (int i = 0; i < s->baked.volume_count; i++)
-        if (!take_shape(s, bake, i, content)) return false;
+        if (!read_shape(s, bake, i, content)) return false;
     return make(s, "shapes", content->shapes, count * sizeof *content->shapes, &s->shapes) &&
            make(s, "samples", content->samples, count * content->shape_bytes, &s->samples);
 }
@@ -128,7 +128,7 @@ bool dnrt_upload(struct dnrt *s, const struct tensors *bake)
     if (!fits(s, count * content.shape_bytes)) return false;
     content.shapes = host_alloc(s->host, count, sizeof *content.shapes);
     content.samples = host_alloc(s->host, count, content.shape_bytes);
-    const bool ok = take_shapes(s, bake, &content) && upload_changed(s) &&
+    const bool ok = read_shapes(s, bake, &content) && upload_changed(s) &&
                     (!s->options.self || dnrt_upload_self(s, bake));
     host_free(s->host, content.shapes);
     host_free(s->host, content.samples);

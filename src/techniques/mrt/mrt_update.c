@@ -9,7 +9,7 @@
 // Bytes that a frame copies at most.
 static const size_t COPIED = 4u << 20;
 
-static void take_message(void *user, enum log_level level, const char *text)
+static void keep_message(void *user, enum log_level level, const char *text)
 {
     struct mrt_update *update = user;
     if (level == LOG_ERROR) snprintf(update->error, sizeof update->error, "%s", text);
@@ -70,20 +70,20 @@ static void drop(struct mrt *mrt)
 static void fail(struct mrt *mrt, const char *why)
 {
     struct mrt_update *u = &mrt->update;
-    if (!u->said_failure)
+    if (!u->warned_failure)
         host_log(mrt->host, LOG_WARNING,
                  "drt: objects moved, but their indirect light stays as it was: %s", why);
-    u->said_failure = true;
+    u->warned_failure = true;
     drop(mrt);
 }
 
-static void say_walls(struct mrt *mrt)
+static void log_walls(struct mrt *mrt)
 {
-    if (!mrt->update.said_walls)
+    if (!mrt->update.warned_walls)
         host_log(mrt->host, LOG_WARNING,
                  "drt: walls changed, but the blocks keep those at the renderer's creation; only "
                  "objects inside blocks may move; lpv and vct follow all surfaces");
-    mrt->update.said_walls = true;
+    mrt->update.warned_walls = true;
 }
 
 static bool had_walls(const struct mrt_parts *parts, int instance)
@@ -96,7 +96,7 @@ static void check_walls(struct mrt *mrt)
     const struct mrt_update *u = &mrt->update;
     for (int i = 0; i < u->changed_count; i++)
         if (u->changed[i] && (had_walls(&mrt->parts, i) || had_walls(u->parts, i))) {
-            say_walls(mrt);
+            log_walls(mrt);
             return;
         }
 }
@@ -117,7 +117,7 @@ static void join(struct mrt *mrt)
         fail(mrt, "out of memory");
         return;
     }
-    u->said_failure = false;
+    u->warned_failure = false;
     u->state = MRT_COPYING;
     host_log(mrt->host, LOG_DEBUG, "drt: operators of %d blocks with objects made again in %.2f s",
              u->cache.traced, u->seconds);
@@ -164,12 +164,12 @@ static void follow(struct mrt *mrt, const struct scene_pose *pose)
 {
     struct mrt_update *u = &mrt->update;
     const bool wait = u->waits;
-    if (!u->host.log || (u->said_walls && !can_follow(mrt))) return;
+    if (!u->host.log || (u->warned_walls && !can_follow(mrt))) return;
     if (u->state == MRT_RUNNING && (wait || atomic_load(&u->done))) join(mrt);
     if (u->state == MRT_RUNNING || (u->state == MRT_COPYING && !wait)) return;
     if (scene_snapshot_is_current(&u->snapshot, pose)) return;
     if (!can_follow(mrt)) {
-        say_walls(mrt);
+        log_walls(mrt);
         return;
     }
     drop(mrt);
@@ -210,7 +210,7 @@ bool mrt_update_init(struct mrt *mrt, const struct scene_pose *pose)
 {
     struct mrt_update *u = &mrt->update;
     u->host = host_default();
-    u->host.log = take_message;
+    u->host.log = keep_message;
     u->host.user = u;
     u->snapshot.host = &u->host;
     u->parts = host_alloc(&u->host, 1, sizeof *u->parts);

@@ -40,7 +40,7 @@ struct mrt_update {
     double seconds;                              // the last one took
     bool *changed; // [changed_count]: instances, since the operators before
     int changed_count;
-    bool said_walls, said_failure;
+    bool warned_walls, warned_failure;
     bool swapped; // this frame has other operators than the last
 };
 

@@ -12,7 +12,7 @@ struct filling {
 };
 
 // A weight of a texel in a run, which is an entry of the bin. weight: its number in a bake.
-static void put_weight(const struct filling *f, size_t entry, uint32_t in_run, size_t weight)
+static void write_weight(const struct filling *f, size_t entry, uint32_t in_run, size_t weight)
 {
     if (f->maps->bytes)
         f->words[entry * RUN_WORDS / 2 + in_run / 4] |= (uint32_t)f->maps->bytes[weight]
@@ -22,8 +22,8 @@ static void put_weight(const struct filling *f, size_t entry, uint32_t in_run, s
                                                     << in_run % 2 * 16;
 }
 
-static void put_texel(const struct filling *f, const struct ort_piece *piece, uint32_t x,
-                      uint32_t y)
+static void write_texel(const struct filling *f, const struct ort_piece *piece, uint32_t x,
+                        uint32_t y)
 {
     size_t weight;
     if (!ort_maps_at(f->maps, piece->map, (struct ort_place){ piece->x + x, piece->y + y },
@@ -32,7 +32,7 @@ static void put_texel(const struct filling *f, const struct ort_piece *piece, ui
     const size_t column = (piece->bin_x + x) / ORT_RUN;
     const size_t run = column * ORT_BIN_SIDE + piece->bin_y + y;
     for (size_t c = 0; c < 3; c++)
-        put_weight(f, 3 * run + c, (piece->bin_x + x) % ORT_RUN, weight + c);
+        write_weight(f, 3 * run + c, (piece->bin_x + x) % ORT_RUN, weight + c);
 }
 
 static uint32_t fill_bin(const struct filling *f, const struct ort_bins *bins, uint32_t bin,
@@ -42,7 +42,7 @@ static uint32_t fill_bin(const struct filling *f, const struct ort_bins *bins, u
     for (; p < bins->piece_count && bins->pieces[p].bin == bin; p++)
         for (uint32_t y = 0; y < bins->pieces[p].height; y++)
             for (uint32_t x = 0; x < bins->pieces[p].width; x++)
-                put_texel(f, &bins->pieces[p], x, y);
+                write_texel(f, &bins->pieces[p], x, y);
     return p;
 }
 

@@ -70,7 +70,7 @@ static bool has_pieces(struct packing *p, uint32_t level)
 }
 
 // Removes the highest piece of a level that is at most as high as an area. false: there is none.
-static bool take_piece(struct packing *p, uint32_t level, uint32_t most, uint32_t *piece)
+static bool pop_piece(struct packing *p, uint32_t level, uint32_t most, uint32_t *piece)
 {
     uint32_t height = p->highest[level] < most ? p->highest[level] : most;
     while (height > 0 && !p->first[level][height]) height--;
@@ -84,7 +84,7 @@ static bool take_piece(struct packing *p, uint32_t level, uint32_t most, uint32_
 
 // Removes the narrowest area, and halves it until it has the width of a level. The other halves
 // stay. A bin begins when there is no area.
-static struct area take_area(struct packing *p, uint32_t level)
+static struct area pop_area(struct packing *p, uint32_t level)
 {
     if (p->area_count == 0)
         p->areas[p->area_count++] = (struct area){ .bin = p->bins++, .level = WIDTHS - 1 };
@@ -112,8 +112,8 @@ static bool cut_piece(struct packing *p, uint32_t piece, uint32_t height)
 // Finds the piece for an area of a height: the best fit, else the highest one, which is cut.
 static bool choose_piece(struct packing *p, uint32_t level, uint32_t height, uint32_t *piece)
 {
-    if (take_piece(p, level, height, piece)) return true;
-    return take_piece(p, level, ORT_BIN_SIDE, piece) && cut_piece(p, *piece, height);
+    if (pop_piece(p, level, height, piece)) return true;
+    return pop_piece(p, level, ORT_BIN_SIDE, piece) && cut_piece(p, *piece, height);
 }
 
 // Packs all pieces in the lists of a level.
@@ -121,7 +121,7 @@ static bool pack_level(struct packing *p, uint32_t level)
 {
     while (has_pieces(p, level)) {
         uint32_t piece = 0;
-        struct area area = take_area(p, level);
+        struct area area = pop_area(p, level);
         if (!choose_piece(p, level, ORT_BIN_SIDE - area.y, &piece)) return false;
         struct ort_piece *at = &p->pieces->at[piece];
         at->bin = area.bin;

@@ -193,8 +193,8 @@ static void warn_of_lights(struct prt *s, const struct scene *scene)
 {
     int near = 0;
     for (int i = 0; i < scene->light_count; i++) near += scene->lights[i].type != LIGHT_SUN;
-    if (near == 0 || s->said_lights) return;
-    s->said_lights = true;
+    if (near == 0 || s->warned_lights) return;
+    s->warned_lights = true;
     host_log(s->host, LOG_WARNING,
              "prt: %d point and spot lights give direct light alone: only distant light is "
              "transferred; radiosity and ort bounce theirs",

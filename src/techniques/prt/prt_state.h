@@ -39,7 +39,7 @@ struct prt {
     struct prt_light light; // the newest
     struct light_map_followed followed;
     struct kept kept;
-    bool said_lights;
+    bool warned_lights;
 };
 
 // Entries of a row in the table of transfer vectors.

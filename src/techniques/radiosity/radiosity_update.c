@@ -53,7 +53,7 @@ static bool is_empty(const struct radiosity *s, const struct radiosity_part *at)
            (at->stage == RADIOSITY_BOUNCES && at->steps == 0);
 }
 
-static void go_on(struct radiosity *s)
+static void advance(struct radiosity *s)
 {
     struct radiosity_update *u = &s->update;
     struct radiosity_part *at = &u->at;
@@ -75,7 +75,7 @@ static void record_rows(struct radiosity *s, struct gpu_cmd *cmd, const struct f
 {
     s->update.at.count = rows;
     radiosity_record_part(s, cmd, view, &s->update.at);
-    go_on(s);
+    advance(s);
 }
 
 static uint32_t rows_left(const struct radiosity_part *at, const struct radiosity *s)

@@ -33,7 +33,7 @@ static bool load_rotation(struct gltf_object light, versors *out)
 }
 
 // An environment turns about +y without a change of its map; other rotations are those of the cube.
-static float take_turn(versors *rotation)
+static float extract_turn(versors *rotation)
 {
     if (rotation->x != 0.0f || rotation->z != 0.0f) return 0.0f;
     const float turn = 2.0f * atan2f(rotation->y, rotation->w);
@@ -54,7 +54,7 @@ static bool load_image_based(struct gltf_object scene)
     versors rotation;
     bool ok = true;
     if (!load_rotation(light, &rotation)) return false;
-    environment->rotation_rad = take_turn(&rotation);
+    environment->rotation_rad = extract_turn(&rotation);
     environment->strength = gltf_float(light, "intensity", 1.0f, 0.0f, MAX_STRENGTH);
     if (json_array_size(gltf_array(light, "specularImages")) == 0)
         import_note(gltf->import, "image-based light (it has no specularImages)");

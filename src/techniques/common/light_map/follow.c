@@ -50,10 +50,10 @@ static bool has_map(const struct light_map_followed *f, const struct scene_pose 
            deformed_hash(pose, (int)i) == f->deformed[i];
 }
 
-static void say(struct light_map_followed *f, bool *said, const char *what)
+static void warn_once(struct light_map_followed *f, bool *warned, const char *what)
 {
-    if (!*said) host_log(f->host, LOG_WARNING, "%s: %s", f->technique, what);
-    *said = true;
+    if (!*warned) host_log(f->host, LOG_WARNING, "%s: %s", f->technique, what);
+    *warned = true;
 }
 
 static void check_static(struct light_map_followed *f, const struct scene_pose *pose, uint32_t i)
@@ -65,12 +65,14 @@ static void check_static(struct light_map_followed *f, const struct scene_pose *
         f->any_lit |= pose->scene->instances[i].mesh >= 0;
     }
     if (!mapped || f->places.at[i].moved)
-        say(f, &f->said_moved,
+        warn_once(
+            f, &f->warned_moved,
             "static geometry changed: what moved keeps the light of the bake, and the light that "
             "it blocks and reflects stays; mark as movable what moves");
     else if (pose->scene->materials[scene_mesh_of(pose->scene, (int)i)->material].revision >
              f->started)
-        say(f, &f->said_material,
+        warn_once(
+            f, &f->warned_material,
             "materials of static geometry changed: the light that it reflects and emits stays "
             "that of the bake");
 }
@@ -80,9 +82,9 @@ static void check_other(struct light_map_followed *f, const struct scene *scene,
     const struct instance *it = &scene->instances[i];
     f->any_lit |= it->mesh >= 0;
     if (it->mesh >= 0 && it->added > f->started && !it->movable)
-        say(f, &f->said_added,
-            "static instances were added: they block and reflect no indirect light without "
-            "another bake");
+        warn_once(f, &f->warned_added,
+                  "static instances were added: they block and reflect no indirect light without "
+                  "another bake");
 }
 
 void light_map_followed_update(struct light_map_followed *f, const struct scene_pose *pose)

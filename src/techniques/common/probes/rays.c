@@ -47,7 +47,7 @@ static float look_around(const struct probe_tracer *tracer, vec3s from, struct w
 }
 
 // The nearest one is taken from the list.
-static struct way_out take_nearest(struct way_out *ways)
+static struct way_out pop_nearest(struct way_out *ways)
 {
     int nearest = 0;
     for (int i = 1; i < PROBE_DEPTHS; i++)
@@ -64,7 +64,7 @@ bool probe_find_place(const struct probe_tracer *tracer, vec3s center, float spa
     *position = center;
     if (look_around(tracer, center, ways) <= MOST_BACKS) return true;
     for (int i = 0; i < TRIES; i++) {
-        const struct way_out way = take_nearest(ways);
+        const struct way_out way = pop_nearest(ways);
         if (!isfinite(way.distance)) return false;
         const vec3s offset = glms_vec3_scale(way.direction, way.distance + CLEARANCE * spacing_m);
         if (glms_vec3_max(glms_vec3_abs(offset)) > 0.5f * spacing_m) continue;

@@ -22,7 +22,7 @@ static const char *shape_tensor(char out[32], int maze, int i, const char *what)
 }
 
 // Parts of a tensor whose axis 0 is `parts` times that of a part.
-static bool take_parts(const struct reader *reader, const char *name, struct tensor_part part,
+static bool copy_parts(const struct reader *reader, const char *name, struct tensor_part part,
                        size_t parts, struct matrix_f32 *const *out)
 {
     const uint64_t flat[2] = { parts * part.rows, part.columns };
@@ -39,13 +39,13 @@ static bool take_parts(const struct reader *reader, const char *name, struct ten
     return true;
 }
 
-static bool take(const struct reader *reader, const char *name, size_t rows_, size_t middle,
-                 size_t columns, struct matrix_f32 *out)
+static bool copy_matrix(const struct reader *reader, const char *name, size_t rows_, size_t middle,
+                        size_t columns, struct matrix_f32 *out)
 {
-    return take_parts(reader, name, (struct tensor_part){ rows_, middle, columns }, 1, &out);
+    return copy_parts(reader, name, (struct tensor_part){ rows_, middle, columns }, 1, &out);
 }
 
-static bool take_element(const struct reader *reader, const struct mrt_dictionary_options *o, int i,
+static bool copy_element(const struct reader *reader, const struct mrt_dictionary_options *o, int i,
                          struct mrt_element *e)
 {
     char name[32];
@@ -56,17 +56,18 @@ static bool take_element(const struct reader *reader, const struct mrt_dictionar
     size_t count = 0;
     for (int f = 0; f < CUBE_FACES; f++)
         if (e->shape.missing >> f & 1u) openings[count++] = &e->r_b[f];
-    return take(reader, shape_tensor(name, o->maze, i, "U_b"), n, 1, k, &e->u_b) &&
-           take(reader, shape_tensor(name, o->maze, i, "T_db"), k, 1, n, &e->t_db) &&
-           take(reader, shape_tensor(name, o->maze, i, "L_imp"), n, 1, k, &e->l_imp) &&
-           take(reader, shape_tensor(name, o->maze, i, "U_vec"), n, 4, k, &e->u_vec) &&
-           take(reader, shape_tensor(name, o->maze, i, "U_bvol"), probes, 9, k, &e->u_bvol) &&
+    return copy_matrix(reader, shape_tensor(name, o->maze, i, "U_b"), n, 1, k, &e->u_b) &&
+           copy_matrix(reader, shape_tensor(name, o->maze, i, "T_db"), k, 1, n, &e->t_db) &&
+           copy_matrix(reader, shape_tensor(name, o->maze, i, "L_imp"), n, 1, k, &e->l_imp) &&
+           copy_matrix(reader, shape_tensor(name, o->maze, i, "U_vec"), n, 4, k, &e->u_vec) &&
+           copy_matrix(reader, shape_tensor(name, o->maze, i, "U_bvol"), probes, 9, k,
+                       &e->u_bvol) &&
            (count == 0 ||
-            take_parts(reader, shape_tensor(name, o->maze, i, "R_b"),
+            copy_parts(reader, shape_tensor(name, o->maze, i, "R_b"),
                        (struct tensor_part){ 1, (size_t)o->lightfield_modes, k }, count, openings));
 }
 
-static bool take_interfaces(const struct reader *reader, const struct mrt_dictionary_options *o,
+static bool copy_interfaces(const struct reader *reader, const struct mrt_dictionary_options *o,
                             struct mrt_dictionary *d)
 {
     const struct mrt_shape entered = mrt_entered_shape((enum mrt_maze)o->maze, o->texels, 0);
@@ -81,14 +82,14 @@ static bool take_interfaces(const struct reader *reader, const struct mrt_dictio
         part[2][i] = &d->entered[i].u_rvec;
         part[3][i] = &d->entered[i].u_rvol;
     }
-    return take_parts(reader, "interface/R_turn", (struct tensor_part){ 1, k_l, k_l },
+    return copy_parts(reader, "interface/R_turn", (struct tensor_part){ 1, k_l, k_l },
                       (size_t)d->turn_count, turns) &&
-           take_parts(reader, "interface/T_r", (struct tensor_part){ k_r, 1, k_l }, parts,
+           copy_parts(reader, "interface/T_r", (struct tensor_part){ k_r, 1, k_l }, parts,
                       part[0]) &&
-           take_parts(reader, "interface/U_r", (struct tensor_part){ m, 1, k_r }, parts, part[1]) &&
-           take_parts(reader, "interface/U_rvec", (struct tensor_part){ m, 4, k_r }, parts,
+           copy_parts(reader, "interface/U_r", (struct tensor_part){ m, 1, k_r }, parts, part[1]) &&
+           copy_parts(reader, "interface/U_rvec", (struct tensor_part){ m, 4, k_r }, parts,
                       part[2]) &&
-           take_parts(reader, "interface/U_rvol", (struct tensor_part){ probes, 9, k_r }, parts,
+           copy_parts(reader, "interface/U_rvol", (struct tensor_part){ probes, 9, k_r }, parts,
                       part[3]);
 }
 
@@ -104,9 +105,9 @@ bool mrt_dictionary_init(struct host *host, const struct tensors *bake,
         .entered_count = mrt_entered_shapes(maze),
     };
     out->options.maze = (int32_t)maze;
-    bool ok = take_interfaces(&reader, &out->options, out);
+    bool ok = copy_interfaces(&reader, &out->options, out);
     for (int i = 0; ok && i < out->element_count; i++)
-        ok = take_element(&reader, &out->options, i, &out->element[i]);
+        ok = copy_element(&reader, &out->options, i, &out->element[i]);
     if (!ok) mrt_dictionary_finish(host, out);
     return ok;
 }

@@ -324,10 +324,10 @@ bool mrt_clutter_of_extras(const struct node *node, bool *clutter)
     if (!node->extras || !strstr(node->extras, CLUTTER_KEY)) return false;
     json_t *extras = json_loads(node->extras, 0, NULL);
     const json_t *value = json_object_get(extras, CLUTTER_KEY);
-    const bool said = json_is_boolean(value);
+    const bool has_value = json_is_boolean(value);
     *clutter = json_is_true(value);
     json_decref(extras);
-    return said;
+    return has_value;
 }
 
 struct node_blocks {

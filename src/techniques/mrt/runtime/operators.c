@@ -31,7 +31,7 @@ static bool words_init(struct words *w, const struct mrt_runtime *runtime, size_
     return w->at;
 }
 
-static void put(struct words *w, float value)
+static void pack(struct words *w, float value)
 {
     if (w->half)
         ((uint16_t *)w->at)[w->numbers++] = half_from_float(value);
@@ -40,11 +40,11 @@ static void put(struct words *w, float value)
 }
 
 // A row of `count` numbers, `stride` apart, padded with 0.
-static void put_row(struct words *w, const float *from, size_t stride, const float *factor,
-                    int count)
+static void pack_row(struct words *w, const float *from, size_t stride, const float *factor,
+                     int count)
 {
     for (int m = 0; m < (int)(4 * mrt_quads(count)); m++)
-        put(w, m < count ? from[(size_t)m * stride] * (factor ? factor[m] : 1.0f) : 0.0f);
+        pack(w, m < count ? from[(size_t)m * stride] * (factor ? factor[m] : 1.0f) : 0.0f);
 }
 
 static bool words_upload(struct words *w, struct mrt_runtime *runtime, const char *name,
@@ -110,15 +110,15 @@ static bool upload_t_db(struct mrt_runtime *runtime, const struct mrt_runtime_in
     for (int i = 0; i < input->basis_count; i++) {
         const struct matrix_f32 *t = &input->bases[i].t_db;
         for (size_t texel = 0; texel < t->columns; texel++)
-            put_row(&w, t->at + texel, t->stride, scales->of_b + i * scales->k_b, input->k_b);
+            pack_row(&w, t->at + texel, t->stride, scales->of_b + i * scales->k_b, input->k_b);
     }
     return words_upload(&w, runtime, "t_db", &runtime->buffers.t_db);
 }
 
-static void put_matrix(struct words *w, const struct matrix_f32 *m, const float *factor, int count)
+static void pack_matrix(struct words *w, const struct matrix_f32 *m, const float *factor, int count)
 {
     for (size_t row = 0; row < m->rows; row++)
-        put_row(w, m->at + row * m->stride, 1, factor, count);
+        pack_row(w, m->at + row * m->stride, 1, factor, count);
 }
 
 static bool upload_u_b(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
@@ -130,7 +130,7 @@ static bool upload_u_b(struct mrt_runtime *runtime, const struct mrt_runtime_inp
     for (int i = 0; i < input->basis_count; i++) rows += input->bases[i].u[measure].rows;
     if (!words_init(&w, runtime, rows, input->k_b)) return false;
     for (int i = 0; i < input->basis_count; i++)
-        put_matrix(&w, &input->bases[i].u[measure], scales->inverse + i * scales->k_b, input->k_b);
+        pack_matrix(&w, &input->bases[i].u[measure], scales->inverse + i * scales->k_b, input->k_b);
     return words_upload(&w, runtime, names[measure], out);
 }
 
@@ -143,7 +143,7 @@ static bool upload_u_r(struct mrt_runtime *runtime, const struct mrt_runtime_inp
     for (int i = 0; i < input->response_count; i++) rows += input->responses[i].u[measure].rows;
     if (!words_init(&w, runtime, rows, input->k_r)) return false;
     for (int i = 0; i < input->response_count; i++)
-        put_matrix(&w, &input->responses[i].u[measure], NULL, input->k_r);
+        pack_matrix(&w, &input->responses[i].u[measure], NULL, input->k_r);
     return words_upload(&w, runtime, names[measure], out);
 }
 
@@ -162,8 +162,9 @@ static bool upload_t_br(struct mrt_runtime *runtime, const struct mrt_runtime_in
         for (int m = 0; m < columns; m++) {
             const bool kept = m < input->k_b;
             for (int k = 0; k < (int)(4 * mrt_quads(input->k_r)); k++)
-                put(&w, kept && k < input->k_r ? pair->t_br[m * input->t_br_stride + k] * inverse[m]
-                                               : zero);
+                pack(&w, kept && k < input->k_r
+                             ? pair->t_br[m * input->t_br_stride + k] * inverse[m]
+                             : zero);
         }
     }
     return words_upload(&w, runtime, "t_br", &runtime->buffers.t_br);
@@ -181,7 +182,8 @@ static bool upload_coupling(struct mrt_runtime *runtime, const struct mrt_runtim
     bool ok = senders && words_init(&w, runtime, count, input->k_r);
     for (int i = 0; ok && i < input->opening_count; i++) {
         const uint32_t of_opening = mrt_senders(input, i, senders);
-        for (uint32_t k = 0; k < of_opening; k++) put_row(&w, senders[k].of_c, 1, NULL, input->k_r);
+        for (uint32_t k = 0; k < of_opening; k++)
+            pack_row(&w, senders[k].of_c, 1, NULL, input->k_r);
     }
     host_free(runtime->host, senders);
     return ok && words_upload(&w, runtime, "clutter_coupling", &runtime->clutter.coupling);
@@ -195,13 +197,13 @@ static size_t rows_of_map(const struct mrt_clutter_rows_input *rows)
            mrt_clutter_map_tiles((size_t)rows->texel_count);
 }
 
-static void put_padded(struct words *w, const struct matrix_f32 *m, size_t rows,
-                       const float *factor, int count)
+static void pack_padded(struct words *w, const struct matrix_f32 *m, size_t rows,
+                        const float *factor, int count)
 {
     const float zero = 0.0f;
-    put_matrix(w, m, factor, count);
+    pack_matrix(w, m, factor, count);
     for (size_t i = m->rows * 4 * mrt_quads(count); i < rows * 4 * mrt_quads(count); i++)
-        put(w, zero);
+        pack(w, zero);
 }
 
 // T rows of a block and opening are those of its tiles.
@@ -225,10 +227,10 @@ static bool upload_clutter_map(struct mrt_runtime *runtime, const struct mrt_run
     for (int i = 0; i < map->count; i++) {
         const struct mrt_clutter_rows_input *rows = &map->rows[i];
         const size_t count = rows_of_map(rows);
-        put_padded(&b, &rows->u_b, count,
-                   scales->inverse + input->basis_of_block[rows->block] * scales->k_b, input->k_b);
+        pack_padded(&b, &rows->u_b, count,
+                    scales->inverse + input->basis_of_block[rows->block] * scales->k_b, input->k_b);
         for (int k = 0; k <= CUBE_FACES && rows->u_r[k].rows > 0; k++)
-            put_padded(&r, &rows->u_r[k], count, NULL, input->k_r);
+            pack_padded(&r, &rows->u_r[k], count, NULL, input->k_r);
     }
     const bool ok = words_upload(&b, runtime, "clutter_u_b", &to->u_b);
     return words_upload(&r, runtime, "clutter_u_r", &to->u_r) && ok;

@@ -48,7 +48,7 @@ static uint32_t count_facets(qhT *qh)
 }
 
 // False where a facet is no triangle of points.
-static bool take_facets(qhT *qh, const double *at, uint32_t count, struct ort_triangles *out)
+static bool copy_facets(qhT *qh, const double *at, uint32_t count, struct ort_triangles *out)
 {
     facetT *facet;
     vertexT *vertex, **vertexp;
@@ -101,7 +101,7 @@ static bool triangulate(qhT *qh, struct host *host, const double *at, uint32_t c
     const size_t facets = count_facets(qh);
     out->corners = host_alloc(host, facets, sizeof *out->corners);
     if (!out->corners) return false;
-    if (!take_facets(qh, at, count, out))
+    if (!copy_facets(qh, at, count, out))
         return host_fail(host, FAIL_ARGUMENT, "triangulation of %u points: a facet has no 3 points",
                          count);
     return all_used(host, out, count);

@@ -38,7 +38,7 @@ static void merge_coincident(struct ort_density *density)
     density->point_count = merged;
 }
 
-static bool take_points(struct ort_density *density, const struct ort_point *points, uint32_t count)
+static bool copy_points(struct ort_density *density, const struct ort_point *points, uint32_t count)
 {
     density->points = host_alloc(density->host, count, sizeof *density->points);
     if (!density->points) return false;
@@ -104,7 +104,7 @@ bool ort_density_init(struct ort_density *out, struct host *host, const struct o
                       uint32_t count)
 {
     *out = (struct ort_density){ .host = host };
-    if (!take_points(out, points, count) || !triangulate(out)) goto fail;
+    if (!copy_points(out, points, count) || !triangulate(out)) goto fail;
     out->sums = host_alloc(host, out->triangles.count, 3 * sizeof *out->sums);
     if (!out->sums) goto fail;
     out->integral = add_volumes(out, false);

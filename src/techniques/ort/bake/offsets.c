@@ -46,7 +46,7 @@ static int32_t last_y(const struct ort_offsets_wish *wish)
 // ---- importance
 
 // Asks for the importance of the batch, which becomes data points.
-static bool take_batch(struct chooser *chooser)
+static bool measure_batch(struct chooser *chooser)
 {
     const struct ort_offsets_wish *wish = chooser->wish;
     if (chooser->batch_count == 0) return true;
@@ -103,7 +103,7 @@ static void add_near_seeds(struct chooser *chooser)
         }
 }
 
-static bool take_seeds(struct chooser *chooser, const uint32_t sides[2])
+static bool measure_seeds(struct chooser *chooser, const uint32_t sides[2])
 {
     add_near_seeds(chooser);
     for (uint32_t y = 0; y < sides[1]; y++)
@@ -111,7 +111,7 @@ static bool take_seeds(struct chooser *chooser, const uint32_t sides[2])
             add_to_batch(chooser,
                          (struct ort_offset){ seed_place(last_x(chooser->wish), x, sides[0]),
                                               seed_place(last_y(chooser->wish), y, sides[1]) });
-    return take_batch(chooser);
+    return measure_batch(chooser);
 }
 
 static struct ort_offset draw(struct chooser *chooser, const struct ort_density *density)
@@ -131,7 +131,7 @@ static bool refine(struct chooser *chooser)
         for (int k = 0; k < DRAWS_PER_REFINEMENT; k++)
             if (add_to_batch(chooser, draw(chooser, &density))) break;
     ort_density_finish(&density);
-    return take_batch(chooser);
+    return measure_batch(chooser);
 }
 
 static bool find_importance(struct chooser *chooser)
@@ -146,7 +146,7 @@ static bool find_importance(struct chooser *chooser)
     chooser->importance = host_alloc(chooser->host, batch, sizeof *chooser->importance);
     if (!chooser->points || !chooser->batch || !chooser->importance) return false;
     if (!ort_offset_set_init(&chooser->known, chooser->host, points)) return false;
-    if (!take_seeds(chooser, sides)) return false;
+    if (!measure_seeds(chooser, sides)) return false;
     for (size_t i = 0; i < refinements / BATCH; i++)
         if (!refine(chooser)) return false;
     return true;

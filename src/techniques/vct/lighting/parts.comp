@@ -132,7 +132,7 @@ struct vct_part {
 
 // Takes the first face without a part and all others with its normal and plane, on its side of
 // partitions. False: none is left.
-bool take_part(out vct_part part)
+bool next_part(out vct_part part)
 {
     part = vct_part(vec3(0.0), vec3(0.0), 0.0, false);
     vec3 first_normal = vec3(0.0), first_position = vec3(0.0);
@@ -215,5 +215,5 @@ void main()
     block_face = gl_WorkGroupID.x % VCT_FACES;
     read_rows();
     vct_part part;
-    for (uint number = 0u; take_part(part); number++) store_part(enter(part, number));
+    for (uint number = 0u; next_part(part); number++) store_part(enter(part, number));
 }

@@ -149,8 +149,8 @@ static bool add_kept_response(struct builder *s, int block, int face,
 }
 
 // ΔU_c in the rows of a response.
-static void put_faces(const struct builder *s, int block, const struct mrt_delta_block *delta,
-                      enum mrt_measure measure, struct matrix_f32 *rows)
+static void copy_faces(const struct builder *s, int block, const struct mrt_delta_block *delta,
+                       enum mrt_measure measure, struct matrix_f32 *rows)
 {
     const struct matrix_f32 *c = &delta->of[measure].c;
     const bool *inside = delta->of[measure].inside;
@@ -180,7 +180,7 @@ static bool add_face_response(struct builder *s, int block, const struct mrt_del
         struct matrix_f32 *rows = &s->out->responses[index].u[m];
         if (!matrix_f32_init(s->out->host, rows, sizes->rows, sizes->columns)) return false;
         if (rows->rows > 0 && delta->of[m].inside)
-            put_faces(s, block, delta, (enum mrt_measure)m, rows);
+            copy_faces(s, block, delta, (enum mrt_measure)m, rows);
     }
     return true;
 }
