@@ -17,7 +17,7 @@ bool lpv_is_moving(const struct scene_draw *draw);
 // has changed. The parameters and the grid of the frame are complete.
 bool lpv_is_kept(struct lpv *lpv, const struct frame_view *view);
 
-// What a cached result of the static draws depends on. Zero: nothing is cached.
+// Key of the cached result of static draws. Zero: nothing is cached.
 struct lpv_statics {
     bool valid;
     struct lpv_grid grid;

@@ -5,7 +5,7 @@
 #include "techniques/lpv/lpv_closure.glsl"
 #include "techniques/lpv/lpv_product.glsl"
 
-// Of the positive closure: light 1 + 3 J·ω gives φ/4 − J·n/2, a beam the cosine of its angle.
+// Irradiance of the positive closure: light 1 + 3 J·ω gives φ/4 − J·n/2, a beam its cosine.
 vec3 lpv_closed_irradiance(lpv_closure light, vec3 n)
 {
     vec3 along = vec3(0.0), cosine = vec3(0.0);

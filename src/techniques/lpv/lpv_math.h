@@ -57,7 +57,7 @@ struct lpv_lobe_weights {
 // `filter`: share of band 2 that is removed (filtered spherical harmonics, McClarren & Hauck 2010).
 struct lpv_lobe_weights lpv_lobe_weights_of(enum lpv_scheme scheme, enum lpv_lobe lobe,
                                             double focus, double filter);
-// Of the moments after a step of lpv_product.glsl.
+// Weights for the moments after a step of lpv_product.glsl.
 struct lpv_lobe_weights lpv_product_lobe(double focus);
 
 // Shader parameters of one step: one face of each class, and the lobes' weights.

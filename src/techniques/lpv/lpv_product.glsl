@@ -34,7 +34,7 @@ lpv_axis lpv_axis_of(vec3 mean, vec3 square)
          reciprocal = 1.0 / (size * across);
     axis.moved_mean = axis.square * across * reciprocal;
     axis.over_across = size * reciprocal;
-    // Of an interval; a mixture has more.
+    // The value of an interval is the least; a mixture has more.
     vec3 interval = 3.0 * axis.square - 2.0 * axis.size * axis.size;
     axis.moved_square =
         mix(max(interval, 1.125 * axis.moved_mean * axis.moved_mean), interval, is_cone);

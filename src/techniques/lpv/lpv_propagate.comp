@@ -304,7 +304,7 @@ void send_column(inout sums to, column c, lpv_product light, int step_z, float t
     to.product[2] += c.product_xy * share;
 }
 
-// Of the light that moves by `step` along x and y, a part moves along z.
+// Sends the light that moves by `step` along x and y; a part of it moves along z.
 void from_product(inout receivers to, lpv_product light, ivec2 step, vec3 transmittance)
 {
     column c = column_of(light, step);

@@ -173,7 +173,8 @@ static bool record_host_solution(struct mrt *mrt, struct gpu_cmd *cmd,
                                   });
 }
 
-// What fed back is not in the coefficients of new operators: bounces take its place once.
+// Coefficients of new operators lack the light that feedback had accumulated. More bounces in one
+// frame replace it.
 enum { BOUNCES_OF_NEW_OPERATORS = 16 };
 
 static void record_bounces(struct mrt *mrt, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -284,7 +285,7 @@ static uint64_t drt_memory_estimate(const void *options)
     return estimate(options, true);
 }
 
-// What both have in common.
+// Members that mrt and drt have in common.
 #define MRT_TECHNIQUE(of_name, of_title, of_paper, rows)                                           \
     .name = of_name, .title = of_title, .paper = of_paper, .role = ROLE_SOURCE,                    \
     .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | PUBLISHES_PROBES | GATHERS_EMISSION,            \

@@ -27,13 +27,13 @@ struct mrt_options {
 #undef OPTION
 };
 
-// What follows from a pose of the scene, on the blocks of the map. It must not move.
+// Data that depend on a pose of the scene, on the blocks of the map. The struct must not move.
 struct mrt_parts {
     struct host *host;
     struct mrt_clutter clutter; // drt; until the operators are made, as its texels
     struct mrt_clutter_texel *clutter_texels;
     struct mrt_scene_images images;
-    struct hash128 walls; // what images.geometry was traced of
+    struct hash128 walls; // of the surfaces that images.geometry was traced from
     bool *has_walls;      // [instance_count]: of instances, surfaces that are no clutter
     int instance_count;
 };

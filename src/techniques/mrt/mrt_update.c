@@ -54,9 +54,9 @@ static void find_moves(struct mrt *mrt)
     mrt->runtime.clutter.map.surfaces.moves = moved ? u->places.moves : NULL;
 }
 
-// ---- what it made
+// ---- its results
 
-// Where it was left, but for the snapshot: its pose has been tried.
+// Drops the unfinished update but keeps the snapshot, so that its pose is not tried again.
 static void drop(struct mrt *mrt)
 {
     struct mrt_update *u = &mrt->update;
@@ -154,7 +154,7 @@ static void start(struct mrt *mrt, const struct scene_pose *pose)
         u->state = MRT_RUNNING;
 }
 
-// Of tubes and scenes without blocks there is no clutter.
+// Tubes and scenes without blocks have no clutter.
 static bool can_follow(const struct mrt *mrt)
 {
     return mrt->map.count > 0 && !mrt_block_is_tube(&mrt->map.blocks[0]);

@@ -20,8 +20,8 @@ struct mrt_parts;
 enum mrt_update_state { MRT_IDLE, MRT_RUNNING, MRT_COPYING };
 
 struct mrt_update {
-    // Of the thread. It has libc's memory: an allocator of the program is called on its thread
-    // only.
+    // The thread's host, with memory of libc: an allocator of the program is called only on the
+    // thread of the program.
     struct host host;
     char error[256];
     enum mrt_update_state state;

@@ -81,7 +81,7 @@ static void list_probes(const struct radiosity *s, struct gpu_objects *out)
     probe_apply_list(PROBES(apply), s->options.specular, out);
 }
 
-// What radiosity_upload and radiosity_probes_upload create.
+// Objects that radiosity_upload and radiosity_probes_upload create.
 static void list_uploads(struct gpu_objects *out)
 {
 #define IMAGE(thing) { GPU_IMAGE, .member = TABLE(thing) }
@@ -208,15 +208,15 @@ static uint32_t more_needs(const void *options)
     return o->specular ? FRAME_WRITES_SPECULAR : 0;
 }
 
-// Of rows: entries, order and tiles.
+// Bytes of rows: entries, order and tiles.
 static uint64_t rows_bytes(uint64_t rows, uint64_t bytes)
 {
     return light_map_table_bytes(rows * bytes / 16, 16) + light_map_table_bytes(rows, 4) +
            light_map_table_bytes(rows / RADIOSITY_TILE, 8);
 }
 
-// Of a light map with the texels wanted, on one side, that charts fill by two thirds, with a
-// triangle for each texel.
+// Assumes a light map with the wanted number of texels, on one side, two thirds of it covered by
+// charts, and a triangle for each texel.
 static uint64_t memory_estimate(const void *options)
 {
     const struct radiosity_options *o = options;

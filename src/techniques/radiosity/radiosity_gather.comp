@@ -25,7 +25,7 @@ layout(set = 0, binding = 4, rgba32ui) uniform readonly uimage2D radiosity_facto
 layout(set = 0, binding = 5, rg32ui) uniform readonly uimage2D radiosity_sent;
 layout(set = 0, binding = 6, rg32ui) uniform writeonly uimage2D texel_light; // [colour][texel]
 
-// Of clusters: irradiance, and the vector irradiance along the tangents.
+// Light of clusters: irradiance, and vector irradiance along the tangents.
 struct received {
     vec3 irradiance, by_u, by_v;
 };

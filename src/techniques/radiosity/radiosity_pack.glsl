@@ -31,7 +31,7 @@ float radiosity_form_factor(uint word)
     return unpackHalf2x16(word >> RADIOSITY_NODE_BITS).x;
 }
 
-// Of the table of a block: the k-th texel of a row, in a tile that begins at `first`.
+// The texel of a block's table with entry k of a row; its tile begins at `first`.
 uint radiosity_row_texel(uint first, uint k, uint row)
 {
     return first + RADIOSITY_TILE * k + row % RADIOSITY_TILE;

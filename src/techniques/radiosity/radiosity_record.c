@@ -190,7 +190,7 @@ static void record_rows(struct radiosity *s, struct gpu_cmd *cmd, const struct f
     }
 }
 
-// What follows the last row of a stage.
+// Records the passes that follow the last row of a stage.
 static void record_end(struct radiosity *s, struct gpu_cmd *cmd, const struct radiosity_part *part)
 {
     if (part->stage == RADIOSITY_DIRECT) {

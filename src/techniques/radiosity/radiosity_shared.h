@@ -26,13 +26,13 @@
 // Neighbours of a texel, in pairs of (texel, weight).
 #define RADIOSITY_NEIGHBOURS 8
 
-// What debug views show of a place of the light map, of the texel whose light it has.
+// Debug data of a place of the light map: those of its nearest valid texel.
 struct radiosity_gpu_label {
     uint32_t chart, cluster;
     uint32_t state; // RADIOSITY_SAMPLED_…
 };
 #define RADIOSITY_SAMPLED_IN_MIDDLE 0
-#define RADIOSITY_SAMPLED_BESIDE    1 // the middle is inside of something
+#define RADIOSITY_SAMPLED_BESIDE    1 // the middle is inside geometry
 #define RADIOSITY_NOT_SAMPLED       2 // all of it is
 #define RADIOSITY_FILLED            3 // it is the light of another texel
 #define RADIOSITY_NO_TEXEL          4

@@ -21,7 +21,7 @@
 #define RADIOSITY_PROBE_EMITTED  "probes/emitted"          // F32 [probes][9][3]
 #define RADIOSITY_PROBE_DEPTH    "probes/depth"            // F16 [probes][8 · 8][2]
 
-// Of a map whose clusters are not divided: there is room for two parts of each.
+// Rows allocated before clusters are subdivided: two for each, since walls may split it.
 static inline uint64_t radiosity_cluster_rows(const struct radiosity_map *map)
 {
     return light_map_rows(2 * map->cluster_count);

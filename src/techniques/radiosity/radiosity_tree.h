@@ -29,7 +29,7 @@ struct radiosity_tree {
     uint32_t count, leaves;
 };
 
-// Where a cluster is and where it faces.
+// Position and normal of a cluster.
 struct radiosity_place {
     vec3s position, normal;
 };

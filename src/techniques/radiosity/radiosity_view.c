@@ -7,7 +7,7 @@ const struct technique_debug_view radiosity_views[] = {
     { "charts", "a colour for each chart of the light map", NULL },
     { "texels", "a checkerboard of the light map's texels", NULL },
     { "clusters", "a colour for each cluster, a source of bounced light", NULL },
-    { "validity", "texels inside of something: yellow sampled beside it, red filled, violet black",
+    { "validity", "texels inside geometry: yellow sampled beside it, red filled, violet black",
       NULL },
     { PROBES_VIEW, PROBES_VIEW_HELP, NULL },
     { NULL, NULL, NULL },

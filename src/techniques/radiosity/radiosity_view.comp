@@ -27,7 +27,7 @@ layout(set = 0, binding = 7, scalar) readonly buffer radiosity_labels
 layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D target;
 
 const vec3 NONE = vec3(0.02); // no light map
-// Of RADIOSITY_SAMPLED_IN_MIDDLE and the states after it.
+// Colours of RADIOSITY_SAMPLED_IN_MIDDLE and the states after it.
 const vec3 VALIDITY[4] =
     vec3[](vec3(0.2), vec3(0.6, 0.45, 0.05), vec3(0.5, 0.0, 0.5), vec3(0.7, 0.05, 0.05));
 

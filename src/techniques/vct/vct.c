@@ -347,7 +347,7 @@ static uint32_t vctao_more_needs(const void *options)
     return vct_more_needs(&occlusion);
 }
 
-// What both have in common.
+// Members that vct and vctao have in common.
 #define VCT_TECHNIQUE(of_name, of_title, of_paper)                                                 \
     .name = of_name, .title = of_title, .paper = of_paper, .state_size = sizeof(struct vct),       \
     .resize = vct_resize, .set_options = vct_set_options, .invalidate = vct_invalidate,            \

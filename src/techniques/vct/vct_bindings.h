@@ -16,8 +16,7 @@ struct gpu_binding vct_small_emitters_binding(const struct vct *vct, struct gpu_
 // The layer that the cones fill: irradiance or visibility.
 gpu_image vct_result(const struct vct *vct, const struct frame_view *view);
 
-// For lists of bindings: the voxels of both sets of a level, as volume/prefilter.glsl reads them.
-// What rays need of a level (rays/ray.glsl).
+// Bindings of a level that rays read (rays/ray.glsl).
 #define VCT_RAY_BINDINGS(vct, clip)                                                                \
     { .name = "vct_blocks", .image = (vct)->block_image },                                         \
         { .name = "static_first_slots", .image = (vct)->first_slots[0] },                          \
@@ -25,6 +24,7 @@ gpu_image vct_result(const struct vct *vct, const struct frame_view *view);
         { .name = "static_planes", .image = (clip)->static_set.planes },                           \
         { .name = "dynamic_planes", .image = (clip)->dynamic_set.planes }, VCT_BOTH_SETS(clip)
 
+// Bindings of the voxels of both sets of a level, as volume/prefilter.glsl reads them.
 #define VCT_BOTH_SETS(clip)                                                                        \
     { .name = "static_mask", .buffer = (clip)->static_set.mask },                                  \
         { .name = "static_word_offsets", .buffer = (clip)->static_set.word_offsets },              \

@@ -66,7 +66,7 @@ static int divide(struct vct_light *lights, int count, struct box3 bounds)
     return before;
 }
 
-// What a division of the group gains, up to a factor: 0 where it has one key.
+// Gain of a subdivision of the group, up to a factor: 0 if it has one key.
 static double spread_of(const struct vct_light *lights, const struct vct_emitter_group *group)
 {
     double flux = 0.0;

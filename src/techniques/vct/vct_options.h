@@ -10,7 +10,7 @@
 enum vct_storage { VCT_MIPS, VCT_SVO }; // choices of the options
 enum vct_trace_by { VCT_BY_CONES, VCT_BY_RAYS };
 
-// Of both techniques.
+// Options of vct and vctao.
 struct vct_options {
 #define OPTION       OPTION_FIELD
 #define VCT_OPTION   OPTION_FIELD

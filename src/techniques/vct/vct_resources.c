@@ -4,7 +4,8 @@
 
 // ---- Voxels -------------------------------------------------------------------------------------
 
-// Of the faces of a set, with `texels` texels for each; images of a shader are always bound.
+// An image of the faces of a set, `texels` texels for each; unused images of a shader are bound,
+// too, with one row.
 static struct gpu_image_desc faces(const struct vct_options *o, uint32_t texels,
                                    enum gpu_format format, bool used)
 {

@@ -16,7 +16,7 @@ struct vct_small_emitters {
     struct vct_light lights[VCT_MAX_EMITTER_LIGHTS]; // of the frame's emitters, by groups
     int instances[VCT_MAX_EMITTER_LIGHTS];           // of these lights when they were sorted
     struct vct_emitter_group groups[VCT_MAX_SMALL_EMITTERS];
-    // Of each part of a group: the light nearest to its centroid, counted from the group's first.
+    // The light nearest to the centroid of each part of a group, counted from the group's first.
     int middles[VCT_MAX_SMALL_EMITTERS][VCT_EMITTER_POINTS];
     int count;                                             // of groups
     struct vct_small_emitter list[VCT_MAX_SMALL_EMITTERS]; // as shaders read them

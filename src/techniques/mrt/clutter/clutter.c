@@ -105,7 +105,7 @@ void mrt_clutter_finish(struct mrt_clutter *clutter)
     if (!host) return;
     struct mrt_part *const parts[2] = { &clutter->walls, &clutter->objects };
     for (int i = 0; i < 2; i++) {
-        // Of a part that was started: others are the scene's.
+        // A part that was not begun has the scene's own arrays.
         if (parts[i]->pose.scene != &parts[i]->scene) continue;
         host_free(host, parts[i]->scene.meshes);
         host_free(host, parts[i]->scene.instances);

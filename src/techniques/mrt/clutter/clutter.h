@@ -38,8 +38,7 @@ struct mrt_clutter {
     struct charts charts;           // of `objects`
     struct mrt_clutter_face *faces; // in the order of their blocks
     int face_count;
-    // Of both sides of the charts: of each block those of fronts, face after face, then its backs.
-    uint32_t *texels;
+    uint32_t *texels; // both sides, block after block: fronts, face after face, then backs
     struct mrt_chart_face *chart_faces; // chart after chart
     int *face_of_texel;                 // [charts.texel_count]
     uint32_t *first_chart_face;         // [charts.count + 1]

@@ -29,7 +29,7 @@ struct builder {
 
 // ---- blocks of texels
 
-// Of a texel outside of all blocks, the one whose middle is nearest.
+// The block of a point; outside all blocks, the one whose middle is nearest.
 static int block_of(const struct mrt_block_map *map, vec3s position)
 {
     vec3s cell;
@@ -143,7 +143,7 @@ static int number_faces(const struct builder *s, int max_faces)
 
 // ---- faces
 
-// Of mrt_clutter.texels: the backs of a block are those of a face after all others.
+// Sort key of mrt_clutter.texels: backs of a block follow all its faces.
 struct texel_order {
     int block, face;
     uint32_t texel;

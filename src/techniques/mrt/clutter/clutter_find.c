@@ -51,7 +51,7 @@ static float share_of_walls(const struct mrt_block *block, vec3s cell, vec3s nor
     return most;
 }
 
-// Points of a triangle: the middles of its parts when its edges are cut into so many.
+// Points of a triangle: centroids of CUTS² parts, its edges cut into CUTS.
 enum { CUTS = 4, POINTS = CUTS * CUTS };
 
 static vec3s point_of(const vec3s corner[3], int i)

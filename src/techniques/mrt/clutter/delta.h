@@ -21,7 +21,7 @@
 
 #include <stdatomic.h>
 
-// What clutter changes at the points of a block: texels of its walls, or probes.
+// Changes of the operators by clutter, at the points of a block: texels of its walls, or probes.
 struct mrt_delta {
     struct matrix_f32 b;     // points · values × k_b: ΔU_b ≤ 0 for light ≥ 0
     struct matrix_f32 c;     // points · values × faces of the block: ΔU_c

@@ -80,7 +80,7 @@ struct box3 mrt_clutter_bounds_in(const struct mrt_clutter *clutter, const struc
 
 // ---- keys
 
-// What rays see of a material.
+// Hashes the properties of a material that rays read.
 static struct hash128 add_material(struct hash128 key, const struct mrt_clutter *clutter,
                                    int instance)
 {

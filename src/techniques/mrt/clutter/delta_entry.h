@@ -1,5 +1,5 @@
-// What clutter beyond an opening changes of the light that enters a block there: walls that it
-// hides (ΔT_b→r), and its own light (T_c→r).
+// Changes of the light that enters a block by an opening, from clutter beyond it: walls that the
+// clutter occludes (ΔT_b→r), and its own light (T_c→r).
 //
 // r-coefficients are those of the irradiance E that the response U_r has at the walls of a closed
 // cube: U_r is orthonormal, so r = U_rᵀ E, with E by rays from these walls through the opening.

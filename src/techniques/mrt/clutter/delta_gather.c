@@ -34,7 +34,7 @@ static void add_wall(const struct job *job, int block, size_t face, float weight
     mrt_add_radiosity(hit, weight, job->input->l_imp[block], to);
 }
 
-// Where a ray ends that no clutter blocks.
+// The end of a ray that no clutter blocks.
 struct ray_end {
     int block; // −1: on no wall
     float distance;

@@ -46,7 +46,7 @@ static struct voxel voxel_of(const struct job *job, size_t i)
     return out;
 }
 
-// Of POINTS: the corners of a voxel and its middle, which may be in a gap between solids.
+// One of POINTS: the corners of a voxel and its middle, which may be in a gap between solids.
 static vec3s point_of(const struct job *job, const struct voxel *voxel, int point)
 {
     const float by = CORNER / (float)job->edge;

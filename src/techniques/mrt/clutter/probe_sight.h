@@ -1,16 +1,16 @@
-// Which probes the places of a block see past its clutter, for lookups between probes.
+// Visibility of probes from the places of a block past its clutter, for lookups between probes.
 //
 // A grid of voxels over the cell. A voxel has a bit for each of the eight probes around it, that of
 // the corner x + 2 y + 4 z: all of the voxel sees the probe. Its part in a solid does not count.
-// Where no probe is seen, the light of all of them is scaled by the share of directions without
-// clutter, in 1/255: none of it is left in a closed object.
+// If no probe is visible, the light of all eight is scaled by the share of directions without
+// clutter, in 1/255: it is 0 in a closed object.
 #pragma once
 
 #include "techniques/mrt/clutter/delta.h"
 
 enum {
     MRT_SIGHT_VOXELS = 16,
-    // Of a voxel; shaders have their own (mrt_shared.h).
+    // Bits of a voxel; shaders have their own (mrt_shared.h).
     MRT_VOXEL_PROBES = 0xff,
     MRT_VOXEL_OPEN = 8, // from this bit on
     MRT_VOXEL_SOLID = 1 << 16,

@@ -1,4 +1,4 @@
-// What the stages of a dictionary's bake share: sizes, the order of waves, and matrices of tensors.
+// Common parts of the stages of a dictionary's bake: sizes, order of waves, matrices of tensors.
 #pragma once
 
 #include "techniques/mrt/dictionary/dictionary.h"
@@ -46,7 +46,7 @@ struct mrt_shape_stage {
     int shape;
     enum mrt_measure measure;
 };
-// Of the plan. NULL: out of memory.
+// Argument of a stage, allocated in the plan. NULL: out of memory.
 const struct mrt_shape_stage *mrt_shape_stage(struct bake_plan *plan, int shape,
                                               enum mrt_measure measure);
 

@@ -22,7 +22,8 @@ mat3s cube_from_face(int face);
 // Coordinates on a face: s along u and t along v, both in [0, 1].
 vec3s cube_face_point(int face, float s, float t);
 
-// Where the ray leaves the cube. `from` is inside or on the surface, `direction` needs no length.
+// The point where a ray leaves the cube. `from` is inside or on the surface; `direction` has any
+// length.
 struct cube_exit {
     int face;
     float s, t;

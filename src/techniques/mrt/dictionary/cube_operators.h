@@ -13,8 +13,8 @@ struct mrt_cube_operators {
     struct matrix_f32 by_measure[3];
 };
 
-// Where row block i of a measure is taken: a texel, or a probe in x, then y, then z of the cell;
-// those of a tube are in left, up and along (tube_inside).
+// The point of row block i of a measure: a texel, or a probe in x, then y, then z of the cell;
+// probes of a tube are in left, up and along (tube_inside).
 struct mrt_point mrt_gather_point(const struct mrt_shape *shape, int probes,
                                   enum mrt_measure measure, int i);
 

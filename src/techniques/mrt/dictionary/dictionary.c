@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// What a read needs at each tensor.
+// Arguments of all reads of tensors.
 struct reader {
     struct host *host;
     const struct tensors *bake;

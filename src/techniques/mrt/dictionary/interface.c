@@ -105,14 +105,14 @@ static void add_lookup(const struct mrt_lightfield_lookup *look, struct sparse_r
         sparse_row_add(row, look->sample[k], look->weight[k]);
 }
 
-// What light passes between entry and exit.
+// The shape that light passes between entry and exit.
 static struct mrt_shape shape_of_turn(struct mrt_lightfield l, enum mrt_turn turn)
 {
     static const enum tube_bend bends[] = { TUBE_STRAIGHT, TUBE_LEFT, TUBE_RIGHT };
     return l.round ? mrt_tube(4, bends[turn]) : mrt_cube(1, 1u << CUBE_BACK);
 }
 
-// Where a ray leaves by the back, whose u is −x.
+// Looks up a ray that leaves by the back, whose u is −x.
 static void look_up_back(struct mrt_lightfield l, const struct mrt_hit *hit, vec3s along,
                          struct mrt_lightfield_lookup *out)
 {

@@ -379,8 +379,8 @@ static bool add_operators(struct bake_plan *plan, const struct mrt_bake_job *job
 
 // ---- the response of the block that light enters
 
-// Of a gather stage: the measure, the basis that it gathers (one for each shape that light enters,
-// below each other, or one for all), and points of a shape.
+// A gather stage: its measure, the basis that it gathers (one for each shape that light enters,
+// below each other, or one for all), and the points of a shape.
 struct response_stage {
     enum mrt_measure measure;
     const char *basis;

@@ -57,7 +57,7 @@ static void gather_all(struct job *job, size_t texels)
     parallel_for(texels, 64, gather, job);
 }
 
-// What light is traced onto.
+// Texels and probes that light is traced onto.
 struct level_points {
     const struct mrt_block_map *map;
     const struct mrt_atlas *atlas;

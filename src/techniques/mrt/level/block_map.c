@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-// Of the longest edge of the two faces.
+// Distance of corners that meet, over the longest edge of the two faces.
 static const float MEETING_TOLERANCE = 1e-3f;
 
 bool mrt_block_map_init(struct host *host, const char *what, size_t count,

@@ -46,7 +46,7 @@ static int list_connections(const struct mrt_block_map *map, struct connection *
         for (int e = 0; e < 2; e++) {
             int other = block->neighbor[ends[e]].block;
             if (other < 0) continue;
-            // Of two cylinders the first lists the connection.
+            // The first of two cylinders lists their connection.
             if (other < b && map->blocks[other].kind != MRT_BLOCK_CUBE) continue;
             out[count++] = (struct connection){ b, e, other };
         }

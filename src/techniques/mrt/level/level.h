@@ -67,7 +67,7 @@ static inline const struct mrt_retraced *mrt_level_retraced(const struct mrt_lev
 
 // ---- paths.c
 
-// What one block sends: for each entry that its light reaches a matrix, k_r × k_b.
+// Light that one block sends: a matrix k_r × k_b for each entry that it reaches.
 struct mrt_sent {
     struct host *host;
     int *entry; // ascending

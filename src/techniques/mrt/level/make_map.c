@@ -206,7 +206,7 @@ static bool any_free(const struct mrt_cells *cells)
     return false;
 }
 
-// Where no seed is in a room, the default camera is the seed.
+// The default camera is the seed if no other is inside a room.
 static bool fill(struct host *host, const struct scene_pose *pose, const vec3s *seeds, size_t count,
                  struct mrt_cells *cells)
 {

@@ -1,4 +1,4 @@
-// Where the probes of a level are.
+// Positions of the probes of a level.
 #include "probes.h"
 
 #include "techniques/mrt/level/wall.h"

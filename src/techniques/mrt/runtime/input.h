@@ -1,5 +1,5 @@
-// What the run time needs of a level: its blocks, its light map, its geometry image and the
-// operators of the dictionary, in the frames of the blocks.
+// A level as input of the run time: its blocks, its light map, its geometry image and the operators
+// of the dictionary, in the frames of the blocks.
 #pragma once
 
 #include "core/linalg.h"

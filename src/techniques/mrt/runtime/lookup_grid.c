@@ -5,7 +5,8 @@
 
 #include <math.h>
 
-// Of the bounds: surfaces outside still belong to the nearest block (MRT_BEYOND in locate.glsl).
+// Margin of a block over its bounds: surfaces outside still belong to the nearest block (MRT_BEYOND
+// in locate.glsl).
 static const float MARGIN = 1.0f;
 static const float OFFSET = 0.01f; // of the shortest edge: lookups along the normal
 

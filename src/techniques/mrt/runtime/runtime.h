@@ -109,7 +109,7 @@ bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gp
 bool mrt_runtime_plan(struct mrt_runtime *out, struct mrt_plan *plan,
                       const struct mrt_runtime_input *input,
                       const struct mrt_runtime_options *options);
-// Of a scene without blocks: a dark probe volume, where it is published.
+// A runtime without blocks: a black probe volume, if volumes are published.
 bool mrt_runtime_init_empty(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
                             const struct mrt_runtime_options *options);
 void mrt_runtime_finish(struct mrt_runtime *runtime); // accepts zero and half-built

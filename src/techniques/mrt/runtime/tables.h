@@ -6,7 +6,7 @@
 // Uploads texels, tiles, blocks, openings, pairs and borders into new buffers; fills
 // runtime->level but for the lookup grid.
 bool mrt_tables_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
-// Of an opening's coefficients.
+// Quads of an opening's coefficients.
 uint32_t mrt_used_quads(const struct mrt_runtime_input *input, int opening);
 // A face of clutter that sends light to an opening.
 struct mrt_sender {

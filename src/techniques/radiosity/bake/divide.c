@@ -27,7 +27,7 @@ static bool see_each_other(const struct radiosity_scene *scene, struct spot a, s
     return height == 0.0f || !trace_occluded(scene->trace, from, glms_vec3_sub(to, from), 1.0f);
 }
 
-// The first texel of a cluster that is not inside of something; without one the first.
+// The first texel of a cluster outside geometry; without one the first.
 static uint32_t first_open(const struct radiosity_scene *scene, uint32_t cluster)
 {
     const struct radiosity_map *map = &scene->map;

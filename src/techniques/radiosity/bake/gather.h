@@ -7,7 +7,7 @@
 #include "techniques/radiosity/radiosity_map.h"
 #include "scene/statics.h"
 
-// What all tasks share. radiosity_scene_finish accepts zero.
+// Scene data that all tasks share. radiosity_scene_finish accepts zero.
 struct radiosity_scene {
     struct host *host;
     struct scene_statics statics;

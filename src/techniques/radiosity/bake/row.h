@@ -8,7 +8,7 @@ struct radiosity_entry {
     struct radiosity_factor factor; // `along` per weight
 };
 
-// What a task needs to make rows. radiosity_rows_finish accepts zero.
+// Scratch memory of a task that makes rows. radiosity_rows_finish accepts zero.
 struct radiosity_rows {
     struct host *host;
     const struct radiosity_tree *tree;

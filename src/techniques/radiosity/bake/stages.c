@@ -311,8 +311,8 @@ static bool add_clusters(struct bake_plan *plan, const struct job *job, uint64_t
                                     .scratch_bytes = scratch_size(clusters) });
 }
 
-// Of the map and of what a trace scene has for each triangle: its hierarchy (Embree's quads take
-// about 120 bytes for each), corners and facets.
+// Bytes of the map and of a trace scene: the hierarchy (Embree's quads take about 120 bytes for
+// each triangle), corners and facets.
 static size_t prepared_bytes(const struct radiosity_map *map)
 {
     enum { TRACE_TRIANGLE = 240 };

@@ -8,7 +8,7 @@
 struct frame_probes radiosity_probe_grid(const struct radiosity_map *map,
                                          const struct radiosity_options *options);
 
-// At most so many, about, without probe_spacing.
+// Approximate maximum of probes without probe_spacing.
 static inline uint64_t radiosity_probes_most(const struct radiosity_options *options)
 {
     enum { TEXELS_PER_PROBE = 32 };

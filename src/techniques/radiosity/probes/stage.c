@@ -16,7 +16,7 @@ enum { SH = 9, DEPTHS = PROBE_DEPTHS };
 
 struct probe {
     vec3s position;       // moved out of geometry, within its cell
-    float valid;          // 1; 0: all of the cell is inside of something
+    float valid;          // 1; 0: all of the cell is inside geometry
     float sky[SH];        // irradiance of a sky of radiance 1, Σ c_i Y_i
     float emitted[SH][3]; // of emissive surfaces, lux
     uint16_t depth[PROBE_DEPTHS][2];

@@ -117,7 +117,7 @@ float total(vec3 v)
     return v.r + v.g + v.b;
 }
 
-// Of the noise of two frames of one rotation: see (1) of cones/temporal.c.
+// Correlation of the noise of two frames of one rotation: see (1) of cones/temporal.c.
 float correlation(vec3 before, vec3 after)
 {
     float most = total(max(before, after));

@@ -4,7 +4,7 @@
 #include "frame/frame.h"
 #include "techniques/vct/lighting/lighting_shared.h"
 
-// What else the light that emitters and the sky cast on voxels depends on.
+// Inputs of the light that emitters and the sky cast on voxels, besides the voxels.
 struct vct_bounce_inputs {
     uint64_t environment; // frame_view.environment_key
     double radiance_scale;

@@ -1,11 +1,11 @@
-// What the shaders of bounced light share with the host. Scalar layout.
+// Data that the shaders of bounced light share with the host. Scalar layout.
 #ifndef AG_VCT_LIGHTING_SHARED_H
 #define AG_VCT_LIGHTING_SHARED_H
 
 #include "core/shared.h"
 
-// While light changes in every frame, about so many parts of static voxels gather in each: blocks
-// take turns.
+// Parts of static voxels that gather in each frame while light changes, approximately: blocks take
+// turns.
 #define VCT_PARTS_OF_TURN 2048
 #define VCT_PARTS_EACH    8 // that an invocation examines then
 

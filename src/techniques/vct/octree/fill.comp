@@ -36,7 +36,7 @@ void main()
     if (i >= levels[push.depth].count || texel >= 27u) return;
     uint brick = levels[push.depth].first + i;
     ivec3 point = ivec3(texel % 3u, texel / 3u % 3u, texel / 9u);
-    // Of the four voxels across a leaf the points cover the first, the middle two and the last.
+    // The points cover the first, the middle two and the last of the four voxels across a leaf.
     ivec3 from = 4 * svo_unpack(brick_coords[brick]) + point + (point >> 1);
     ivec3 size = min(1 + (point & 1), vct_cells() - from);
     vec4 sum[6] = vec4[6](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));

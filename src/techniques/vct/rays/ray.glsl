@@ -201,8 +201,8 @@ vec3 vct_ray_light(uint face, uint place)
     return lit.reflected + vct_emitted(lit.emitted, false);
 }
 
-// What a ray has met. The radiance of the last face is looked up when it is the last one, or when
-// there is another behind it: most rays end at the first.
+// Accumulated light and opacity of a ray. The radiance of the last face is looked up at the end of
+// the ray, or when another face is behind it: most rays end at the first.
 struct vct_ray_sum {
     vec3 light; // premultiplied; occlusion: attenuated
     float opacity;

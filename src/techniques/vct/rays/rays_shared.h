@@ -1,4 +1,4 @@
-// What the shaders of rays share with the host.
+// Data that the shaders of rays share with the host.
 #ifndef AG_VCT_RAYS_SHARED_H
 #define AG_VCT_RAYS_SHARED_H
 

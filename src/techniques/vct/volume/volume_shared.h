@@ -1,4 +1,4 @@
-// What the shaders of the light volume share with the host. Scalar layout.
+// Data that the shaders of the light volume share with the host. Scalar layout.
 #ifndef AG_VCT_VOLUME_SHARED_H
 #define AG_VCT_VOLUME_SHARED_H
 

@@ -74,7 +74,7 @@ void vct_begin_material(vct_triangle t)
     emissive_coords.lod = voxel_lod(emissive_map, emissive_coords, size);
 }
 
-// Where a triangle is nearest to a voxel's centre.
+// The point of a triangle nearest to a voxel's centre.
 struct vct_surface_point {
     vec3 position;    // from the voxel's centre, in voxels
     float opacity;    // 0 or 1

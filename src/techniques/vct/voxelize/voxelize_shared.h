@@ -1,4 +1,4 @@
-// What the shaders of voxelization share with the host. Scalar layout.
+// Data that the shaders of voxelization share with the host. Scalar layout.
 #ifndef AG_VCT_VOXELIZE_SHARED_H
 #define AG_VCT_VOXELIZE_SHARED_H
 

@@ -75,7 +75,7 @@ void main()
     for (int i = 0; i < 3; i++) partial_sums[i][lane] = sum[i];
     barrier();
     if (lane >= 3u * quads) return;
-    // Of the quad that this invocation writes: its colour is `stripe`.
+    // The quad that this invocation writes; its colour is `stripe`.
     uint at = stripe * QUADS_R + quad, own = uint(max(clutter, 0)) * 3u * QUADS_R + at;
     vec4 arrived = sum_of_stripes(stripe, quad, quads);
     r_table[opening * 3u * QUADS_R + at] = clutter >= 0 ? radiosity_of_quad(own) : arrived;

@@ -38,7 +38,7 @@ static void fill_tiles(const struct mrt_runtime_input *input, void *items)
     }
 }
 
-// Of an opening, up to the last coefficient that lights the clutter.
+// Quads of an opening up to the last coefficient that lights the clutter.
 static uint32_t quads_of(const struct matrix_f32 *u_r)
 {
     size_t used = 0;
@@ -48,7 +48,7 @@ static uint32_t quads_of(const struct matrix_f32 *u_r)
     return (uint32_t)(used + 3) / 4;
 }
 
-// Of blocks without clutter no tile reads them.
+// Openings of blocks without clutter stay empty: no tile reads them.
 static void fill_openings(const struct mrt_runtime_input *input, void *items)
 {
     const struct mrt_clutter_atlas_input *map = &input->clutter->map;
@@ -64,7 +64,7 @@ static void fill_openings(const struct mrt_runtime_input *input, void *items)
     }
 }
 
-// Where the light of a texel of the clutter is.
+// Index of the light of a texel of clutter.
 static uint32_t light_of(const struct mrt_clutter_atlas_input *map, uint32_t texel)
 {
     uint32_t first = 0;
