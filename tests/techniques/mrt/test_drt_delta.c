@@ -9,7 +9,7 @@
 #include "techniques/mrt/dictionary/cube_operators.h"
 #include "techniques/mrt/dictionary/gather.h"
 #include "techniques/mrt/clutter/cell_ray.h"
-#include "techniques/mrt/clutter/clutter_map.h"
+#include "techniques/mrt/clutter/clutter_transfer.h"
 #include "techniques/mrt/clutter/delta_cache.h"
 
 #include <math.h>
@@ -314,7 +314,8 @@ TEST(faces_receive_the_light_of_walls)
 }
 
 // The irradiance that a texel of the light map has at a normal, of mode `mode`.
-static double map_light(const struct mrt_clutter_map *map, size_t texel, int mode, vec3s normal)
+static double map_light(const struct mrt_clutter_transfer *map, size_t texel, int mode,
+                        vec3s normal)
 {
     float basis[4];
     double sum = 0.0;
@@ -328,14 +329,15 @@ TEST(the_light_map_of_clutter_has_the_light_of_rays)
 {
     struct room room;
     struct raycast rays;
-    struct mrt_clutter_map map;
+    struct mrt_clutter_transfer map;
     double worst = 0.0, tilted = 0.0;
     room_init(&room, WITH_BOX);
     room_trace(&room);
     CHECK(raycast_init(&rays, test_host(), &room.pose));
-    const struct mrt_clutter_map_input input = { &room.map,    &room.l_imp, TEXELS, &room.clutter,
-                                                 room.objects, RAYS,        NULL };
-    CHECK(mrt_clutter_map_init(&map, test_host(), &input, 0));
+    const struct mrt_clutter_transfer_input input = { &room.map,     &room.l_imp,  TEXELS,
+                                                      &room.clutter, room.objects, RAYS,
+                                                      NULL };
+    CHECK(mrt_clutter_transfer_init(&map, test_host(), &input, 0));
     CHECK(map.texel_count == room.clutter.charts.texel_count);
     for (size_t i = 0; i < map.texel_count; i += 7) {
         const uint32_t texel = room.clutter.texels[i];
@@ -354,7 +356,7 @@ TEST(the_light_map_of_clutter_has_the_light_of_rays)
     print_message("at most %.3f of the light from rays, %.3f at 45 degrees\n", worst, tilted);
     CHECK(worst < 0.03);
     CHECK(tilted < 0.1);
-    mrt_clutter_map_finish(&map);
+    mrt_clutter_transfer_finish(&map);
     raycast_finish(&rays);
     room_finish(&room);
 }

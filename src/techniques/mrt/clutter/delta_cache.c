@@ -24,10 +24,10 @@ static void forget_gathered(struct mrt_kept_block *kept)
     kept->has_gathered = false;
 }
 
-static void forget_map(struct mrt_kept_block *kept)
+static void forget_transfer(struct mrt_kept_block *kept)
 {
-    mrt_clutter_map_finish(&kept->map);
-    kept->has_map = false;
+    mrt_clutter_transfer_finish(&kept->transfer);
+    kept->has_transfer = false;
 }
 
 void mrt_delta_cache_finish(struct mrt_delta_cache *cache)
@@ -36,7 +36,7 @@ void mrt_delta_cache_finish(struct mrt_delta_cache *cache)
     for (int b = 0; cache->blocks && b < cache->count; b++) {
         forget_delta(&cache->blocks[b]);
         forget_gathered(&cache->blocks[b]);
-        forget_map(&cache->blocks[b]);
+        forget_transfer(&cache->blocks[b]);
     }
     for (int i = 0; cache->entries && i < cache->count * CUBE_FACES; i++)
         mrt_delta_entry_finish(&cache->entries[i].entry);
@@ -182,7 +182,7 @@ static struct hash128 entry_key(const struct mrt_delta_entry_input *input, const
 }
 
 // Rays of texels end in their block, but may begin beyond it.
-static struct hash128 map_key(const struct mrt_clutter_map_input *input, int block)
+static struct hash128 transfer_key(const struct mrt_clutter_transfer_input *input, int block)
 {
     struct box3 box = bounds_of_block(&input->map->blocks[block]);
     int first;
@@ -226,22 +226,23 @@ const struct mrt_gather_faces *mrt_kept_gather(struct mrt_delta_cache *cache,
     return &kept->gathered;
 }
 
-const struct mrt_clutter_map *mrt_kept_map(struct mrt_delta_cache *cache,
-                                           const struct mrt_clutter_map_input *input, int block)
+const struct mrt_clutter_transfer *mrt_kept_transfer(struct mrt_delta_cache *cache,
+                                                     const struct mrt_clutter_transfer_input *input,
+                                                     int block)
 {
     struct mrt_kept_block *kept = &cache->blocks[block];
-    const struct hash128 key = map_key(input, block);
+    const struct hash128 key = transfer_key(input, block);
     int first;
     const int faces = mrt_faces_of_block(input->clutter, block, &first);
-    if (kept->has_map && hash128_same(kept->map_key, key)) {
-        kept->map.first_texel = faces > 0 ? input->clutter->faces[first].first_texel : 0;
-        return &kept->map;
+    if (kept->has_transfer && hash128_same(kept->transfer_key, key)) {
+        kept->transfer.first_texel = faces > 0 ? input->clutter->faces[first].first_texel : 0;
+        return &kept->transfer;
     }
-    forget_map(kept);
-    if (!mrt_clutter_map_init(&kept->map, cache->host, input, block)) return NULL;
-    kept->map_key = key;
-    kept->has_map = true;
-    return &kept->map;
+    forget_transfer(kept);
+    if (!mrt_clutter_transfer_init(&kept->transfer, cache->host, input, block)) return NULL;
+    kept->transfer_key = key;
+    kept->has_transfer = true;
+    return &kept->transfer;
 }
 
 const struct mrt_delta_entry *mrt_kept_entry(struct mrt_delta_cache *cache,

@@ -4,16 +4,16 @@
 
 #include "core/hash.h"
 
-#include "techniques/mrt/clutter/clutter_map.h"
+#include "techniques/mrt/clutter/clutter_transfer.h"
 #include "techniques/mrt/clutter/delta_entry.h"
 #include "techniques/mrt/clutter/delta_gather.h"
 
 struct mrt_kept_block {
-    bool has_delta, has_gathered, has_map;
-    struct hash128 delta_key, gathered_key, map_key;
+    bool has_delta, has_gathered, has_transfer;
+    struct hash128 delta_key, gathered_key, transfer_key;
     struct mrt_delta_block delta;
     struct mrt_gather_faces gathered;
-    struct mrt_clutter_map map;
+    struct mrt_clutter_transfer transfer;
 };
 
 struct mrt_kept_entry {
@@ -27,7 +27,7 @@ struct mrt_delta_cache {
     struct mrt_kept_block *blocks;
     struct mrt_kept_entry *entries; // [blocks][faces of the cube]
     int count;
-    int traced; // blocks whose operators were not those of the last time
+    int traced; // blocks whose operators changed in the last update
 };
 
 // mrt_delta_cache_finish accepts zero.
@@ -41,8 +41,9 @@ const struct mrt_delta_block *mrt_kept_delta(struct mrt_delta_cache *cache,
 const struct mrt_gather_faces *mrt_kept_gather(struct mrt_delta_cache *cache,
                                                const struct mrt_gather_input *input, int block);
 
-const struct mrt_clutter_map *mrt_kept_map(struct mrt_delta_cache *cache,
-                                           const struct mrt_clutter_map_input *input, int block);
+const struct mrt_clutter_transfer *mrt_kept_transfer(struct mrt_delta_cache *cache,
+                                                     const struct mrt_clutter_transfer_input *input,
+                                                     int block);
 
 const struct mrt_delta_entry *mrt_kept_entry(struct mrt_delta_cache *cache,
                                              const struct mrt_delta_entry_input *input);

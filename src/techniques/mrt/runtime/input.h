@@ -49,7 +49,7 @@ struct mrt_clutter_face_input {
     vec3s albedo;                 // mean
 };
 
-// Light of a block at the texels of its clutter, four values each (clutter/clutter_map.h).
+// Light of a block at the texels of its clutter, four values each (clutter/clutter_transfer.h).
 struct mrt_clutter_rows_input {
     int block, first_texel, texel_count;   // in mrt_clutter_input.texels
     struct matrix_f32 u_b;                 // texel_count · 4 × k_b

@@ -363,16 +363,16 @@ static bool add_clutter(struct builder *s, int block, const struct mrt_delta_blo
     return ok;
 }
 
-static bool add_map(struct builder *s, int block, int first_opening)
+static bool add_transfer(struct builder *s, int block, int first_opening)
 {
     const struct mrt_runtime_input *input = &s->out->input;
-    const struct mrt_clutter_map_input how = { .map = s->level->map,
-                                               .l_imp = s->l_imp[block],
-                                               .resolution = s->level->resolution,
-                                               .clutter = s->clutter,
-                                               .objects = s->objects,
-                                               .rays = s->options->rays,
-                                               .stop = s->options->stop };
+    const struct mrt_clutter_transfer_input how = { .map = s->level->map,
+                                                    .l_imp = s->l_imp[block],
+                                                    .resolution = s->level->resolution,
+                                                    .clutter = s->clutter,
+                                                    .objects = s->objects,
+                                                    .rays = s->options->rays,
+                                                    .stop = s->options->stop };
     return mrt_mapped_add(&s->out->mapped, s->turned, s->cache, &how, block,
                           s->out->openings + first_opening, input->opening_count - first_opening);
 }
@@ -417,7 +417,8 @@ static bool add_block(struct builder *s, int block, const struct mrt_clutter_tex
     ok = ok && add_openings(s, block, delta);
     if (ok && delta->face_count > 0 && s->options->reflection)
         ok = add_clutter(s, block, delta, texels);
-    if (ok && delta->face_count > 0 && s->options->gather) ok = add_map(s, block, first_opening);
+    if (ok && delta->face_count > 0 && s->options->gather)
+        ok = add_transfer(s, block, first_opening);
     return ok;
 }
 

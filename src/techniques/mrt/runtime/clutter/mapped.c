@@ -11,8 +11,9 @@ bool mrt_mapped_init(struct mrt_mapped *out, struct host *host, int blocks)
 }
 
 static bool add_openings(struct host *host, struct mrt_clutter_rows_input *rows,
-                         const struct mrt_turned *turned, const struct mrt_clutter_map *map,
-                         const struct mrt_clutter_map_input *input,
+                         const struct mrt_turned *turned,
+                         const struct mrt_clutter_transfer *transfer,
+                         const struct mrt_clutter_transfer_input *input,
                          const struct mrt_opening_input *openings, int opening_count)
 {
     bool ok = true;
@@ -20,40 +21,41 @@ static bool add_openings(struct host *host, struct mrt_clutter_rows_input *rows,
         const int face = openings[i].face;
         if (face < 0) {
             // Faces are the first columns.
-            ok = matrix_f32_copy(host, &map->c, (size_t)turned->input.k_r, &rows->u_r[i]);
+            ok = matrix_f32_copy(host, &transfer->c, (size_t)turned->input.k_r, &rows->u_r[i]);
             continue;
         }
         const struct mrt_response_input *response =
             &turned->responses[mrt_response_of(&input->map->blocks[rows->block], face)];
-        ok = mrt_clutter_map_response(map, host, input, face, &response->u[MRT_PROBE],
-                                      turned->input.probes, &rows->u_r[i]);
+        ok = mrt_clutter_transfer_response(transfer, host, input, face, &response->u[MRT_PROBE],
+                                           turned->input.probes, &rows->u_r[i]);
     }
     return ok;
 }
 
-static bool keep_inside(struct mrt_mapped *out, const struct mrt_clutter_map *map,
+static bool keep_inside(struct mrt_mapped *out, const struct mrt_clutter_transfer *transfer,
                         const struct charts *charts)
 {
     if (!out->inside)
         out->inside = host_alloc(out->host, charts->side_texel_count, sizeof *out->inside);
     if (out->inside)
-        memcpy(out->inside + map->first_texel, map->inside, map->texel_count * sizeof *map->inside);
+        memcpy(out->inside + transfer->first_texel, transfer->inside,
+               transfer->texel_count * sizeof *transfer->inside);
     return out->inside;
 }
 
 bool mrt_mapped_add(struct mrt_mapped *out, const struct mrt_turned *turned,
-                    struct mrt_delta_cache *cache, const struct mrt_clutter_map_input *input,
+                    struct mrt_delta_cache *cache, const struct mrt_clutter_transfer_input *input,
                     int block, const struct mrt_opening_input *openings, int opening_count)
 {
-    const struct mrt_clutter_map *map = mrt_kept_map(cache, input, block);
-    if (!map) return false;
+    const struct mrt_clutter_transfer *transfer = mrt_kept_transfer(cache, input, block);
+    if (!transfer) return false;
     struct mrt_clutter_rows_input *rows = &out->rows[out->input.count++];
     *rows = (struct mrt_clutter_rows_input){ .block = block,
-                                             .first_texel = (int)map->first_texel,
-                                             .texel_count = (int)map->texel_count };
-    return matrix_f32_copy(out->host, &map->b, map->b.columns, &rows->u_b) &&
-           keep_inside(out, map, &input->clutter->charts) &&
-           add_openings(out->host, rows, turned, map, input, openings, opening_count);
+                                             .first_texel = (int)transfer->first_texel,
+                                             .texel_count = (int)transfer->texel_count };
+    return matrix_f32_copy(out->host, &transfer->b, transfer->b.columns, &rows->u_b) &&
+           keep_inside(out, transfer, &input->clutter->charts) &&
+           add_openings(out->host, rows, turned, transfer, input, openings, opening_count);
 }
 
 // ---- the atlas

@@ -1,4 +1,4 @@
-// Operators of the light map of clutter (clutter/clutter_map.h), and the map's atlas.
+// Operators of the light map of clutter (clutter/clutter_transfer.h), and the map's atlas.
 #pragma once
 
 #include "techniques/mrt/clutter/delta_cache.h"
@@ -16,7 +16,7 @@ struct mrt_mapped {
 bool mrt_mapped_init(struct mrt_mapped *out, struct host *host, int blocks);
 // Light at the clutter of a block with faces. openings: those of the block in the run time's input.
 bool mrt_mapped_add(struct mrt_mapped *out, const struct mrt_turned *turned,
-                    struct mrt_delta_cache *cache, const struct mrt_clutter_map_input *input,
+                    struct mrt_delta_cache *cache, const struct mrt_clutter_transfer_input *input,
                     int block, const struct mrt_opening_input *openings, int opening_count);
 // After all blocks: sources of the atlas. Texels inside objects have that of the nearest other one
 // of their chart.

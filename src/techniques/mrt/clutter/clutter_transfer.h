@@ -1,4 +1,5 @@
-// Light on the texels of a block's clutter (Loos 2015, section 5.3.3: C_b), for a light map of it.
+// Transfer of light to the texels of a block's clutter (Loos 2015, section 5.3.3: C_b), for the
+// light map of clutter.
 //
 // A texel has four values: the linear SH of irradiance by normal, in the world's frame, that fit
 // the hemisphere around the surface's normal as OHLSH do (appendix B), and at that normal are the
@@ -14,7 +15,7 @@
 
 #include <stdatomic.h>
 
-struct mrt_clutter_map {
+struct mrt_clutter_transfer {
     struct host *host;
     int block;
     uint32_t first_texel; // in clutter->texels
@@ -25,7 +26,7 @@ struct mrt_clutter_map {
     bool *inside;            // of each texel: it is inside another object
 };
 
-struct mrt_clutter_map_input {
+struct mrt_clutter_transfer_input {
     const struct mrt_block_map *map;
     const struct matrix_f32 *l_imp; // of the block, in its frame
     int resolution;                 // of walls
@@ -36,13 +37,13 @@ struct mrt_clutter_map_input {
 };
 
 // The same bits for any number of threads. A block without faces has no texels.
-// mrt_clutter_map_finish accepts zero.
-bool mrt_clutter_map_init(struct mrt_clutter_map *out, struct host *host,
-                          const struct mrt_clutter_map_input *input, int block);
-void mrt_clutter_map_finish(struct mrt_clutter_map *map);
+// mrt_clutter_transfer_finish accepts zero.
+bool mrt_clutter_transfer_init(struct mrt_clutter_transfer *out, struct host *host,
+                               const struct mrt_clutter_transfer_input *input, int block);
+void mrt_clutter_transfer_finish(struct mrt_clutter_transfer *transfer);
 
 // Light of an opening at the texels, texels · 4 × k_r, from that of its probes: p³ · 9 × k_r in
 // the frame of the cell.
-bool mrt_clutter_map_response(const struct mrt_clutter_map *map, struct host *host,
-                              const struct mrt_clutter_map_input *input, int face,
-                              const struct matrix_f32 *probes, int p, struct matrix_f32 *out);
+bool mrt_clutter_transfer_response(const struct mrt_clutter_transfer *transfer, struct host *host,
+                                   const struct mrt_clutter_transfer_input *input, int face,
+                                   const struct matrix_f32 *probes, int p, struct matrix_f32 *out);

@@ -1,5 +1,5 @@
 // Rays from the texels of clutter through the cell of their block.
-#include "techniques/mrt/clutter/clutter_map.h"
+#include "techniques/mrt/clutter/clutter_transfer.h"
 
 #include "techniques/mrt/clutter/cell_ray.h"
 #include "techniques/mrt/clutter/delta.h"
@@ -18,8 +18,8 @@ enum { VALUES = MRT_VECTOR_COEFFICIENTS };
 static const float Y0 = 0.28209479f, Y1 = 0.48860251f, Y2 = 0.63078313f; // at the pole, by band
 
 struct job {
-    const struct mrt_clutter_map_input *input;
-    struct mrt_clutter_map *out;
+    const struct mrt_clutter_transfer_input *input;
+    struct mrt_clutter_transfer *out;
     int first_face;
     struct mrt_rays rays;
 };
@@ -76,7 +76,7 @@ static void add_face(struct texel_job *t, const float weight[VALUES], const stru
 
 static void follow(struct texel_job *t, int r)
 {
-    const struct mrt_clutter_map_input *input = t->job->input;
+    const struct mrt_clutter_transfer_input *input = t->job->input;
     const vec3s local = t->job->rays.direction[r], way = glms_mat3_mulv(t->frame, local);
     const float cosine = 2.0f * local.z / (float)t->job->rays.count; // of uniform rays
     float weight[VALUES];
@@ -100,10 +100,10 @@ static void follow(struct texel_job *t, int r)
         add_wall(t, weight, &wall);
 }
 
-static uint32_t own_texel(const struct mrt_clutter_map_input *input,
-                          const struct mrt_clutter_map *map, size_t i)
+static uint32_t own_texel(const struct mrt_clutter_transfer_input *input,
+                          const struct mrt_clutter_transfer *transfer, size_t i)
 {
-    return input->clutter->texels[map->first_texel + i];
+    return input->clutter->texels[transfer->first_texel + i];
 }
 
 static void trace_texel(void *user, size_t i)
@@ -125,12 +125,12 @@ static void trace_texel(void *user, size_t i)
         job->out->kept[f][i] = t.all[f] > 0.0f ? t.kept[f] / t.all[f] : 0.0f;
 }
 
-bool mrt_clutter_map_init(struct mrt_clutter_map *out, struct host *host,
-                          const struct mrt_clutter_map_input *input, int block)
+bool mrt_clutter_transfer_init(struct mrt_clutter_transfer *out, struct host *host,
+                               const struct mrt_clutter_transfer_input *input, int block)
 {
     struct job job = { .input = input, .out = out };
     const int faces = mrt_faces_of_block(input->clutter, block, &job.first_face);
-    *out = (struct mrt_clutter_map){ .host = host, .block = block };
+    *out = (struct mrt_clutter_transfer){ .host = host, .block = block };
     if (faces > 0) {
         const struct mrt_clutter *clutter = input->clutter;
         const struct mrt_clutter_face *first = &clutter->faces[job.first_face],
@@ -153,18 +153,18 @@ bool mrt_clutter_map_init(struct mrt_clutter_map *out, struct host *host,
     if (ok) parallel_for(out->texel_count, 4, trace_texel, &job);
     ok = ok && !mrt_is_stopped(input->stop);
     mrt_rays_finish(host, &job.rays);
-    if (!ok) mrt_clutter_map_finish(out);
+    if (!ok) mrt_clutter_transfer_finish(out);
     return ok;
 }
 
-void mrt_clutter_map_finish(struct mrt_clutter_map *map)
+void mrt_clutter_transfer_finish(struct mrt_clutter_transfer *transfer)
 {
-    if (!map->host) return;
-    matrix_f32_finish(map->host, &map->b);
-    matrix_f32_finish(map->host, &map->c);
-    for (int f = 0; f < CUBE_FACES; f++) host_free(map->host, map->kept[f]);
-    host_free(map->host, map->inside);
-    *map = (struct mrt_clutter_map){ 0 };
+    if (!transfer->host) return;
+    matrix_f32_finish(transfer->host, &transfer->b);
+    matrix_f32_finish(transfer->host, &transfer->c);
+    for (int f = 0; f < CUBE_FACES; f++) host_free(transfer->host, transfer->kept[f]);
+    host_free(transfer->host, transfer->inside);
+    *transfer = (struct mrt_clutter_transfer){ 0 };
 }
 
 // ---- light of openings
@@ -195,8 +195,8 @@ static void probes_around(int p, vec3s cell, int index[CORNERS], float weight[CO
 }
 
 struct response_job {
-    const struct mrt_clutter_map_input *input;
-    const struct mrt_clutter_map *map;
+    const struct mrt_clutter_transfer_input *input;
+    const struct mrt_clutter_transfer *transfer;
     const struct matrix_f32 *probes;
     const float *kept;
     int p;
@@ -229,13 +229,13 @@ static void respond(void *user, size_t i)
 {
     const struct response_job *job = user;
     const struct charts *charts = &job->input->clutter->charts;
-    const uint32_t texel = own_texel(job->input, job->map, i);
+    const uint32_t texel = own_texel(job->input, job->transfer, i);
     const mat3s frame = mrt_frame_of_normal(chart_texel_normal(charts, texel));
     const mat3s local_from_cell = glms_mat3_mul(glms_mat3_transpose(frame), job->world_from_cell);
     int index[CORNERS];
     float weight[CORNERS];
     struct mrt_cell_ray at;
-    if (!mrt_cell_ray_enter(job->input->map, job->map->block,
+    if (!mrt_cell_ray_enter(job->input->map, job->transfer->block,
                             chart_texel_of(charts, texel)->position, frame.col[2], &at))
         return;
     probes_around(job->p, at.position, index, weight);
@@ -249,20 +249,20 @@ static void respond(void *user, size_t i)
     }
 }
 
-bool mrt_clutter_map_response(const struct mrt_clutter_map *map, struct host *host,
-                              const struct mrt_clutter_map_input *input, int face,
-                              const struct matrix_f32 *probes, int p, struct matrix_f32 *out)
+bool mrt_clutter_transfer_response(const struct mrt_clutter_transfer *transfer, struct host *host,
+                                   const struct mrt_clutter_transfer_input *input, int face,
+                                   const struct matrix_f32 *probes, int p, struct matrix_f32 *out)
 {
     const struct response_job job = {
         .input = input,
-        .map = map,
+        .transfer = transfer,
         .probes = probes,
-        .kept = map->kept[face],
+        .kept = transfer->kept[face],
         .p = p,
-        .world_from_cell = mrt_block_rotation(&input->map->blocks[map->block]),
+        .world_from_cell = mrt_block_rotation(&input->map->blocks[transfer->block]),
         .out = out,
     };
-    if (!matrix_f32_init(host, out, map->texel_count * VALUES, probes->columns)) return false;
-    if (probes->rows > 0) parallel_for(map->texel_count, 16, respond, (void *)&job);
+    if (!matrix_f32_init(host, out, transfer->texel_count * VALUES, probes->columns)) return false;
+    if (probes->rows > 0) parallel_for(transfer->texel_count, 16, respond, (void *)&job);
     return true;
 }
