@@ -79,7 +79,7 @@ struct mrt_clutter_input {
     int opening_count;
     const struct mrt_face_pair_input *pairs; // in the order of their openings
     int pair_count;
-    struct mrt_clutter_atlas_input map;
+    struct mrt_clutter_atlas_input atlas;
 };
 
 struct mrt_runtime_input {

@@ -210,22 +210,22 @@ static void pack_padded(struct words *w, const struct matrix_f32 *m, size_t rows
 static bool upload_clutter_map(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
                                const struct mrt_scales *scales)
 {
-    const struct mrt_clutter_atlas_input *map = &input->clutter->map;
+    const struct mrt_clutter_atlas_input *atlas = &input->clutter->atlas;
     struct mrt_runtime_clutter_map *to = &runtime->clutter.map;
     struct words b, r;
     size_t rows_b = 0, rows_r = 0;
-    for (int i = 0; i < map->count; i++) {
-        rows_b += rows_of_map(&map->rows[i]);
-        for (int k = 0; k <= CUBE_FACES && map->rows[i].u_r[k].rows > 0; k++)
-            rows_r += rows_of_map(&map->rows[i]);
+    for (int i = 0; i < atlas->count; i++) {
+        rows_b += rows_of_map(&atlas->rows[i]);
+        for (int k = 0; k <= CUBE_FACES && atlas->rows[i].u_r[k].rows > 0; k++)
+            rows_r += rows_of_map(&atlas->rows[i]);
     }
     if (!words_init(&b, runtime, rows_b, input->k_b)) return false;
     if (!words_init(&r, runtime, rows_r, input->k_r)) {
         host_free(b.host, b.at);
         return false;
     }
-    for (int i = 0; i < map->count; i++) {
-        const struct mrt_clutter_rows_input *rows = &map->rows[i];
+    for (int i = 0; i < atlas->count; i++) {
+        const struct mrt_clutter_rows_input *rows = &atlas->rows[i];
         const size_t count = rows_of_map(rows);
         pack_padded(&b, &rows->u_b, count,
                     scales->inverse + input->basis_of_block[rows->block] * scales->k_b, input->k_b);
@@ -252,7 +252,7 @@ bool mrt_operators_upload(struct mrt_runtime *runtime, const struct mrt_runtime_
         ok = upload_u_b(runtime, input, &scales, MRT_PROBE, &runtime->probes.u_b) &&
              upload_u_r(runtime, input, MRT_PROBE, &runtime->probes.u_r);
     if (ok && input->clutter) ok = upload_coupling(runtime, input);
-    if (ok && input->clutter && input->clutter->map.count > 0)
+    if (ok && input->clutter && input->clutter->atlas.count > 0)
         ok = upload_clutter_map(runtime, input, &scales);
     scales_finish(&scales, runtime->host);
     return ok;

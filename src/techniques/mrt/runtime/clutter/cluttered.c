@@ -373,8 +373,9 @@ static bool add_transfer(struct builder *s, int block, int first_opening)
                                                     .objects = s->objects,
                                                     .rays = s->options->rays,
                                                     .stop = s->options->stop };
-    return mrt_mapped_add(&s->out->mapped, s->turned, s->cache, &how, block,
-                          s->out->openings + first_opening, input->opening_count - first_opening);
+    return mrt_clutter_atlas_add(&s->out->atlas, s->turned, s->cache, &how, block,
+                                 s->out->openings + first_opening,
+                                 input->opening_count - first_opening);
 }
 
 static size_t voxels_of(const struct mrt_turned *turned)
@@ -439,7 +440,7 @@ static bool allocate(struct mrt_cluttered *out, const struct mrt_turned *turned,
     out->face_pairs = host_alloc(host, pairs + blocks * blocks, sizeof *out->face_pairs);
     out->sight = host_alloc(host, blocks * (1 + voxels_of(turned)), sizeof *out->sight);
     out->input.sight_count = blocks;
-    if (!mrt_mapped_init(&out->mapped, host, (int)blocks)) return false;
+    if (!mrt_clutter_atlas_init(&out->atlas, host, (int)blocks)) return false;
     return out->responses && out->openings && out->pairs && out->gathered && out->faces &&
            out->clutter_openings && out->face_pairs && out->sight;
 }
@@ -457,8 +458,8 @@ static void finish_input(struct mrt_cluttered *out, struct mrt_turned *turned,
     out->clutter.openings = out->clutter_openings;
     out->clutter.pairs = out->face_pairs;
     out->clutter.pair_count = out->face_pair_count;
-    out->clutter.map = out->mapped.input;
-    if (out->clutter.opening_count > 0 || out->mapped.input.count > 0)
+    out->clutter.atlas = out->atlas.input;
+    if (out->clutter.opening_count > 0 || out->atlas.input.count > 0)
         out->input.clutter = &out->clutter;
 }
 
@@ -488,7 +489,7 @@ bool mrt_cluttered_init(struct mrt_cluttered *out, struct host *host, struct mrt
     trace_scene_destroy(s.objects);
     host_free(host, s.l_imp);
     host_free(host, s.sources);
-    ok = ok && (!options->gather || mrt_mapped_place(&out->mapped, clutter));
+    ok = ok && (!options->gather || mrt_clutter_atlas_place(&out->atlas, clutter));
     if (ok) finish_input(out, turned, clutter, texels);
     ok = ok && mrt_order_faces(out);
     if (!ok) mrt_cluttered_finish(out);
@@ -501,7 +502,7 @@ void mrt_cluttered_finish(struct mrt_cluttered *out)
     for (int i = out->shared_responses; out->responses && i < out->input.response_count; i++)
         mrt_response_input_finish(out->host, &out->responses[i]);
     for (int i = 0; i < out->gathered_count; i++) matrix_f32_finish(out->host, &out->gathered[i]);
-    mrt_mapped_finish(&out->mapped);
+    mrt_clutter_atlas_finish(&out->atlas);
     host_free(out->host, out->responses);
     host_free(out->host, out->openings);
     host_free(out->host, out->pairs);

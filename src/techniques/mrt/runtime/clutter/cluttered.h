@@ -7,7 +7,7 @@
 #pragma once
 
 #include "techniques/mrt/clutter/delta_cache.h"
-#include "techniques/mrt/runtime/clutter/mapped.h"
+#include "techniques/mrt/runtime/clutter/clutter_atlas.h"
 #include "techniques/mrt/runtime/turned.h"
 
 struct mrt_cluttered_options {
@@ -31,7 +31,7 @@ struct mrt_cluttered {
     struct mrt_face_pair_input *face_pairs;
     int face_pair_count;
     uint32_t *sight; // mrt_runtime_input.sight
-    struct mrt_mapped mapped;
+    struct mrt_clutter_atlas atlas;
     struct mrt_clutter_input clutter;
     struct mrt_runtime_input input; // refers to `turned`
 };

@@ -30,8 +30,8 @@ static bool has_row(const struct matrix_f32 *m, int row)
 
 static struct mrt_clutter_rows_input *map_of(const struct order *s)
 {
-    for (int i = 0; i < s->of->mapped.input.count; i++)
-        if (s->of->mapped.rows[i].block == s->block) return &s->of->mapped.rows[i];
+    for (int i = 0; i < s->of->atlas.input.count; i++)
+        if (s->of->atlas.rows[i].block == s->block) return &s->of->atlas.rows[i];
     return NULL;
 }
 

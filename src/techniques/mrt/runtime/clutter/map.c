@@ -14,23 +14,23 @@ enum { VALUES = MRT_VECTOR_COEFFICIENTS, VEC3_BYTES = 12 };
 
 // ---- tables
 
-static size_t tiles_of(const struct mrt_clutter_atlas_input *map)
+static size_t tiles_of(const struct mrt_clutter_atlas_input *atlas)
 {
     size_t tiles = 0;
-    for (int i = 0; i < map->count; i++)
-        tiles += mrt_clutter_map_tiles((size_t)map->rows[i].texel_count);
+    for (int i = 0; i < atlas->count; i++)
+        tiles += mrt_clutter_map_tiles((size_t)atlas->rows[i].texel_count);
     return tiles;
 }
 
 static void fill_tiles(const struct mrt_runtime_input *input, void *items)
 {
-    const struct mrt_clutter_atlas_input *map = &input->clutter->map;
+    const struct mrt_clutter_atlas_input *atlas = &input->clutter->atlas;
     struct mrt_gpu_tile *tile = items;
     uint32_t first = 0;
-    for (int i = 0; i < map->count; i++) {
-        const size_t tiles = mrt_clutter_map_tiles((size_t)map->rows[i].texel_count);
+    for (int i = 0; i < atlas->count; i++) {
+        const size_t tiles = mrt_clutter_map_tiles((size_t)atlas->rows[i].texel_count);
         for (uint32_t k = 0; k < tiles; k++)
-            *tile++ = (struct mrt_gpu_tile){ .block = (uint32_t)map->rows[i].block,
+            *tile++ = (struct mrt_gpu_tile){ .block = (uint32_t)atlas->rows[i].block,
                                              .first_texel = first + k * MRT_LOCAL,
                                              .basis_row = first + k * MRT_LOCAL,
                                              .response_row = k * MRT_LOCAL };
@@ -51,25 +51,25 @@ static uint32_t quads_of(const struct matrix_f32 *u_r)
 // Openings of blocks without clutter stay empty: no tile reads them.
 static void fill_openings(const struct mrt_runtime_input *input, void *items)
 {
-    const struct mrt_clutter_atlas_input *map = &input->clutter->map;
+    const struct mrt_clutter_atlas_input *atlas = &input->clutter->atlas;
     struct mrt_gpu_opening *openings = items;
     uint32_t row = 0;
     for (int i = 0, rows = 0, first = 0; i < input->opening_count; i++) {
-        while (rows < map->count && map->rows[rows].block < input->openings[i].block) rows++;
-        if (rows == map->count || map->rows[rows].block != input->openings[i].block) continue;
+        while (rows < atlas->count && atlas->rows[rows].block < input->openings[i].block) rows++;
+        if (rows == atlas->count || atlas->rows[rows].block != input->openings[i].block) continue;
         if (input->openings[first].block != input->openings[i].block) first = i;
         openings[i].response = row;
-        openings[i].quads = quads_of(&map->rows[rows].u_r[i - first]);
-        row += (uint32_t)mrt_clutter_map_tiles((size_t)map->rows[rows].texel_count) * MRT_LOCAL;
+        openings[i].quads = quads_of(&atlas->rows[rows].u_r[i - first]);
+        row += (uint32_t)mrt_clutter_map_tiles((size_t)atlas->rows[rows].texel_count) * MRT_LOCAL;
     }
 }
 
 // Index of the light of a texel of clutter.
-static uint32_t light_of(const struct mrt_clutter_atlas_input *map, uint32_t texel)
+static uint32_t light_of(const struct mrt_clutter_atlas_input *atlas, uint32_t texel)
 {
     uint32_t first = 0;
-    for (int k = 0; k < map->count; k++) {
-        const struct mrt_clutter_rows_input *rows = &map->rows[k];
+    for (int k = 0; k < atlas->count; k++) {
+        const struct mrt_clutter_rows_input *rows = &atlas->rows[k];
         const uint32_t local = texel - (uint32_t)rows->first_texel;
         if (texel >= (uint32_t)rows->first_texel && local < (uint32_t)rows->texel_count)
             return first + local;
@@ -79,14 +79,14 @@ static uint32_t light_of(const struct mrt_clutter_atlas_input *map, uint32_t tex
 }
 
 // Places with light. `out` may be NULL.
-static uint32_t list_places(const struct mrt_clutter_atlas_input *map,
+static uint32_t list_places(const struct mrt_clutter_atlas_input *atlas,
                             struct mrt_gpu_clutter_place *out)
 {
     uint32_t count = 0;
-    const struct charts *charts = &map->clutter->charts;
+    const struct charts *charts = &atlas->clutter->charts;
     for (size_t i = 0; i < charts_place_count(charts); i++) {
-        const uint32_t texel = map->source[i];
-        const uint32_t light = texel == CHART_NONE ? CHART_NONE : light_of(map, texel);
+        const uint32_t texel = atlas->source[i];
+        const uint32_t light = texel == CHART_NONE ? CHART_NONE : light_of(atlas, texel);
         if (light == CHART_NONE) continue;
         if (out)
             out[count] =
@@ -98,7 +98,7 @@ static uint32_t list_places(const struct mrt_clutter_atlas_input *map,
 
 static void fill_places(const struct mrt_runtime_input *input, void *items)
 {
-    list_places(&input->clutter->map, items);
+    list_places(&input->clutter->atlas, items);
 }
 
 static size_t triangles_of(const struct mrt_clutter *clutter)
@@ -108,14 +108,14 @@ static size_t triangles_of(const struct mrt_clutter *clutter)
 
 static void fill_triangles(const struct mrt_runtime_input *input, void *items)
 {
-    const struct mrt_clutter *clutter = input->clutter->map.clutter;
+    const struct mrt_clutter *clutter = input->clutter->atlas.clutter;
     light_map_fill_triangles(&clutter->charts, clutter->scene_chart_triangle, triangles_of(clutter),
                              items);
 }
 
 bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
-    const struct mrt_clutter_atlas_input *from = &input->clutter->map;
+    const struct mrt_clutter_atlas_input *from = &input->clutter->atlas;
     struct mrt_runtime_clutter_map *map = &runtime->clutter.map;
     if (from->count == 0) return true;
     const struct gpu_image_desc image =

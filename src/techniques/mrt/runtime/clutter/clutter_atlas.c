@@ -1,10 +1,10 @@
-#include "techniques/mrt/runtime/clutter/mapped.h"
+#include "techniques/mrt/runtime/clutter/clutter_atlas.h"
 
 #include <string.h>
 
-bool mrt_mapped_init(struct mrt_mapped *out, struct host *host, int blocks)
+bool mrt_clutter_atlas_init(struct mrt_clutter_atlas *out, struct host *host, int blocks)
 {
-    *out = (struct mrt_mapped){ .host = host };
+    *out = (struct mrt_clutter_atlas){ .host = host };
     out->rows = host_alloc(host, (size_t)blocks, sizeof *out->rows);
     out->input.rows = out->rows;
     return out->rows;
@@ -32,7 +32,7 @@ static bool add_openings(struct host *host, struct mrt_clutter_rows_input *rows,
     return ok;
 }
 
-static bool keep_inside(struct mrt_mapped *out, const struct mrt_clutter_transfer *transfer,
+static bool keep_inside(struct mrt_clutter_atlas *out, const struct mrt_clutter_transfer *transfer,
                         const struct charts *charts)
 {
     if (!out->inside)
@@ -43,9 +43,10 @@ static bool keep_inside(struct mrt_mapped *out, const struct mrt_clutter_transfe
     return out->inside;
 }
 
-bool mrt_mapped_add(struct mrt_mapped *out, const struct mrt_turned *turned,
-                    struct mrt_delta_cache *cache, const struct mrt_clutter_transfer_input *input,
-                    int block, const struct mrt_opening_input *openings, int opening_count)
+bool mrt_clutter_atlas_add(struct mrt_clutter_atlas *out, const struct mrt_turned *turned,
+                           struct mrt_delta_cache *cache,
+                           const struct mrt_clutter_transfer_input *input, int block,
+                           const struct mrt_opening_input *openings, int opening_count)
 {
     const struct mrt_clutter_transfer *transfer = mrt_kept_transfer(cache, input, block);
     if (!transfer) return false;
@@ -61,8 +62,8 @@ bool mrt_mapped_add(struct mrt_mapped *out, const struct mrt_turned *turned,
 // ---- the atlas
 
 // source: [places] in mrt_clutter.texels, of the texels that hidden ones show.
-static bool fill_sources(struct mrt_mapped *out, const struct mrt_clutter *clutter, bool *hidden,
-                         uint32_t *place_of)
+static bool fill_sources(struct mrt_clutter_atlas *out, const struct mrt_clutter *clutter,
+                         bool *hidden, uint32_t *place_of)
 {
     const struct charts *charts = &clutter->charts;
     for (uint32_t i = 0; i < charts->side_texel_count; i++) {
@@ -79,7 +80,7 @@ static bool fill_sources(struct mrt_mapped *out, const struct mrt_clutter *clutt
     return ok;
 }
 
-bool mrt_mapped_place(struct mrt_mapped *out, const struct mrt_clutter *clutter)
+bool mrt_clutter_atlas_place(struct mrt_clutter_atlas *out, const struct mrt_clutter *clutter)
 {
     const struct charts *charts = &clutter->charts;
     struct host *host = out->host;
@@ -98,16 +99,16 @@ bool mrt_mapped_place(struct mrt_mapped *out, const struct mrt_clutter *clutter)
     return ok;
 }
 
-void mrt_mapped_finish(struct mrt_mapped *mapped)
+void mrt_clutter_atlas_finish(struct mrt_clutter_atlas *atlas)
 {
-    if (!mapped->host) return;
-    for (int i = 0; i < mapped->input.count; i++) {
-        matrix_f32_finish(mapped->host, &mapped->rows[i].u_b);
+    if (!atlas->host) return;
+    for (int i = 0; i < atlas->input.count; i++) {
+        matrix_f32_finish(atlas->host, &atlas->rows[i].u_b);
         for (int k = 0; k <= CUBE_FACES; k++)
-            matrix_f32_finish(mapped->host, &mapped->rows[i].u_r[k]);
+            matrix_f32_finish(atlas->host, &atlas->rows[i].u_r[k]);
     }
-    host_free(mapped->host, mapped->rows);
-    host_free(mapped->host, mapped->inside);
-    host_free(mapped->host, mapped->source);
-    *mapped = (struct mrt_mapped){ 0 };
+    host_free(atlas->host, atlas->rows);
+    host_free(atlas->host, atlas->inside);
+    host_free(atlas->host, atlas->source);
+    *atlas = (struct mrt_clutter_atlas){ 0 };
 }
