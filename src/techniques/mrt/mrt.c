@@ -262,12 +262,12 @@ static void mrt_destroy(void *state)
     mrt_block_map_finish(&mrt->map);
 }
 
-static uint64_t estimate(const struct mrt_options *o, bool cluttered)
+static uint64_t estimate(const struct mrt_options *o, bool has_clutter)
 {
     return mrt_runtime_bytes(&(struct mrt_runtime_size){
         .resolution = mrt_face_texels((enum mrt_maze)o->maze, o->texels),
         .tube = o->maze == MRT_TUNNEL,
-        .cluttered = cluttered,
+        .has_clutter = has_clutter,
         .k_b = o->modes,
         .k_r = o->response_modes,
         .probes = o->block_probes,

@@ -2,7 +2,7 @@
 #include "techniques/mrt/mrt_state.h"
 
 #include "techniques/mrt/level/make_map.h"
-#include "techniques/mrt/runtime/clutter/cluttered.h"
+#include "techniques/mrt/runtime/clutter/delta_operators.h"
 #include "techniques/mrt/runtime/turned.h"
 
 // ---- the map
@@ -219,23 +219,23 @@ static bool finish_runtime(const struct mrt *mrt, struct host *host,
                      : mrt_runtime_init(out, host, mrt->gpu, input, &options);
 }
 
-static bool make_cluttered(const struct mrt *mrt, struct host *host, const struct mrt_parts *parts,
-                           struct mrt_turned *turned, const struct mrt_build *how,
-                           struct mrt_runtime *out)
+static bool make_delta(const struct mrt *mrt, struct host *host, const struct mrt_parts *parts,
+                       struct mrt_turned *turned, const struct mrt_build *how,
+                       struct mrt_runtime *out)
 {
-    const struct mrt_cluttered_options options = { .rays = mrt->options.delta_rays,
-                                                   .depth = mrt->options.depth,
-                                                   .occlusion = mrt->options.occlusion,
-                                                   .reflection = mrt->options.reflection,
-                                                   .gather = mrt->options.gather &&
-                                                             mrt->options.reflection &&
-                                                             mrt->options.vector,
-                                                   .stop = how->stop };
-    struct mrt_cluttered cluttered;
-    const bool ok = mrt_cluttered_init(&cluttered, host, turned, &mrt->level, &parts->clutter,
-                                       parts->clutter_texels, how->cache, &options) &&
-                    finish_runtime(mrt, host, &cluttered.input, how, out);
-    mrt_cluttered_finish(&cluttered);
+    const struct mrt_delta_options options = { .rays = mrt->options.delta_rays,
+                                               .depth = mrt->options.depth,
+                                               .occlusion = mrt->options.occlusion,
+                                               .reflection = mrt->options.reflection,
+                                               .gather = mrt->options.gather &&
+                                                         mrt->options.reflection &&
+                                                         mrt->options.vector,
+                                               .stop = how->stop };
+    struct mrt_delta_operators operators;
+    const bool ok = mrt_delta_operators_init(&operators, host, turned, &mrt->level, &parts->clutter,
+                                             parts->clutter_texels, how->cache, &options) &&
+                    finish_runtime(mrt, host, &operators.input, how, out);
+    mrt_delta_operators_finish(&operators);
     return ok;
 }
 
@@ -248,7 +248,7 @@ bool mrt_make_runtime(const struct mrt *mrt, struct host *host, const struct mrt
         turned.input.atlas = &mrt->atlas;
         turned.input.images = &parts->images;
         turned.input.published = &mrt->published;
-        ok = parts->clutter.triangles > 0 ? make_cluttered(mrt, host, parts, &turned, how, out)
+        ok = parts->clutter.triangles > 0 ? make_delta(mrt, host, parts, &turned, how, out)
                                           : finish_runtime(mrt, host, &turned.input, how, out);
     }
     mrt_turned_finish(&turned);

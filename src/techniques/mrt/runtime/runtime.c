@@ -206,7 +206,7 @@ static uint64_t bytes_of_clutter(const struct mrt_runtime_size *size)
     const uint64_t k_b = 4 * mrt_quads(size->k_b), k_r = 4 * mrt_quads(size->k_r);
     const uint64_t probes =
         size->options.probes ? MRT_PROBE_VALUES * (uint64_t)mrt_probes_of_block(size->probes) : 0;
-    if (!size->cluttered || size->tube) return 0;
+    if (!size->has_clutter || size->tube) return 0;
     return number * (texels * k_b * (1 + values) + (texels * values + probes) * k_r + probes * k_b +
                      k_b * k_r) +
            number * k_r * k_r + sizeof(float) * (3 * k_b * k_r + 5 * 3 * k_r) +

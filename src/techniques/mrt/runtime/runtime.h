@@ -116,7 +116,7 @@ void mrt_runtime_finish(struct mrt_runtime *runtime); // accepts zero and half-b
 
 struct mrt_runtime_size {
     int resolution, k_b, k_r, probes;
-    bool tube, cluttered; // cluttered: with clutter in it
+    bool tube, has_clutter;
     struct mrt_runtime_options options;
 };
 // Bytes on the GPU of a level of one closed cube, or of one tube. Of clutter it has no texels:

@@ -6,7 +6,7 @@ enum use { NOTHING, WALLS, CLUTTER, USES };
 
 // The opening that is the clutter of a block.
 struct order {
-    struct mrt_cluttered *of;
+    struct mrt_delta_operators *of;
     int opening, block, place; // place: among the openings of the block
     int faces, kept;
     enum use *use;
@@ -91,7 +91,7 @@ static void move_gathered(const struct order *s, const float *of, size_t stride)
 
 static void move_operators(const struct order *s)
 {
-    struct mrt_cluttered *of = s->of;
+    struct mrt_delta_operators *of = s->of;
     struct mrt_response_input *response = &of->responses[of->openings[s->opening].response];
     struct mrt_clutter_rows_input *map = map_of(s);
     for (int m = 0; m < MRT_MEASURES; m++) move_columns(s, &response->u[m]);
@@ -117,21 +117,21 @@ static void move_faces(const struct order *s)
     clutter->face_count = kept;
 }
 
-static int faces_of(const struct mrt_cluttered *of, int opening)
+static int faces_of(const struct mrt_delta_operators *of, int opening)
 {
     int count = 0;
     for (int i = 0; i < of->clutter.face_count; i++) count += of->faces[i].opening == opening;
     return count;
 }
 
-static int first_opening_of(const struct mrt_cluttered *of, int block)
+static int first_opening_of(const struct mrt_delta_operators *of, int block)
 {
     int i = 0;
     while (of->openings[i].block != block) i++;
     return i;
 }
 
-bool mrt_order_faces(struct mrt_cluttered *of)
+bool mrt_order_faces(struct mrt_delta_operators *of)
 {
     const size_t most = (size_t)of->input.k_r;
     struct order s = { .of = of };

@@ -1,5 +1,5 @@
 // Bases, responses, openings and pairs of blocks with clutter.
-#include "techniques/mrt/runtime/clutter/cluttered.h"
+#include "techniques/mrt/runtime/clutter/delta_operators.h"
 
 #include "techniques/mrt/clutter/probe_sight.h"
 #include "techniques/mrt/runtime/clutter/face_order.h"
@@ -10,11 +10,11 @@
 enum { ENTRY_RAYS = 256 };
 
 struct builder {
-    struct mrt_cluttered *out;
+    struct mrt_delta_operators *out;
     struct mrt_turned *turned;
     const struct mrt_level *level;
     const struct mrt_clutter *clutter;
-    const struct mrt_cluttered_options *options;
+    const struct mrt_delta_options *options;
     struct trace_scene *objects;
     struct mrt_delta_cache *cache;
     const struct matrix_f32 **l_imp; // of each block
@@ -425,7 +425,7 @@ static bool add_block(struct builder *s, int block, const struct mrt_clutter_tex
 
 // ---- all of it
 
-static bool allocate(struct mrt_cluttered *out, const struct mrt_turned *turned, int faces)
+static bool allocate(struct mrt_delta_operators *out, const struct mrt_turned *turned, int faces)
 {
     const struct mrt_runtime_input *old = &turned->input;
     const size_t blocks = (size_t)old->map->count, openings = (size_t)old->opening_count;
@@ -445,7 +445,7 @@ static bool allocate(struct mrt_cluttered *out, const struct mrt_turned *turned,
            out->clutter_openings && out->face_pairs && out->sight;
 }
 
-static void finish_input(struct mrt_cluttered *out, struct mrt_turned *turned,
+static void finish_input(struct mrt_delta_operators *out, struct mrt_turned *turned,
                          const struct mrt_clutter *clutter, const struct mrt_clutter_texel *texels)
 {
     out->input.basis_count = turned->input.basis_count;
@@ -463,10 +463,11 @@ static void finish_input(struct mrt_cluttered *out, struct mrt_turned *turned,
         out->input.clutter = &out->clutter;
 }
 
-bool mrt_cluttered_init(struct mrt_cluttered *out, struct host *host, struct mrt_turned *turned,
-                        const struct mrt_level *level, const struct mrt_clutter *clutter,
-                        const struct mrt_clutter_texel *texels, struct mrt_delta_cache *cache,
-                        const struct mrt_cluttered_options *options)
+bool mrt_delta_operators_init(struct mrt_delta_operators *out, struct host *host,
+                              struct mrt_turned *turned, const struct mrt_level *level,
+                              const struct mrt_clutter *clutter,
+                              const struct mrt_clutter_texel *texels, struct mrt_delta_cache *cache,
+                              const struct mrt_delta_options *options)
 {
     const int blocks = level->map->count;
     struct builder s = { .out = out,
@@ -475,7 +476,7 @@ bool mrt_cluttered_init(struct mrt_cluttered *out, struct host *host, struct mrt
                          .clutter = clutter,
                          .cache = cache,
                          .options = options };
-    *out = (struct mrt_cluttered){ .host = host, .input = turned->input };
+    *out = (struct mrt_delta_operators){ .host = host, .input = turned->input };
     out->input.opening_count = out->input.pair_count = 0;
     s.objects = trace_scene_create(host, &clutter->objects.pose);
     s.l_imp = host_alloc(host, (size_t)blocks, sizeof *s.l_imp);
@@ -492,11 +493,11 @@ bool mrt_cluttered_init(struct mrt_cluttered *out, struct host *host, struct mrt
     ok = ok && (!options->gather || mrt_clutter_atlas_place(&out->atlas, clutter));
     if (ok) finish_input(out, turned, clutter, texels);
     ok = ok && mrt_order_faces(out);
-    if (!ok) mrt_cluttered_finish(out);
+    if (!ok) mrt_delta_operators_finish(out);
     return ok;
 }
 
-void mrt_cluttered_finish(struct mrt_cluttered *out)
+void mrt_delta_operators_finish(struct mrt_delta_operators *out)
 {
     if (!out->host) return;
     for (int i = out->shared_responses; out->responses && i < out->input.response_count; i++)
@@ -513,5 +514,5 @@ void mrt_cluttered_finish(struct mrt_cluttered *out)
     for (int i = 0; i < out->face_pair_count; i++)
         matrix_f32_finish(out->host, &out->face_pairs[i].of_c);
     host_free(out->host, out->face_pairs);
-    *out = (struct mrt_cluttered){ 0 };
+    *out = (struct mrt_delta_operators){ 0 };
 }

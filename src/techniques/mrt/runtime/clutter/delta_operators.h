@@ -10,7 +10,7 @@
 #include "techniques/mrt/runtime/clutter/clutter_atlas.h"
 #include "techniques/mrt/runtime/turned.h"
 
-struct mrt_cluttered_options {
+struct mrt_delta_options {
     int rays, depth;         // rays per texel; openings that light on clutter passes at most
     bool occlusion;          // clutter blocks light
     bool reflection;         // it reflects light
@@ -18,7 +18,7 @@ struct mrt_cluttered_options {
     const atomic_bool *stop; // as of mrt_delta_input
 };
 
-struct mrt_cluttered {
+struct mrt_delta_operators {
     struct host *host;
     struct mrt_response_input *responses;
     int shared_responses; // the first ones, of the turned operators
@@ -37,9 +37,10 @@ struct mrt_cluttered {
 };
 
 // Adds bases to `turned`, which must outlive the input. texels: those of clutter->texels, in their
-// order. The cache must outlive the call only. mrt_cluttered_finish accepts zero.
-bool mrt_cluttered_init(struct mrt_cluttered *out, struct host *host, struct mrt_turned *turned,
-                        const struct mrt_level *level, const struct mrt_clutter *clutter,
-                        const struct mrt_clutter_texel *texels, struct mrt_delta_cache *cache,
-                        const struct mrt_cluttered_options *options);
-void mrt_cluttered_finish(struct mrt_cluttered *cluttered);
+// order. The cache must outlive the call only. mrt_delta_operators_finish accepts zero.
+bool mrt_delta_operators_init(struct mrt_delta_operators *out, struct host *host,
+                              struct mrt_turned *turned, const struct mrt_level *level,
+                              const struct mrt_clutter *clutter,
+                              const struct mrt_clutter_texel *texels, struct mrt_delta_cache *cache,
+                              const struct mrt_delta_options *options);
+void mrt_delta_operators_finish(struct mrt_delta_operators *operators);
