@@ -3,7 +3,7 @@
 
 #include "techniques/mrt/level/make_map.h"
 #include "techniques/mrt/runtime/clutter/delta_operators.h"
-#include "techniques/mrt/runtime/turned.h"
+#include "techniques/mrt/runtime/level_operators.h"
 
 // ---- the map
 
@@ -220,7 +220,7 @@ static bool finish_runtime(const struct mrt *mrt, struct host *host,
 }
 
 static bool make_delta(const struct mrt *mrt, struct host *host, const struct mrt_parts *parts,
-                       struct mrt_turned *turned, const struct mrt_build *how,
+                       struct mrt_level_operators *level_operators, const struct mrt_build *how,
                        struct mrt_runtime *out)
 {
     const struct mrt_delta_options options = { .rays = mrt->options.delta_rays,
@@ -232,9 +232,10 @@ static bool make_delta(const struct mrt *mrt, struct host *host, const struct mr
                                                          mrt->options.vector,
                                                .stop = how->stop };
     struct mrt_delta_operators operators;
-    const bool ok = mrt_delta_operators_init(&operators, host, turned, &mrt->level, &parts->clutter,
-                                             parts->clutter_texels, how->cache, &options) &&
-                    finish_runtime(mrt, host, &operators.input, how, out);
+    const bool ok =
+        mrt_delta_operators_init(&operators, host, level_operators, &mrt->level, &parts->clutter,
+                                 parts->clutter_texels, how->cache, &options) &&
+        finish_runtime(mrt, host, &operators.input, how, out);
     mrt_delta_operators_finish(&operators);
     return ok;
 }
@@ -242,16 +243,17 @@ static bool make_delta(const struct mrt *mrt, struct host *host, const struct mr
 bool mrt_make_runtime(const struct mrt *mrt, struct host *host, const struct mrt_parts *parts,
                       const struct mrt_build *how, struct mrt_runtime *out)
 {
-    struct mrt_turned turned;
-    bool ok = mrt_turned_init(host, &mrt->level, &turned);
+    struct mrt_level_operators level_operators;
+    bool ok = mrt_level_operators_init(host, &mrt->level, &level_operators);
     if (ok) {
-        turned.input.atlas = &mrt->atlas;
-        turned.input.images = &parts->images;
-        turned.input.published = &mrt->published;
-        ok = parts->clutter.triangles > 0 ? make_delta(mrt, host, parts, &turned, how, out)
-                                          : finish_runtime(mrt, host, &turned.input, how, out);
+        level_operators.input.atlas = &mrt->atlas;
+        level_operators.input.images = &parts->images;
+        level_operators.input.published = &mrt->published;
+        ok = parts->clutter.triangles > 0
+                 ? make_delta(mrt, host, parts, &level_operators, how, out)
+                 : finish_runtime(mrt, host, &level_operators.input, how, out);
     }
-    mrt_turned_finish(&turned);
+    mrt_level_operators_finish(&level_operators);
     return ok;
 }
 

@@ -122,13 +122,13 @@ static struct matrix_f32 leave_block(const struct mrt_dictionary *x, const struc
     struct matrix_f32 turned, b, out;
     CHECK(matrix_f32_init(test_host(), &turned, radiosity->columns, LIGHTS));
     for (size_t t = 0; t < radiosity->columns; t++) {
-        int texel = mrt_turned_texel(&cube, place.block_from_cube, &block, (int)t);
+        int texel = mrt_rotated_texel(&cube, place.block_from_cube, &block, (int)t);
         for (size_t l = 0; l < LIGHTS; l++)
             turned.at[(size_t)texel * LIGHTS + l] = radiosity->at[l * radiosity->stride + t];
     }
     const struct mrt_element *element = &x->element[place.cube];
     multiply(&element->t_db, &turned, &b);
-    int face = mrt_turned_face(glms_mat3_transpose(place.block_from_cube), chain->exit[0]);
+    int face = mrt_rotated_face(glms_mat3_transpose(place.block_from_cube), chain->exit[0]);
     multiply(&element->r_b[face], &b, &out);
     mat3s frame = glms_mat3_mul(place.block_from_cube, cube_from_face(face));
     for (int i = mrt_rolls_between(frame, cube_from_face(chain->exit[0])); i > 0; i--) {
@@ -168,7 +168,7 @@ static void block_errors(const struct mrt_dictionary *x, const struct chain *cha
     multiply(&x->entered[0].u_r, &r, &irradiance);
     *mean = 0.0;
     for (int t = 0; t < mrt_shape_texels(&cube); t += 11) {
-        int texel = mrt_turned_texel(&entered, frame, &cube, t);
+        int texel = mrt_rotated_texel(&entered, frame, &cube, t);
         gather_chain(chain, block, t, rays, radiosity, exact);
         for (int l = 0; l < LIGHTS; l++) {
             double d = (double)irradiance.at[(size_t)texel * LIGHTS + (size_t)l] - exact[l];

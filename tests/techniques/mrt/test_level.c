@@ -78,7 +78,7 @@ static void brute_force(struct brute *brute, int source)
     for (int f = 0; f < CUBE_FACES; f++) {
         const struct mrt_neighbor *n = &level->map->blocks[source].neighbor[f];
         if (n->block < 0) continue;
-        int face = mrt_turned_face(glms_mat3_transpose(place->block_from_cube), f);
+        int face = mrt_rotated_face(glms_mat3_transpose(place->block_from_cube), f);
         const struct matrix_f32 *r_b = &level->dictionary->element[place->cube].r_b[face];
         double light[K_RLF * K_B];
         for (int i = 0; i < K_RLF * K_B; i++) light[i] = (double)r_b->at[i];

@@ -30,7 +30,7 @@ TEST(every_block_of_a_maze_is_a_turned_cube_of_the_dictionary)
         CHECK_NEAR(glms_mat3_det(place.block_from_cube), 1.0, 1e-6);
         bool seen[CUBE_FACES * RESOLUTION * RESOLUTION] = { false };
         for (int t = 0; t < mrt_shape_texels(&block); t++) {
-            int texel = mrt_turned_texel(&cube, place.block_from_cube, &block, t);
+            int texel = mrt_rotated_texel(&cube, place.block_from_cube, &block, t);
             CHECK(texel >= 0 && texel < mrt_shape_texels(&cube) && !seen[texel]);
             seen[texel] = true;
         }

@@ -63,7 +63,7 @@ static void plain_b(const struct level_of_maze *m, int block, int colour, double
     const struct matrix_f32 *t_db = &level->dictionary->element[place->cube].t_db;
     for (int k = 0; k < level->k_b; k++) b[k] = 0.0;
     for (int t = 0; t < mrt_shape_texels(&cell); t++) {
-        int texel = mrt_turned_texel(&cube, place->block_from_cube, &cell, t);
+        int texel = mrt_rotated_texel(&cube, place->block_from_cube, &cell, t);
         for (int k = 0; k < level->k_b; k++)
             b[k] += (double)t_db->at[(size_t)k * t_db->stride + (size_t)texel] *
                     (double)m->light[3 * (level->first_texel[block] + t) + colour];
@@ -108,13 +108,13 @@ static void check_block(const struct level_of_maze *m, int block, int colour)
             plain_r(m, level->entry_of_face[CUBE_FACES * block + f], colour, r[f]);
     for (int t = 0; t < mrt_shape_texels(&cell); t++) {
         double sum = row_times(&level->dictionary->element[place->cube].u_b,
-                               mrt_turned_texel(&cube, place->block_from_cube, &cell, t), b);
+                               mrt_rotated_texel(&cube, place->block_from_cube, &cell, t), b);
         for (int f = 0; f < CUBE_FACES; f++) {
             if (m->map.blocks[block].neighbor[f].block < 0) continue;
             const int by = mrt_entered_by(&cell, f);
             const struct mrt_shape entered = mrt_entered_shape(level->maze, texels, by);
             sum += row_times(&level->dictionary->entered[by].u_r,
-                             mrt_turned_texel(&entered, mrt_block_from_entry(f), &cell, t), r[f]);
+                             mrt_rotated_texel(&entered, mrt_block_from_entry(f), &cell, t), r[f]);
         }
         CHECK_NEAR(m->out[3 * (level->first_texel[block] + t) + colour], sum,
                    1e-4 * (1.0 + fabs(sum)));

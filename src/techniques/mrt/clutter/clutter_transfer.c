@@ -240,10 +240,10 @@ static void respond(void *user, size_t i)
         return;
     probes_around(job->p, at.position, index, weight);
     for (size_t m = 0; m < job->out->columns; m++) {
-        float sh[MRT_PROBE_COEFFICIENTS], turned[MRT_PROBE_COEFFICIENTS], value[VALUES];
+        float sh[MRT_PROBE_COEFFICIENTS], rotated[MRT_PROBE_COEFFICIENTS], value[VALUES];
         interpolate(job, index, weight, m, sh);
-        sh_rotate(3, local_from_cell, sh, turned);
-        fit(turned, frame, value);
+        sh_rotate(3, local_from_cell, sh, rotated);
+        fit(rotated, frame, value);
         for (size_t q = 0; q < VALUES; q++)
             job->out->at[(i * VALUES + q) * job->out->stride + m] = job->kept[i] * value[q];
     }

@@ -15,7 +15,7 @@ static inline int cube_opposite(int face)
 }
 
 // Rotation from the frame of a face to the cube: columns u, v, n with n outward and u × v = n. v is
-// +y, or +z on the bottom and top: the frame of a face, turned by half a turn around v, is that of
+// +y, or +z on the bottom and top: the frame of a face, rotated by 180° around v, is that of
 // the opposite face, so connected blocks agree on the frame of their interface.
 mat3s cube_from_face(int face);
 

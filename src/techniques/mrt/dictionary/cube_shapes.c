@@ -63,18 +63,18 @@ int mrt_dictionary_openings(enum mrt_maze maze)
     return openings;
 }
 
-int mrt_turned_face(mat3s to_from, int face)
+int mrt_rotated_face(mat3s to_from, int face)
 {
     vec3s normal = glms_mat3_mulv(to_from, cube_from_face(face).col[2]);
     return cube_trace(vec3_of(0, 0, 0), normal).face;
 }
 
-static unsigned turned_faces(mat3s to_from, unsigned faces)
+static unsigned rotated_faces(mat3s to_from, unsigned faces)
 {
-    unsigned turned = 0;
+    unsigned rotated = 0;
     for (int f = 0; f < CUBE_FACES; f++)
-        if (faces >> f & 1u) turned |= 1u << mrt_turned_face(to_from, f);
-    return turned;
+        if (faces >> f & 1u) rotated |= 1u << mrt_rotated_face(to_from, f);
+    return rotated;
 }
 
 // Rotation i of the 24 of the cube: the face that +z is taken to, and quarter turns around it. The
@@ -96,15 +96,15 @@ bool mrt_cube_find(enum mrt_maze maze, unsigned missing, struct mrt_cube_place *
     for (int cube = 0; cube < mrt_dictionary_shapes(maze); cube++)
         for (int i = 0; i < rotations; i++) {
             mat3s block_from_cube = cube_rotation(maze, i);
-            if (turned_faces(block_from_cube, mrt_cube_missing(maze, cube)) != missing) continue;
+            if (rotated_faces(block_from_cube, mrt_cube_missing(maze, cube)) != missing) continue;
             *place = (struct mrt_cube_place){ cube, block_from_cube };
             return true;
         }
     return false;
 }
 
-int mrt_turned_texel(const struct mrt_shape *from, mat3s to_from, const struct mrt_shape *to,
-                     int texel)
+int mrt_rotated_texel(const struct mrt_shape *from, mat3s to_from, const struct mrt_shape *to,
+                      int texel)
 {
     vec3s at = mrt_shape_texel(to, texel).position;
     return mrt_shape_texel_near(from, glms_mat3_mulv(glms_mat3_transpose(to_from), at));

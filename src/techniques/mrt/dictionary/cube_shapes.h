@@ -25,11 +25,11 @@ static inline int mrt_face_texels(enum mrt_maze maze, int texels)
 // Openings of all shapes: 12 in the plane, 24 in space, 6 of tubes.
 int mrt_dictionary_openings(enum mrt_maze maze);
 // The shapes that light enters by the back: one stands for all cubes, tubes are three. Light that
-// enters a bend by its end passes the other bend, turned.
+// enters a bend by its end passes the other bend, rotated.
 int mrt_entered_shapes(enum mrt_maze maze);
 struct mrt_shape mrt_entered_shape(enum mrt_maze maze, int texels, int i);
 unsigned mrt_cube_missing(enum mrt_maze maze, int cube); // openings, a bit for each face
-// The cube of the dictionary that has the openings of a block once it is turned. False: none has,
+// The cube of the dictionary that has the openings of a block once it is rotated. False: none has,
 // as in the plane for a block without a floor.
 struct mrt_cube_place {
     int cube;
@@ -38,7 +38,7 @@ struct mrt_cube_place {
 bool mrt_cube_find(enum mrt_maze maze, unsigned missing, struct mrt_cube_place *place);
 
 // The face that a rotation takes a face to.
-int mrt_turned_face(mat3s to_from, int face);
+int mrt_rotated_face(mat3s to_from, int face);
 // The texel of `from` that a rotation takes to a texel of `to`; −1: an opening of `from`.
-int mrt_turned_texel(const struct mrt_shape *from, mat3s to_from, const struct mrt_shape *to,
-                     int texel);
+int mrt_rotated_texel(const struct mrt_shape *from, mat3s to_from, const struct mrt_shape *to,
+                      int texel);

@@ -27,7 +27,7 @@ enum { MRT_TURNS_2D = 3, MRT_TURNS_3D = 6 };
 
 // Rotation from the frame of the exit to that of the entry.
 mat3s mrt_entry_from_exit(enum mrt_turn turn);
-// The frame of light that enters by a face: that of the face, turned by half a turn around v.
+// The frame of light that enters by a face: that of the face, rotated by 180° around v.
 mat3s mrt_block_from_entry(int face);
 // The number of MRT_ROLLs from one frame to another with the same z; −1: z differs.
 int mrt_rolls_between(mat3s from, mat3s to);

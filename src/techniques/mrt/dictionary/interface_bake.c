@@ -297,9 +297,9 @@ static bool run_project(const struct bake_task *task)
 static bool add_project(struct bake_plan *plan, const struct mrt_bake_job *job,
                         const struct round_names *names)
 {
-    const uint64_t columns = job->openings * job->k_b, turned = (uint64_t)job->turns * job->k_l;
+    const uint64_t columns = job->openings * job->k_b, turns = (uint64_t)job->turns * job->k_l;
     const int wave = job->wave_final + 1;
-    const double flops = 2.0 * (double)(job->samples * job->k_l * (columns + turned));
+    const double flops = 2.0 * (double)(job->samples * job->k_l * (columns + turns));
     return bake_plan_add(
         plan,
         &(struct bake_stage){
@@ -309,7 +309,7 @@ static bool add_project(struct bake_plan *plan, const struct mrt_bake_job *job,
             .run = run_project,
             .argument = names,
             BAKE_OUTPUTS(BAKE_F32(BAKE_SUM, "interface/product/b", wave + 1, job->k_l, columns),
-                         BAKE_F32(BAKE_SUM, "interface/product/turn", wave + 1, job->k_l, turned)),
+                         BAKE_F32(BAKE_SUM, "interface/product/turn", wave + 1, job->k_l, turns)),
             .flops = flops / GRAM_TASKS });
 }
 

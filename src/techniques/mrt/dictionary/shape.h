@@ -19,7 +19,7 @@ struct mrt_shape {
 };
 
 // A point of the surface. The columns of `frame` are tangent, bitangent and the normal into the
-// shape: on a cube those of the face's frame, turned by half a turn around v, in a tube forward,
+// shape: on a cube those of the face's frame, rotated by 180° around v, in a tube forward,
 // around and inward.
 struct mrt_point {
     vec3s position;

@@ -1,4 +1,4 @@
-// Symmetry of tubes: a straight one stays the same when it is turned around its axis, a bend when
+// Symmetry of tubes: a straight one stays the same when it is rotated around its axis, a bend when
 // up and down or its begin and end are exchanged, and the right bend is the left one in a mirror.
 // Rows of gather operators are therefore needed for some texels only.
 #pragma once

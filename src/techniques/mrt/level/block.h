@@ -18,7 +18,7 @@ enum mrt_block_kind {
 };
 
 // The block beyond an opening. `rolls` quarter turns (0…3), from u to v, lead from the frame of
-// this block's face to that of the neighbour's face turned by half a turn around v.
+// this block's face to that of the neighbour's face rotated by 180° around v.
 struct mrt_neighbor {
     int block; // −1: none
     int face;  // of the neighbour

@@ -41,7 +41,7 @@ static float longest_edge(const struct mrt_block *block, int face)
 }
 
 // The number of quarter turns with which corner i of one face is corner i − rolls of the other,
-// whose frame is turned by half a turn around v; −1: the faces do not meet.
+// whose frame is rotated by 180° around v; −1: the faces do not meet.
 static int rolls_between(const struct mrt_block *a, int face, const struct mrt_block *b, int other)
 {
     float tolerance = MEETING_TOLERANCE * glm_max(longest_edge(a, face), longest_edge(b, other));

@@ -46,10 +46,10 @@ static bool multiply(struct host *host, const struct matrix_f32 *a, const struct
 static bool roll(const struct traversal *t, int rolls, struct matrix_f32 *light)
 {
     for (int i = 0; i < rolls; i++) {
-        struct matrix_f32 turned = { 0 };
-        bool ok = multiply(t->host, &t->level->dictionary->r_turn[MRT_ROLL], light, &turned);
+        struct matrix_f32 rotated = { 0 };
+        bool ok = multiply(t->host, &t->level->dictionary->r_turn[MRT_ROLL], light, &rotated);
         matrix_f32_finish(t->host, light);
-        *light = turned;
+        *light = rotated;
         if (!ok) return false;
     }
     return true;
@@ -107,7 +107,7 @@ static bool leave_source(struct traversal *t, int block)
     mat3s cube_from_block = glms_mat3_transpose(place->block_from_cube);
     for (int f = 0; f < CUBE_FACES; f++) {
         if (t->level->map->blocks[block].neighbor[f].block < 0) continue;
-        int face = mrt_turned_face(cube_from_block, f);
+        int face = mrt_rotated_face(cube_from_block, f);
         const struct matrix_f32 *r_b = &t->level->dictionary->element[place->cube].r_b[face];
         mat3s frame = glms_mat3_mul(place->block_from_cube, cube_from_face(face));
         struct matrix_f32 light = { 0 };

@@ -113,7 +113,7 @@ static void map_block(struct mrt_solver *s, int block)
         mrt_dictionary_shape(level->maze, level->dictionary->options.texels, place->cube);
     for (int t = 0; t < mrt_shape_texels(&cell); t++)
         s->cube_texel[level->first_texel[block] + t] =
-            padded(s, mrt_turned_texel(&cube, place->block_from_cube, &cell, t));
+            padded(s, mrt_rotated_texel(&cube, place->block_from_cube, &cell, t));
 }
 
 // Texels of a wall, the only one of `only`, as seen by light that enters at a face.
@@ -126,7 +126,7 @@ static void map_entry(struct mrt_solver *s, const struct mrt_shape *only, int wa
         mrt_entered_shape(level->maze, level->dictionary->options.texels, index);
     int *out = s->entered_texel + (response * CUBE_FACES + wall) * n;
     for (int t = 0; t < n; t++) {
-        int texel = mrt_turned_texel(&entered, mrt_block_from_entry(face), only, t);
+        int texel = mrt_rotated_texel(&entered, mrt_block_from_entry(face), only, t);
         s->entered_face[response][wall] = index * (int)entered_walls(s) + texel / n;
         out[t] = texel % n;
     }

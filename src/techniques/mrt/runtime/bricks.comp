@@ -32,7 +32,7 @@ layout(set = 0, binding = 5, scalar) readonly buffer mrt_probe_turns
 };
 layout(set = 0, binding = 6, rgba16f) writeonly uniform image3D bricks;
 
-vec3 turned(uint probe, uint block, int i)
+vec3 rotated(uint probe, uint block, int i)
 {
     int first = i == 0 ? 0 : i < 4 ? 1 : 4, end = i == 0 ? 1 : i < 4 ? 4 : 9;
     vec3 sum = vec3(0.0);
@@ -56,7 +56,7 @@ void main()
         vec3 area_light =
             area_light_table[probe].emitted[k] * (frame.radiance_scale * level.emitters) +
             environment[k];
-        coefficients[k] = clamp(turned(probe, source, k) + area_light, -HALF_MAX, HALF_MAX);
+        coefficients[k] = clamp(rotated(probe, source, k) + area_light, -HALF_MAX, HALF_MAX);
     }
     ivec3 at = ivec3(block % level.brick_columns, block / level.brick_columns, 0) * int(edge) +
                ivec3(i % edge, i / edge % edge, i / (edge * edge));

@@ -145,11 +145,11 @@ mrt_wall wall_beyond(vec3 world, vec3 normal, inout mrt_place place, inout vec3 
     if (opening < 0 || !place_in(uint(block_table[place.block].neighbor[opening]), world, next) ||
         next.outside > MRT_WALL_DISTANCE.x)
         return none;
-    vec3 turned = normal_in_cell(next, normal);
-    mrt_wall wall = wall_of(next, turned);
+    vec3 rotated = normal_in_cell(next, normal);
+    mrt_wall wall = wall_of(next, rotated);
     if (wall.share == 0.0) return none;
     place = next;
-    n = turned;
+    n = rotated;
     return wall;
 }
 

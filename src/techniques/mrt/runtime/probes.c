@@ -54,14 +54,14 @@ static void fill_sources(const struct mrt_runtime_input *input, void *items)
             (uint32_t)mrt_probe_of_brick_texel(input->map, input->probes, i / texels, i % texels);
 }
 
-// Row i of the matrix that turns SH is coefficient i of the turned unit vectors.
+// Row i of the matrix that turns SH is coefficient i of the rotated unit vectors.
 static void fill_turn(mat3s to_from, float *out)
 {
     for (int k = 0; k < VALUES; k++) {
-        float unit[VALUES] = { 0 }, turned[VALUES];
+        float unit[VALUES] = { 0 }, rotated[VALUES];
         unit[k] = 1.0f;
-        sh_rotate(3, to_from, unit, turned);
-        for (int i = 0; i < VALUES; i++) out[VALUES * i + k] = turned[i];
+        sh_rotate(3, to_from, unit, rotated);
+        for (int i = 0; i < VALUES; i++) out[VALUES * i + k] = rotated[i];
     }
 }
 

@@ -71,7 +71,7 @@ struct frame {
     float roughness;
 };
 
-static mat3s turned_about_z(float angle)
+static mat3s rotation_about_z(float angle)
 {
     const float c = cosf(angle), s = sinf(angle);
     return (mat3s){ .col = { { { c, s, 0 } }, { { -s, c, 0 } }, { { 0, 0, 1 } } } };
@@ -96,7 +96,7 @@ static struct frame frame_of(const struct work *w, uint32_t texel)
     out.normal = normal;
     out.turn = 2.0f * GLM_PIf * rng_unit((uint32_t)(rng_mix(w->task->bake_seed + texel) >> 32));
     const mat3s frame = { .col = { tangent, bitangent, normal } };
-    out.to_world = glms_mat3_mul(frame, turned_about_z(out.turn));
+    out.to_world = glms_mat3_mul(frame, rotation_about_z(out.turn));
     return out;
 }
 
@@ -146,7 +146,7 @@ static void rotate(const struct work *w, const struct frame *frame, float *matri
     struct sh_rotation light, outgoing;
     float in[SH_MAX_COUNT], out[SH_MAX_COUNT];
     sh_rotation_init(&light, prt_bands(&w->scene->options), frame->to_world);
-    sh_rotation_init(&outgoing, PRT_OUTGOING_BANDS, turned_about_z(frame->turn));
+    sh_rotation_init(&outgoing, PRT_OUTGOING_BANDS, rotation_about_z(frame->turn));
     for (size_t k = 0; k < PRT_OUTGOING; k++) {
         float *row = matrix + k * width;
         for (size_t i = 0; i < w->coefficients; i++) in[i] = row[i * w->planes];

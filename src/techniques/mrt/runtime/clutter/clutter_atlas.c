@@ -11,7 +11,7 @@ bool mrt_clutter_atlas_init(struct mrt_clutter_atlas *out, struct host *host, in
 }
 
 static bool add_openings(struct host *host, struct mrt_clutter_rows_input *rows,
-                         const struct mrt_turned *turned,
+                         const struct mrt_level_operators *operators,
                          const struct mrt_clutter_transfer *transfer,
                          const struct mrt_clutter_transfer_input *input,
                          const struct mrt_opening_input *openings, int opening_count)
@@ -21,13 +21,13 @@ static bool add_openings(struct host *host, struct mrt_clutter_rows_input *rows,
         const int face = openings[i].face;
         if (face < 0) {
             // Faces are the first columns.
-            ok = matrix_f32_copy(host, &transfer->c, (size_t)turned->input.k_r, &rows->u_r[i]);
+            ok = matrix_f32_copy(host, &transfer->c, (size_t)operators->input.k_r, &rows->u_r[i]);
             continue;
         }
         const struct mrt_response_input *response =
-            &turned->responses[mrt_response_of(&input->map->blocks[rows->block], face)];
+            &operators->responses[mrt_response_of(&input->map->blocks[rows->block], face)];
         ok = mrt_clutter_transfer_response(transfer, host, input, face, &response->u[MRT_PROBE],
-                                           turned->input.probes, &rows->u_r[i]);
+                                           operators->input.probes, &rows->u_r[i]);
     }
     return ok;
 }
@@ -43,7 +43,8 @@ static bool keep_inside(struct mrt_clutter_atlas *out, const struct mrt_clutter_
     return out->inside;
 }
 
-bool mrt_clutter_atlas_add(struct mrt_clutter_atlas *out, const struct mrt_turned *turned,
+bool mrt_clutter_atlas_add(struct mrt_clutter_atlas *out,
+                           const struct mrt_level_operators *operators,
                            struct mrt_delta_cache *cache,
                            const struct mrt_clutter_transfer_input *input, int block,
                            const struct mrt_opening_input *openings, int opening_count)
@@ -56,7 +57,7 @@ bool mrt_clutter_atlas_add(struct mrt_clutter_atlas *out, const struct mrt_turne
                                              .texel_count = (int)transfer->texel_count };
     return matrix_f32_copy(out->host, &transfer->b, transfer->b.columns, &rows->u_b) &&
            keep_inside(out, transfer, &input->clutter->charts) &&
-           add_openings(out->host, rows, turned, transfer, input, openings, opening_count);
+           add_openings(out->host, rows, operators, transfer, input, openings, opening_count);
 }
 
 // ---- the atlas

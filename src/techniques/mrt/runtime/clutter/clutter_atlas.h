@@ -2,7 +2,7 @@
 #pragma once
 
 #include "techniques/mrt/clutter/delta_cache.h"
-#include "techniques/mrt/runtime/turned.h"
+#include "techniques/mrt/runtime/level_operators.h"
 
 struct mrt_clutter_atlas {
     struct host *host;
@@ -15,7 +15,8 @@ struct mrt_clutter_atlas {
 // Room for `blocks`. mrt_clutter_atlas_finish accepts zero.
 bool mrt_clutter_atlas_init(struct mrt_clutter_atlas *out, struct host *host, int blocks);
 // Light at the clutter of a block with faces. openings: those of the block in the run time's input.
-bool mrt_clutter_atlas_add(struct mrt_clutter_atlas *out, const struct mrt_turned *turned,
+bool mrt_clutter_atlas_add(struct mrt_clutter_atlas *out,
+                           const struct mrt_level_operators *operators,
                            struct mrt_delta_cache *cache,
                            const struct mrt_clutter_transfer_input *input, int block,
                            const struct mrt_opening_input *openings, int opening_count);

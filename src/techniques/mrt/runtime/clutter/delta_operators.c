@@ -11,7 +11,7 @@ enum { ENTRY_RAYS = 256 };
 
 struct builder {
     struct mrt_delta_operators *out;
-    struct mrt_turned *turned;
+    struct mrt_level_operators *operators;
     const struct mrt_level *level;
     const struct mrt_clutter *clutter;
     const struct mrt_delta_options *options;
@@ -19,7 +19,7 @@ struct builder {
     struct mrt_delta_cache *cache;
     const struct matrix_f32 **l_imp; // of each block
     int *sources;                    // [blocks], of an opening
-    int old_opening, old_pair;       // of the turned operators that were taken
+    int old_opening, old_pair;       // of `operators` that were copied
 };
 
 // ---- matrices
@@ -61,7 +61,7 @@ static void change_basis(const struct builder *s, const struct mrt_block *block,
         if (rows->rows == 0 || !of->inside) continue;
         add_shadows(rows, of, values_of((enum mrt_measure)m));
         if (m == MRT_PROBE)
-            mrt_inpaint_probes(rows, s->turned->input.probes, of->inside);
+            mrt_inpaint_probes(rows, s->operators->input.probes, of->inside);
         else
             mrt_inpaint_texels(rows, s->level->resolution, mrt_block_walls(block),
                                values_of((enum mrt_measure)m), of->inside);
@@ -70,11 +70,11 @@ static void change_basis(const struct builder *s, const struct mrt_block *block,
 
 static bool add_basis(struct builder *s, int block, const struct mrt_delta_block *delta)
 {
-    struct mrt_turned *turned = s->turned;
-    struct host *host = turned->host;
-    const struct mrt_basis_input *old = &turned->bases[turned->basis_of_block[block]];
-    struct mrt_basis_input *basis = &turned->bases[turned->input.basis_count];
-    turned->basis_of_block[block] = turned->input.basis_count++;
+    struct mrt_level_operators *operators = s->operators;
+    struct host *host = operators->host;
+    const struct mrt_basis_input *old = &operators->bases[operators->basis_of_block[block]];
+    struct mrt_basis_input *basis = &operators->bases[operators->input.basis_count];
+    operators->basis_of_block[block] = operators->input.basis_count++;
     basis->open = old->open;
     const bool ok = matrix_f32_copy(host, &old->t_db, old->t_db.columns, &basis->t_db) &&
                     copy_light(host, old->u, basis->u) &&
@@ -120,7 +120,7 @@ static void keep_share(const struct builder *s, int block, int face,
     const float *kept = delta->of[measure].kept[face];
     if (measure == MRT_PROBE) {
         for (size_t r = 0; r < rows->rows; r++) scale_row(rows, r, kept[r / (size_t)values]);
-        mrt_inpaint_probes(rows, s->turned->input.probes, delta->of[measure].inside);
+        mrt_inpaint_probes(rows, s->operators->input.probes, delta->of[measure].inside);
         return;
     }
     for (struct wall_texels at = walls_of(s, block); next_wall(&at);) {
@@ -158,7 +158,7 @@ static void copy_faces(const struct builder *s, int block, const struct mrt_delt
     if (measure == MRT_PROBE) {
         for (size_t r = 0; r < c->rows; r++)
             memcpy(rows->at + r * rows->stride, c->at + r * c->stride, bytes);
-        mrt_inpaint_probes(rows, s->turned->input.probes, inside);
+        mrt_inpaint_probes(rows, s->operators->input.probes, inside);
         return;
     }
     for (struct wall_texels at = walls_of(s, block); next_wall(&at);) {
@@ -176,7 +176,7 @@ static bool add_face_response(struct builder *s, int block, const struct mrt_del
                               int index)
 {
     for (int m = 0; m < MRT_MEASURES; m++) {
-        const struct matrix_f32 *sizes = &s->turned->responses[0].u[m];
+        const struct matrix_f32 *sizes = &s->operators->responses[0].u[m];
         struct matrix_f32 *rows = &s->out->responses[index].u[m];
         if (!matrix_f32_init(s->out->host, rows, sizes->rows, sizes->columns)) return false;
         if (rows->rows > 0 && delta->of[m].inside)
@@ -197,7 +197,7 @@ static struct mrt_opening_input *new_opening(struct builder *s, struct mrt_openi
 // T_b→r is stored transposed: k_b rows of t_br_stride.
 static bool add_pair(struct builder *s, int opening, int source, const struct matrix_f32 *of_b)
 {
-    const size_t k_b = of_b->columns, stride = (size_t)s->turned->input.t_br_stride;
+    const size_t k_b = of_b->columns, stride = (size_t)s->operators->input.t_br_stride;
     struct matrix_f32 *matrix = &s->out->gathered[s->out->gathered_count++];
     if (!matrix_f32_init(s->out->host, matrix, 1, k_b * stride)) return false;
     for (size_t f = 0; f < of_b->rows; f++)
@@ -217,7 +217,7 @@ static bool add_face_pair(struct builder *s, int opening, int source, const stru
     if (!any) return true;
     struct mrt_face_pair_input *pair = &s->out->face_pairs[s->out->face_pair_count++];
     *pair = (struct mrt_face_pair_input){ .opening = opening, .source = source };
-    if (!matrix_f32_init(s->out->host, &pair->of_c, of_c->columns, (size_t)s->turned->input.k_r))
+    if (!matrix_f32_init(s->out->host, &pair->of_c, of_c->columns, (size_t)s->operators->input.k_r))
         return false;
     for (size_t r = 0; r < of_c->rows; r++)
         for (size_t f = 0; f < of_c->columns; f++)
@@ -236,7 +236,7 @@ static int pairs_of_opening(const struct mrt_runtime_input *input, int opening, 
 // Without clutter in any of the blocks that send light the entry is empty.
 static bool trace_entry(struct builder *s, int index, int pairs, const struct mrt_delta_entry **out)
 {
-    const struct mrt_opening_input *opening = &s->turned->input.openings[index];
+    const struct mrt_opening_input *opening = &s->operators->input.openings[index];
     const struct mrt_delta_entry_input input = {
         .map = s->level->map,
         .l_imp = s->l_imp,
@@ -247,7 +247,7 @@ static bool trace_entry(struct builder *s, int index, int pairs, const struct mr
         .depth = s->options->depth,
         .block = opening->block,
         .face = opening->face,
-        .u_r = &s->turned->responses[opening->response].u[MRT_IRRADIANCE],
+        .u_r = &s->operators->responses[opening->response].u[MRT_IRRADIANCE],
         .sources = s->sources,
         .source_count = pairs,
         .stop = s->options->stop
@@ -255,7 +255,7 @@ static bool trace_entry(struct builder *s, int index, int pairs, const struct mr
     bool any = false;
     for (int i = 0; i < pairs; i++) {
         int first;
-        s->sources[i] = s->turned->input.pairs[s->old_pair + i].source;
+        s->sources[i] = s->operators->input.pairs[s->old_pair + i].source;
         any = any || mrt_faces_of_block(s->clutter, s->sources[i], &first) > 0;
     }
     static const struct mrt_delta_entry empty = { 0 };
@@ -265,7 +265,7 @@ static bool trace_entry(struct builder *s, int index, int pairs, const struct mr
 
 static bool add_opening_pairs(struct builder *s, int opening)
 {
-    const struct mrt_runtime_input *old = &s->turned->input;
+    const struct mrt_runtime_input *old = &s->operators->input;
     const int count = pairs_of_opening(old, s->old_opening, s->old_pair);
     const struct mrt_delta_entry *entry;
     bool ok = trace_entry(s, s->old_opening, count, &entry);
@@ -288,7 +288,7 @@ static bool add_opening_pairs(struct builder *s, int opening)
 
 static bool add_openings(struct builder *s, int block, const struct mrt_delta_block *delta)
 {
-    const struct mrt_runtime_input *old = &s->turned->input;
+    const struct mrt_runtime_input *old = &s->operators->input;
     bool ok = true;
     while (ok && s->old_opening < old->opening_count &&
            old->openings[s->old_opening].block == block) {
@@ -373,21 +373,22 @@ static bool add_transfer(struct builder *s, int block, int first_opening)
                                                     .objects = s->objects,
                                                     .rays = s->options->rays,
                                                     .stop = s->options->stop };
-    return mrt_clutter_atlas_add(&s->out->atlas, s->turned, s->cache, &how, block,
+    return mrt_clutter_atlas_add(&s->out->atlas, s->operators, s->cache, &how, block,
                                  s->out->openings + first_opening,
                                  input->opening_count - first_opening);
 }
 
-static size_t voxels_of(const struct mrt_turned *turned)
+static size_t voxels_of(const struct mrt_level_operators *operators)
 {
-    const size_t edge = turned->input.probes > 0 ? (size_t)mrt_sight_edge(turned->input.probes) : 0;
+    const size_t edge =
+        operators->input.probes > 0 ? (size_t)mrt_sight_edge(operators->input.probes) : 0;
     return edge * edge * edge;
 }
 
 static void add_sight(struct builder *s, int block, const struct mrt_delta_block *delta)
 {
     struct mrt_runtime_input *input = &s->out->input;
-    const size_t voxels = voxels_of(s->turned);
+    const size_t voxels = voxels_of(s->operators);
     if (!delta->sight) return;
     input->sight = s->out->sight;
     s->out->sight[block] = (uint32_t)input->sight_count;
@@ -407,7 +408,7 @@ static bool add_block(struct builder *s, int block, const struct mrt_clutter_tex
                                            .objects = s->objects,
                                            .bounds = mrt_clutter_bounds_in(s->clutter, at),
                                            .rays = s->options->rays,
-                                           .probes = s->turned->input.probes,
+                                           .probes = s->operators->input.probes,
                                            .stop = s->options->stop };
     const struct mrt_delta_block *delta = mrt_kept_delta(s->cache, &input);
     bool ok = delta;
@@ -425,9 +426,10 @@ static bool add_block(struct builder *s, int block, const struct mrt_clutter_tex
 
 // ---- all of it
 
-static bool allocate(struct mrt_delta_operators *out, const struct mrt_turned *turned, int faces)
+static bool allocate(struct mrt_delta_operators *out, const struct mrt_level_operators *operators,
+                     int faces)
 {
-    const struct mrt_runtime_input *old = &turned->input;
+    const struct mrt_runtime_input *old = &operators->input;
     const size_t blocks = (size_t)old->map->count, openings = (size_t)old->opening_count;
     const size_t pairs = (size_t)old->pair_count;
     struct host *host = out->host;
@@ -438,17 +440,17 @@ static bool allocate(struct mrt_delta_operators *out, const struct mrt_turned *t
     out->faces = host_alloc(host, (size_t)faces, sizeof *out->faces);
     out->clutter_openings = host_alloc(host, blocks, sizeof *out->clutter_openings);
     out->face_pairs = host_alloc(host, pairs + blocks * blocks, sizeof *out->face_pairs);
-    out->sight = host_alloc(host, blocks * (1 + voxels_of(turned)), sizeof *out->sight);
+    out->sight = host_alloc(host, blocks * (1 + voxels_of(operators)), sizeof *out->sight);
     out->input.sight_count = blocks;
     if (!mrt_clutter_atlas_init(&out->atlas, host, (int)blocks)) return false;
     return out->responses && out->openings && out->pairs && out->gathered && out->faces &&
            out->clutter_openings && out->face_pairs && out->sight;
 }
 
-static void finish_input(struct mrt_delta_operators *out, struct mrt_turned *turned,
+static void finish_input(struct mrt_delta_operators *out, struct mrt_level_operators *operators,
                          const struct mrt_clutter *clutter, const struct mrt_clutter_texel *texels)
 {
-    out->input.basis_count = turned->input.basis_count;
+    out->input.basis_count = operators->input.basis_count;
     out->input.responses = out->responses;
     out->input.openings = out->openings;
     out->input.pairs = out->pairs;
@@ -464,34 +466,34 @@ static void finish_input(struct mrt_delta_operators *out, struct mrt_turned *tur
 }
 
 bool mrt_delta_operators_init(struct mrt_delta_operators *out, struct host *host,
-                              struct mrt_turned *turned, const struct mrt_level *level,
+                              struct mrt_level_operators *operators, const struct mrt_level *level,
                               const struct mrt_clutter *clutter,
                               const struct mrt_clutter_texel *texels, struct mrt_delta_cache *cache,
                               const struct mrt_delta_options *options)
 {
     const int blocks = level->map->count;
     struct builder s = { .out = out,
-                         .turned = turned,
+                         .operators = operators,
                          .level = level,
                          .clutter = clutter,
                          .cache = cache,
                          .options = options };
-    *out = (struct mrt_delta_operators){ .host = host, .input = turned->input };
+    *out = (struct mrt_delta_operators){ .host = host, .input = operators->input };
     out->input.opening_count = out->input.pair_count = 0;
     s.objects = trace_scene_create(host, &clutter->objects.pose);
     s.l_imp = host_alloc(host, (size_t)blocks, sizeof *s.l_imp);
     s.sources = host_alloc(host, (size_t)blocks, sizeof *s.sources);
-    bool ok = s.objects && s.l_imp && s.sources && allocate(out, turned, clutter->face_count);
-    for (int i = 0; ok && i < MRT_RESPONSES; i++) out->responses[i] = turned->responses[i];
+    bool ok = s.objects && s.l_imp && s.sources && allocate(out, operators, clutter->face_count);
+    for (int i = 0; ok && i < MRT_RESPONSES; i++) out->responses[i] = operators->responses[i];
     out->shared_responses = MRT_RESPONSES;
     for (int b = 0; ok && b < blocks; b++)
-        s.l_imp[b] = &turned->bases[turned->basis_of_block[b]].l_imp;
+        s.l_imp[b] = &operators->bases[operators->basis_of_block[b]].l_imp;
     for (int b = 0; ok && b < blocks; b++) ok = add_block(&s, b, texels);
     trace_scene_destroy(s.objects);
     host_free(host, s.l_imp);
     host_free(host, s.sources);
     ok = ok && (!options->gather || mrt_clutter_atlas_place(&out->atlas, clutter));
-    if (ok) finish_input(out, turned, clutter, texels);
+    if (ok) finish_input(out, operators, clutter, texels);
     ok = ok && mrt_order_faces(out);
     if (!ok) mrt_delta_operators_finish(out);
     return ok;

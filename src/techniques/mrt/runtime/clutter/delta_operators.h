@@ -8,7 +8,7 @@
 
 #include "techniques/mrt/clutter/delta_cache.h"
 #include "techniques/mrt/runtime/clutter/clutter_atlas.h"
-#include "techniques/mrt/runtime/turned.h"
+#include "techniques/mrt/runtime/level_operators.h"
 
 struct mrt_delta_options {
     int rays, depth;         // rays per texel; openings that light on clutter passes at most
@@ -21,7 +21,7 @@ struct mrt_delta_options {
 struct mrt_delta_operators {
     struct host *host;
     struct mrt_response_input *responses;
-    int shared_responses; // the first ones, of the turned operators
+    int shared_responses; // the first ones, of `operators`
     struct mrt_opening_input *openings;
     struct mrt_pair_input *pairs;
     struct matrix_f32 *gathered; // T_b→r of faces
@@ -33,13 +33,13 @@ struct mrt_delta_operators {
     uint32_t *sight; // mrt_runtime_input.sight
     struct mrt_clutter_atlas atlas;
     struct mrt_clutter_input clutter;
-    struct mrt_runtime_input input; // refers to `turned`
+    struct mrt_runtime_input input; // refers to `operators`
 };
 
-// Adds bases to `turned`, which must outlive the input. texels: those of clutter->texels, in their
-// order. The cache must outlive the call only. mrt_delta_operators_finish accepts zero.
+// Adds bases to `operators`, which must outlive the input. texels: those of clutter->texels, in
+// their order. The cache must outlive the call only. mrt_delta_operators_finish accepts zero.
 bool mrt_delta_operators_init(struct mrt_delta_operators *out, struct host *host,
-                              struct mrt_turned *turned, const struct mrt_level *level,
+                              struct mrt_level_operators *operators, const struct mrt_level *level,
                               const struct mrt_clutter *clutter,
                               const struct mrt_clutter_texel *texels, struct mrt_delta_cache *cache,
                               const struct mrt_delta_options *options);

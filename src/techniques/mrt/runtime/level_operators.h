@@ -4,7 +4,7 @@
 #include "techniques/mrt/level/level.h"
 #include "techniques/mrt/runtime/input.h"
 
-struct mrt_turned {
+struct mrt_level_operators {
     struct host *host;
     struct mrt_basis_input *bases; // room for two of each block
     int *basis_of_block;
@@ -14,7 +14,8 @@ struct mrt_turned {
     struct mrt_runtime_input input; // without atlas and geometry; refers to the level
 };
 
-bool mrt_turned_init(struct host *host, const struct mrt_level *level, struct mrt_turned *out);
-void mrt_turned_finish(struct mrt_turned *turned);
+bool mrt_level_operators_init(struct host *host, const struct mrt_level *level,
+                              struct mrt_level_operators *out);
+void mrt_level_operators_finish(struct mrt_level_operators *operators);
 
 void mrt_response_input_finish(struct host *host, struct mrt_response_input *response);

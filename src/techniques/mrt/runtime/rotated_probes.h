@@ -1,4 +1,4 @@
-// Operators of probes of the dictionary, turned as the blocks of a level are.
+// Operators of probes of the dictionary, rotated to the blocks of a level.
 #pragma once
 
 #include "core/linalg.h"

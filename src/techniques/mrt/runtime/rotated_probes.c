@@ -1,5 +1,5 @@
 // Probes in the frames of blocks.
-#include "turned_probes.h"
+#include "rotated_probes.h"
 
 #include "core/sh.h"
 
@@ -8,8 +8,8 @@
 
 #include <math.h>
 
-// A turned shape has its probes in the same places.
-static int turned_probe(int p, const struct mrt_probe_turn *turn, int i)
+// A rotated shape has its probes in the same places.
+static int rotated_probe(int p, const struct mrt_probe_turn *turn, int i)
 {
     vec3s at = mrt_gather_point(turn->to, p, MRT_PROBE, i).position;
     int nearest = 0;
@@ -44,7 +44,7 @@ bool mrt_turn_probes(struct host *host, int p, const struct mrt_probe_turn *turn
         return false;
     for (int i = 0; i < probes; i++) {
         size_t row = MRT_PROBE_VALUES * (size_t)i;
-        size_t source = MRT_PROBE_VALUES * (size_t)turned_probe(p, turn, i);
+        size_t source = MRT_PROBE_VALUES * (size_t)rotated_probe(p, turn, i);
         turn_probe(turn->to_from, from->at + source * from->stride, from->stride,
                    out->at + row * out->stride, out->stride, from->columns);
     }

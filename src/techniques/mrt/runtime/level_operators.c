@@ -1,11 +1,11 @@
-// Texels and tangent frames of the dictionary's cubes, turned as the blocks of a level are.
-#include "turned.h"
+// Texels and tangent frames of the dictionary's cubes, rotated to the blocks of a level.
+#include "level_operators.h"
 
-#include "techniques/mrt/runtime/turned_probes.h"
+#include "techniques/mrt/runtime/rotated_probes.h"
 
 #include <string.h>
 
-// Texels of `from`, turned by to_from, as those of `to`.
+// Texels of `from`, rotated by to_from, as those of `to`.
 struct turn {
     struct mrt_shape from, to;
     mat3s to_from;
@@ -23,7 +23,7 @@ static bool turn_rows(struct host *host, const struct turn *turn, const struct m
 {
     if (!empty_matrix(host, turn, 1, from->columns, out)) return false;
     for (int t = 0; t < mrt_shape_texels(&turn->to); t++) {
-        int texel = mrt_turned_texel(&turn->from, turn->to_from, &turn->to, t);
+        int texel = mrt_rotated_texel(&turn->from, turn->to_from, &turn->to, t);
         if (texel < 0) continue;
         memcpy(out->at + (size_t)t * out->stride, from->at + (size_t)texel * from->stride,
                from->columns * sizeof *out->at);
@@ -37,7 +37,7 @@ static bool turn_columns(struct host *host, const struct turn *turn, const struc
     size_t texels = (size_t)mrt_shape_texels(&turn->to);
     if (!matrix_f32_init(host, out, from->rows, texels)) return false;
     for (size_t t = 0; t < texels; t++) {
-        int texel = mrt_turned_texel(&turn->from, turn->to_from, &turn->to, (int)t);
+        int texel = mrt_rotated_texel(&turn->from, turn->to_from, &turn->to, (int)t);
         for (size_t m = 0; m < from->rows; m++)
             out->at[m * out->stride + t] = from->at[m * from->stride + (size_t)texel];
     }
@@ -66,7 +66,7 @@ static bool turn_vectors(struct host *host, const struct turn *turn, const struc
 {
     if (!empty_matrix(host, turn, MRT_VECTOR_COEFFICIENTS, from->columns, out)) return false;
     for (int t = 0; t < mrt_shape_texels(&turn->to); t++) {
-        int texel = mrt_turned_texel(&turn->from, turn->to_from, &turn->to, t);
+        int texel = mrt_rotated_texel(&turn->from, turn->to_from, &turn->to, t);
         if (texel < 0) continue;
         mat3s from_frame = mrt_shape_texel(&turn->from, texel).frame;
         mat3s to_frame = mrt_shape_texel(&turn->to, t).frame;
@@ -118,7 +118,7 @@ static bool same_basis(const struct mrt_level *level, int i, int j)
 }
 
 // Blocks of the same cube, turn and proportions share a basis.
-static bool make_bases(struct mrt_turned *out, const struct mrt_level *level,
+static bool make_bases(struct mrt_level_operators *out, const struct mrt_level *level,
                        const struct mrt_dictionary *dictionary)
 {
     for (int b = 0; b < level->map->count; b++) {
@@ -135,7 +135,7 @@ static bool make_bases(struct mrt_turned *out, const struct mrt_level *level,
     return true;
 }
 
-static bool make_response(struct mrt_turned *out, const struct mrt_dictionary *dictionary,
+static bool make_response(struct mrt_level_operators *out, const struct mrt_dictionary *dictionary,
                           const struct mrt_shape *to, int face, struct mrt_response_input *response)
 {
     const int index = mrt_entered_by(to, face);
@@ -147,7 +147,8 @@ static bool make_response(struct mrt_turned *out, const struct mrt_dictionary *d
     return turn_light(out->host, &turn, dictionary->options.block_probes, light, response->u);
 }
 
-static bool make_tube_responses(struct mrt_turned *out, const struct mrt_dictionary *dictionary)
+static bool make_tube_responses(struct mrt_level_operators *out,
+                                const struct mrt_dictionary *dictionary)
 {
     bool ok = true;
     for (int kind = MRT_BLOCK_STRAIGHT; kind < MRT_BLOCK_KINDS; kind++) {
@@ -163,7 +164,7 @@ static bool make_tube_responses(struct mrt_turned *out, const struct mrt_diction
     return ok;
 }
 
-static bool make_responses(struct mrt_turned *out, const struct mrt_dictionary *dictionary)
+static bool make_responses(struct mrt_level_operators *out, const struct mrt_dictionary *dictionary)
 {
     if (dictionary->options.maze == MRT_TUNNEL) return make_tube_responses(out, dictionary);
     const struct mrt_shape closed = mrt_cube(dictionary->options.texels, 0);
@@ -173,7 +174,7 @@ static bool make_responses(struct mrt_turned *out, const struct mrt_dictionary *
     return ok;
 }
 
-static void make_pairs(struct mrt_turned *out, const struct mrt_level *level)
+static void make_pairs(struct mrt_level_operators *out, const struct mrt_level *level)
 {
     for (int i = 0; i < level->entry_count; i++) {
         const struct mrt_entry entry = level->entries[i];
@@ -186,12 +187,13 @@ static void make_pairs(struct mrt_turned *out, const struct mrt_level *level)
     }
 }
 
-bool mrt_turned_init(struct host *host, const struct mrt_level *level, struct mrt_turned *out)
+bool mrt_level_operators_init(struct host *host, const struct mrt_level *level,
+                              struct mrt_level_operators *out)
 {
     const struct mrt_dictionary *dictionary = level->dictionary;
     size_t blocks = (size_t)level->map->count, entries = (size_t)level->entry_count;
     size_t links = (size_t)level->first_link[level->entry_count];
-    *out = (struct mrt_turned){ .host = host };
+    *out = (struct mrt_level_operators){ .host = host };
     out->bases = host_alloc(host, 2 * blocks, sizeof *out->bases);
     out->responses = host_alloc(host, MRT_RESPONSES, sizeof *out->responses);
     out->basis_of_block = host_alloc(host, blocks, sizeof *out->basis_of_block);
@@ -230,16 +232,16 @@ void mrt_response_input_finish(struct host *host, struct mrt_response_input *res
     for (int m = 0; m < MRT_MEASURES; m++) matrix_f32_finish(host, &response->u[m]);
 }
 
-void mrt_turned_finish(struct mrt_turned *turned)
+void mrt_level_operators_finish(struct mrt_level_operators *operators)
 {
-    if (!turned->host) return;
-    for (int i = 0; i < turned->input.basis_count; i++)
-        basis_finish(turned->host, &turned->bases[i]);
-    for (int i = 0; turned->responses && i < MRT_RESPONSES; i++)
-        mrt_response_input_finish(turned->host, &turned->responses[i]);
-    host_free(turned->host, turned->bases);
-    host_free(turned->host, turned->responses);
-    host_free(turned->host, turned->basis_of_block);
-    host_free(turned->host, turned->openings);
-    host_free(turned->host, turned->pairs);
+    if (!operators->host) return;
+    for (int i = 0; i < operators->input.basis_count; i++)
+        basis_finish(operators->host, &operators->bases[i]);
+    for (int i = 0; operators->responses && i < MRT_RESPONSES; i++)
+        mrt_response_input_finish(operators->host, &operators->responses[i]);
+    host_free(operators->host, operators->bases);
+    host_free(operators->host, operators->responses);
+    host_free(operators->host, operators->basis_of_block);
+    host_free(operators->host, operators->openings);
+    host_free(operators->host, operators->pairs);
 }
