@@ -73,7 +73,7 @@ void rotate(mat3 axes, inout vec3 c[9])
 #ifdef DNRT_DEPTHS
 void light_at(vec3 position, out vec3 c[9])
 {
-    probes_seen_coefficients(probes, probe_depths, push.grid, position, c);
+    probes_visible_coefficients(probes, probe_depths, push.grid, position, c);
 }
 #else
 void light_at(vec3 position, out vec3 c[9])

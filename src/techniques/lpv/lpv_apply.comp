@@ -97,9 +97,9 @@ vec3 lookup_of(vec3 surface, vec3 n)
 {
     vec3 at = lpv_cells_from_world(surface + lpv.offset_m * n);
     vec3 to_viewer = frame_to_viewer(surface) / lpv.cell_m;
-    vec3 seen = at + to_viewer * min(LPV_TO_VIEWER / length(to_viewer), 1.0);
-    vec3 visible = lpv_visible(seen, lpv_cells());
-    return visible == seen ? at : visible;
+    vec3 moved = at + to_viewer * min(LPV_TO_VIEWER / length(to_viewer), 1.0);
+    vec3 visible = lpv_visible(moved, lpv_cells());
+    return visible == moved ? at : visible;
 }
 
 vec3 surface_irradiance(vec3 surface, vec3 n)

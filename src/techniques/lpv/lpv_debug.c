@@ -12,8 +12,8 @@ void lpv_record_debug(struct lpv *finest, struct gpu_cmd *cmd, const struct fram
         .view = debug_view,
         .radiance_scale = finest->params.irradiance_scale / (4.0f * GLM_PIf),
     };
-    const gpu_image shown = debug_view == LPV_VIEW_PROPAGATED ? v->light : v->injected;
-    const gpu_image geometry = finest->options.geometry == LPV_GEOMETRY_OFF ? shown : v->geometry;
+    const gpu_image light = debug_view == LPV_VIEW_PROPAGATED ? v->light : v->injected;
+    const gpu_image geometry = finest->options.geometry == LPV_GEOMETRY_OFF ? light : v->geometry;
     gpu_scope_begin(cmd, "debug");
     lpv_record_resolve(finest, cmd); // propagation may have added occluded light to `injected`
     gpu_dispatch(cmd, finest->pipelines.debug,
@@ -21,7 +21,7 @@ void lpv_record_debug(struct lpv *finest, struct gpu_cmd *cmd, const struct fram
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                           { .name = "geometry", .image = geometry, .sampler = finest->linear },
-                          { .name = "volume", .image = shown },
+                          { .name = "volume", .image = light },
                           { .name = "debug_image", .image = out }),
                  &push, sizeof push, gpu_groups(view->width, LPV_LOCAL),
                  gpu_groups(view->height, LPV_LOCAL), 1);

@@ -34,14 +34,16 @@ vo_box box_at(vo_point p, vec2 offset, int level)
     vec2 here = vec2(p.pixel) + 0.5,
          last = vec2(max(ivec2(view.width, view.height) >> level, 1) - 1);
     vec2 texel = clamp(floor((here + offset) * (1.0 / texel_px) + jitter), vec2(0.0), last);
-    vec2 seen = texelFetch(moments, ivec2(texel), level - 1).rg;
+    vec2 depths = texelFetch(moments, ivec2(texel), level - 1).rg;
     vec2 step = (texel + 0.5) * texel_px - here;
     float to_z = p.sphere.z_per_depth;
     float tolerance = p.plane.tolerance;
     // An error t of the slope s changes its square by t (t + 2s), and 2s ≤ 1 + s².
     float rounding = tolerance * (tolerance + 1.0 + dot(p.plane.on_disk, p.plane.on_disk));
-    float variance = seen.y * to_z * to_z - plane_variance(p.plane.on_screen, texel_px) - rounding;
-    return vo_box(screen_behind(p.sphere, p.plane, step, seen.x) + (WITH_NORMAL ? tolerance : 0.0),
+    float variance =
+        depths.y * to_z * to_z - plane_variance(p.plane.on_screen, texel_px) - rounding;
+    float front = screen_behind(p.sphere, p.plane, step, depths.x);
+    return vo_box(front + (WITH_NORMAL ? tolerance : 0.0),
                   max(sqrt(3.0 * max(variance, 0.0)), THINNEST));
 }
 

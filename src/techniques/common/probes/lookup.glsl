@@ -1,12 +1,12 @@
-// Irradiance between probes of which some may be behind walls. A probe counts as far as the surface
-// is no farther away than what the probe sees in its direction, by mean and variance of distances
-// and Chebyshev's inequality (Majercik et al. 2019, "Dynamic Diffuse Global Illumination with
+// Irradiance between probes, of which some may be behind walls. The weight of a probe is its
+// visibility from the surface, estimated from mean and variance of the probe's depths by
+// Chebyshev's inequality (Majercik et al. 2019, "Dynamic Diffuse Global Illumination with
 // Ray-Traced Irradiance Fields").
 //
-// The nearness of what is at an offset v is 1/|v|₁, with the L1 norm: on a plane this is a linear
-// function of the place in a face of the octahedral map, so that bilinear interpolation is exact,
-// and the variance is that about a linear function. Euclidean distances of planes that are seen
-// from the side vary within a texel by more than a wall's thickness.
+// Depths are stored as nearness 1/|v|₁, with the L1 norm of an offset v. On a plane, nearness is a
+// linear function of the place in a face of the octahedral map: bilinear interpolation is exact,
+// and the variance is that about a linear function. Euclidean distances of a plane at a grazing
+// angle vary within a texel by more than a wall's thickness.
 //
 // The volume is that of frame/probes.glsl with one slab more: of each probe its offset from the
 // grid, in spacings, and 1, or 0 where it has no light of its own. `depth`: RG16F, a tile for each
@@ -18,9 +18,9 @@
 
 #include "techniques/common/probes/depth_shared.h"
 
-const float PROBE_BIAS = 0.05;   // spacings along the normal, against the variance of planes
-const float PROBE_UNSEEN = 1e-5; // weight of probes behind walls, where all are
-const float PROBE_SPREAD = 0.01; // least deviation, of the mean
+const float PROBE_BIAS = 0.05;     // spacings along the normal, against the variance of planes
+const float PROBE_OCCLUDED = 1e-5; // weight of probes behind walls, which counts if all are
+const float PROBE_SPREAD = 0.01;   // least deviation, over the mean
 
 vec2 probe_depth(sampler2D depth, int probe, vec3 direction)
 {
@@ -35,10 +35,10 @@ float probe_visibility(sampler2D depth, int probe, vec3 to)
 {
     float way = dot(abs(to), vec3(1.0));
     if (way < 1.0 / PROBE_NEAR) return 1.0;
-    vec2 seen = probe_depth(depth, probe, to);
-    float beyond = seen.x - max(1.0 / way, PROBE_FAR);
+    vec2 moments = probe_depth(depth, probe, to);
+    float beyond = moments.x - max(1.0 / way, PROBE_FAR);
     if (beyond <= 0.0) return 1.0;
-    float deviation = max(seen.y, PROBE_SPREAD * seen.x);
+    float deviation = max(moments.y, PROBE_SPREAD * moments.x);
     float bound = deviation * deviation / (deviation * deviation + beyond * beyond);
     return bound * bound * bound;
 }
@@ -46,9 +46,9 @@ float probe_visibility(sampler2D depth, int probe, vec3 to)
 // One of the eight probes around a place.
 struct probe_corner {
     ivec3 cell;
-    vec3 to;      // from the probe to the place, in spacings
-    float linear; // share of the interpolation
-    float seen;   // 0: it has no light of its own, or is behind a wall
+    vec3 to;          // from the probe to the place, in spacings
+    float linear;     // share of the interpolation
+    float visibility; // 0: it has no light of its own, or is behind a wall
 };
 
 // at: in spacings of the grid, at most half of one outside.
@@ -85,7 +85,7 @@ vec3 probe_irradiance(sampler3D volume, int slab, ivec3 cell, float basis[9])
 
 // Irradiance by direction, at a point of a surface in the world; points beyond the grid are moved
 // to its cells.
-vec3 probes_seen_irradiance(sampler3D volume, sampler2D depth, frame_probes grid, vec3 position,
+vec3 probes_visible_irradiance(sampler3D volume, sampler2D depth, frame_probes grid, vec3 position,
                             vec3 normal, vec3 direction)
 {
     vec3 at = (position - grid.first_m) / grid.spacing_m + PROBE_BIAS * normal;
@@ -97,7 +97,7 @@ vec3 probes_seen_irradiance(sampler3D volume, sampler2D depth, frame_probes grid
     for (int i = 0; i < 8; i++) {
         probe_corner corner = probe_corner_of(volume, depth, grid, at, i);
         float weight =
-            corner.linear * (corner.seen * probe_facing(normal, corner.to) + PROBE_UNSEEN);
+            corner.linear * (corner.visibility * probe_facing(normal, corner.to) + PROBE_OCCLUDED);
         sum += weight * probe_irradiance(volume, grid.slab, corner.cell, basis);
         weights += weight;
     }
@@ -105,7 +105,7 @@ vec3 probes_seen_irradiance(sampler3D volume, sampler2D depth, frame_probes grid
 }
 
 // Irradiance over directions, as coefficients, at a point that is on no surface.
-void probes_seen_coefficients(sampler3D volume, sampler2D depth, frame_probes grid, vec3 position,
+void probes_visible_coefficients(sampler3D volume, sampler2D depth, frame_probes grid, vec3 position,
                               out vec3 c[9])
 {
     vec3 last = vec3(grid.count_x, grid.count_y, grid.count_z) - 1.0;
@@ -114,7 +114,7 @@ void probes_seen_coefficients(sampler3D volume, sampler2D depth, frame_probes gr
     for (int j = 0; j < 9; j++) c[j] = vec3(0.0);
     for (int k = 0; k < 8; k++) {
         probe_corner corner = probe_corner_of(volume, depth, grid, at, k);
-        float weight = corner.linear * (corner.seen + PROBE_UNSEEN);
+        float weight = corner.linear * (corner.visibility + PROBE_OCCLUDED);
         vec4 values;
         for (int i = 0; i < 27; i++) {
             if (i % 4 == 0)

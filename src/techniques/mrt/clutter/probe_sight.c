@@ -56,9 +56,10 @@ static vec3s point_of(const struct job *job, const struct voxel *voxel, int poin
 }
 
 // Bits of the probes that a place sees; solid: it sees backs alone.
-static uint32_t seen_from(const struct job *job, const struct voxel *voxel, vec3s from, bool *solid)
+static uint32_t visible_from(const struct job *job, const struct voxel *voxel, vec3s from,
+                             bool *solid)
 {
-    uint32_t seen = 0;
+    uint32_t visible = 0;
     int backs = 0;
     for (int c = 0; c < CORNERS; c++) {
         struct trace_hit hit;
@@ -66,12 +67,12 @@ static uint32_t seen_from(const struct job *job, const struct voxel *voxel, vec3
         for (int a = 0; a < 3; a++)
             to.raw[a] = coordinate_of(job->input, a, voxel->texel[a] + (c >> a & 1));
         if (!mrt_delta_blocked(job->input, from, to, &hit))
-            seen |= 1u << c;
+            visible |= 1u << c;
         else
             backs += !hit.front;
     }
     *solid = backs == CORNERS;
-    return seen;
+    return visible;
 }
 
 static uint32_t open_from(const struct job *job, vec3s from)
@@ -89,25 +90,25 @@ static uint32_t open_from(const struct job *job, vec3s from)
 }
 
 // The least of a voxel's points that are in no solid.
-static void see(void *user, size_t i)
+static void find_visibility(void *user, size_t i)
 {
     const struct job *job = user;
     const struct voxel voxel = voxel_of(job, i);
-    uint32_t seen = MRT_VOXEL_PROBES, open = ALL_OPEN;
+    uint32_t visible = MRT_VOXEL_PROBES, open = ALL_OPEN;
     bool solid[POINTS];
     int solids = 0;
     if (mrt_is_stopped(job->input->stop)) return;
     for (int k = 0; k < POINTS; k++) {
-        const uint32_t of = seen_from(job, &voxel, point_of(job, &voxel, k), &solid[k]);
+        const uint32_t of = visible_from(job, &voxel, point_of(job, &voxel, k), &solid[k]);
         solids += solid[k];
-        if (!solid[k]) seen &= of;
+        if (!solid[k]) visible &= of;
     }
-    if (solids == POINTS) seen = open = 0;
-    for (int k = 0; seen == 0 && k < POINTS; k++) {
+    if (solids == POINTS) visible = open = 0;
+    for (int k = 0; visible == 0 && k < POINTS; k++) {
         const uint32_t of = solid[k] ? open : open_from(job, point_of(job, &voxel, k));
         open = of < open ? of : open;
     }
-    job->voxels[i] = seen | open << MRT_VOXEL_OPEN;
+    job->voxels[i] = visible | open << MRT_VOXEL_OPEN;
     if (solids > 0) job->voxels[i] |= MRT_VOXEL_SOLID;
 }
 
@@ -115,5 +116,5 @@ void mrt_probe_sight(const struct mrt_delta_input *input, uint32_t *voxels)
 {
     struct job job = { input, voxels, mrt_sight_edge(input->probes) };
     const size_t n = (size_t)job.edge;
-    parallel_for(n * n * n, 64, see, &job);
+    parallel_for(n * n * n, 64, find_visibility, &job);
 }

@@ -23,8 +23,8 @@ vec3 brick_texel(mrt_place place)
     return vec3(brick * edge) + clamp(at, vec3(0.5), vec3(float(edge) - 0.5));
 }
 
-// Lookups of a place, of the probes around it that it sees past clutter (clutter/probe_sight.h).
-struct mrt_seen {
+// Lookups of a place at the probes visible from it past clutter (clutter/probe_sight.h).
+struct mrt_visible_probes {
     vec3 texel;
     uint probes; // bits
     int lookups; // 1: between all probes, or 8: at each of them
@@ -38,7 +38,7 @@ uint sight_at(uint first, vec3 at)
 }
 
 // The voxel one step from a surface along its normal, in the cell, is entirely on its side, but may
-// be in another object. Then the surface's own voxel has a say, which its wall may cross.
+// be in another object. The surface's own voxel, which its wall may cross, then counts, too.
 uint sight_of(mrt_place place, vec3 normal)
 {
     uint first = sight_table[place.block];
@@ -51,44 +51,44 @@ uint sight_of(mrt_place place, vec3 normal)
     return (sight & own & MRT_SIGHT_PROBES) != 0u ? sight & own : own;
 }
 
-float share_of_probe(mrt_seen seen, int c)
+float share_of_probe(mrt_visible_probes visible, int c)
 {
-    vec3 t = fract(seen.texel - 0.5), w = mix(1.0 - t, t, vec3(c & 1, c >> 1 & 1, c >> 2 & 1));
-    return float(seen.probes >> uint(c) & 1u) * w.x * w.y * w.z;
+    vec3 t = fract(visible.texel - 0.5), w = mix(1.0 - t, t, vec3(c & 1, c >> 1 & 1, c >> 2 & 1));
+    return float(visible.probes >> uint(c) & 1u) * w.x * w.y * w.z;
 }
 
 // normal: in the cell, 0 of a point in space.
-mrt_seen seen_from(mrt_place place, vec3 normal)
+mrt_visible_probes visible_probes_at(mrt_place place, vec3 normal)
 {
-    mrt_seen seen = mrt_seen(brick_texel(place), MRT_SIGHT_PROBES, 1, 1.0);
-    if (SIGHT == 0) return seen;
+    mrt_visible_probes visible = mrt_visible_probes(brick_texel(place), MRT_SIGHT_PROBES, 1, 1.0);
+    if (SIGHT == 0) return visible;
     uint sight = sight_of(place, normal);
-    seen.probes = sight & MRT_SIGHT_PROBES;
+    visible.probes = sight & MRT_SIGHT_PROBES;
     float sum = 0.0;
-    for (int c = 0; c < 8; c++) sum += share_of_probe(seen, c);
-    bool none = seen.probes == 0u, some = sum > 0.0 && seen.probes != MRT_SIGHT_PROBES;
-    seen.lookups = some ? 8 : 1;
-    seen.scale = some ? 1.0 / sum : none ? float(sight >> MRT_SIGHT_OPEN & 255u) / 255.0 : 1.0;
-    return seen;
+    for (int c = 0; c < 8; c++) sum += share_of_probe(visible, c);
+    bool none = visible.probes == 0u, some = sum > 0.0 && visible.probes != MRT_SIGHT_PROBES;
+    visible.lookups = some ? 8 : 1;
+    visible.scale = some ? 1.0 / sum : none ? float(sight >> MRT_SIGHT_OPEN & 255u) / 255.0 : 1.0;
+    return visible;
 }
 
 // Lookup i, and its weight. A loop of as many lookups costs software drivers less than branches.
-vec3 lookup_of(mrt_seen seen, int i, out float weight)
+vec3 lookup_of(mrt_visible_probes visible, int i, out float weight)
 {
-    bool all = seen.lookups == 1;
-    weight = seen.scale * (all ? 1.0 : share_of_probe(seen, i));
-    return all ? seen.texel : floor(seen.texel - 0.5) + vec3(i & 1, i >> 1 & 1, i >> 2 & 1) + 0.5;
+    bool all = visible.lookups == 1;
+    weight = visible.scale * (all ? 1.0 : share_of_probe(visible, i));
+    return all ? visible.texel : floor(visible.texel - 0.5) + vec3(i & 1, i >> 1 & 1, i >> 2 & 1) + 0.5;
 }
 
 vec3 bricks_irradiance(mrt_place place, vec3 normal)
 {
     int slab = int(level.probes) + 2;
     if (SIGHT == 0) return probes_irradiance_at(bricks, slab, brick_texel(place), normal);
-    mrt_seen seen = seen_from(place, normal_in_cell(place, normal));
+    mrt_visible_probes visible = visible_probes_at(place, normal_in_cell(place, normal));
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < seen.lookups; i++) {
+    for (int i = 0; i < visible.lookups; i++) {
         float weight;
-        vec3 texel = lookup_of(seen, i, weight);
+        vec3 texel = lookup_of(visible, i, weight);
         sum += weight * probes_irradiance_at(bricks, slab, texel, normal);
     }
     return sum;

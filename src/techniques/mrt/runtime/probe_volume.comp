@@ -38,15 +38,15 @@ void main()
     if (at.z >= grid.count_z) return;
     vec4 offset = place_table[i];
     mrt_place place = locate(grid.first_m + grid.spacing_m * (vec3(at) + offset.xyz));
-    mrt_seen seen;
-    seen.lookups = 0;
-    if (place.block >= 0) seen = seen_from(place, vec3(0.0));
+    mrt_visible_probes visible;
+    visible.lookups = 0;
+    if (place.block >= 0) visible = visible_probes_at(place, vec3(0.0));
     for (int s = 0; s < FRAME_PROBE_SLABS; s++) {
         vec3 slab = vec3(0.0, 0.0, float(s * (int(level.probes) + 2)));
         vec4 values = vec4(0.0);
-        for (int i = 0; i < seen.lookups; i++) {
+        for (int i = 0; i < visible.lookups; i++) {
             float weight;
-            vec3 texel = lookup_of(seen, i, weight) + slab;
+            vec3 texel = lookup_of(visible, i, weight) + slab;
             values += weight * textureLod(bricks, texel / vec3(textureSize(bricks, 0)), 0.0);
         }
         imageStore(volume, at + ivec3(0, 0, s * grid.slab),

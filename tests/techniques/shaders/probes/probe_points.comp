@@ -32,13 +32,13 @@ layout(push_constant, scalar) uniform push_block
 #ifdef SEEN
 vec3 on_surface(vec3 position, vec3 normal)
 {
-    return probes_seen_irradiance(volume, probe_depths, grid, position, normal, normal);
+    return probes_visible_irradiance(volume, probe_depths, grid, position, normal, normal);
 }
 
 vec3 in_space(vec3 position)
 {
     vec3 c[9];
-    probes_seen_coefficients(volume, probe_depths, grid, position, c);
+    probes_visible_coefficients(volume, probe_depths, grid, position, c);
     return SH_Y0 * c[0];
 }
 #else
