@@ -41,8 +41,9 @@ static size_t partition(struct guide_record *r, size_t count, int axis, float sp
     return low;
 }
 
-// Divides at the mean of the places with light, along their longest extent.
-static size_t divide(struct guide_record *r, size_t count, size_t lit, struct guide_node *node)
+// Splits at the mean of the places with light, along their longest extent.
+static size_t split_at_mean(struct guide_record *r, size_t count, size_t lit,
+                            struct guide_node *node)
 {
     struct box3 bounds = box3_empty();
     double sum[3] = { 0.0 };
@@ -70,7 +71,7 @@ static void build_node(struct builder *b, uint32_t index, size_t from, size_t to
     size_t lit = count_lit(b->records + from, count);
     if (lit > CELL_RECORDS && depth < MAX_DEPTH && b->nodes + 2 <= b->max_nodes) {
         struct guide_node node = { 0 };
-        size_t low = divide(b->records + from, count, lit, &node);
+        size_t low = split_at_mean(b->records + from, count, lit, &node);
         if (low > 0 && low < count) {
             uint32_t child = node.child = b->nodes & 0x3fffffffu;
             b->nodes += 2;

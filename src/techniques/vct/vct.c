@@ -254,10 +254,10 @@ static void record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct fra
 static void record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const bool emitters = vct->small_emitters.count > 0;
-    vct->params.small_emitters_shown = emitters;
+    vct->params.has_small_emitters = emitters;
     if (emitters) vct_refill_volume(vct, cmd);
     vct_record_specular(vct, cmd, view);
-    vct->params.small_emitters_shown = false;
+    vct->params.has_small_emitters = false;
     if (emitters) vct_refill_volume(vct, cmd);
 }
 

@@ -23,7 +23,7 @@ void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
 {
     // Tone mapping expects scaled radiance: a reflectance of 1 is displayed as a brightly lit
     // surface.
-    struct vct_view_push push = { .view = which, .reflectance_shown = 4.0f };
+    struct vct_view_push push = { .view = which, .reflectance_scale = 4.0f };
     const int last = vct->clip_count - 1;
     gpu_scope_begin(cmd, "debug");
     for (int i = 0; i <= 2 * last; i++) {

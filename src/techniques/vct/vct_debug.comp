@@ -60,8 +60,8 @@ struct viewed_face {
 
 vec3 surface_colour(viewed_face f, vec3 direction)
 {
-    if (push.view == VCT_VIEW_REFLECTANCE) return f.reflectance * push.reflectance_shown;
-    if (push.view == VCT_VIEW_NORMAL) return (f.lit.normal * 0.5 + 0.5) * push.reflectance_shown;
+    if (push.view == VCT_VIEW_REFLECTANCE) return f.reflectance * push.reflectance_scale;
+    if (push.view == VCT_VIEW_NORMAL) return (f.lit.normal * 0.5 + 0.5) * push.reflectance_scale;
     return dot(f.lit.normal, direction) < 0.0 ? f.lit.reflected + vct_emitted(f.lit.emitted, true)
                                               : vec3(0.0);
 }
@@ -96,7 +96,7 @@ vec3 overflow_colour(ivec3 voxel, vec3 direction, bool stored)
     viewed_face f;
     float grey =
         face_at(voxel, direction, f) ? 0.2 * dot(f.reflectance, vec3(0.2126, 0.7152, 0.0722)) : 0.0;
-    return (stored ? vec3(grey) : vec3(0.3, 0.0, 0.0)) * push.reflectance_shown;
+    return (stored ? vec3(grey) : vec3(0.3, 0.0, 0.0)) * push.reflectance_scale;
 }
 
 vec3 level_colour(vct_lit_face r, vec3 direction)
@@ -105,7 +105,7 @@ vec3 level_colour(vct_lit_face r, vec3 direction)
         vec3[](vec3(0.9, 0.2, 0.15), vec3(0.9, 0.6, 0.1), vec3(0.4, 0.75, 0.2),
                vec3(0.1, 0.65, 0.8), vec3(0.25, 0.35, 0.9), vec3(0.7, 0.3, 0.8));
     return colours[vct.level] *
-           ((0.3 + 0.7 * abs(dot(r.normal, direction))) * push.reflectance_shown);
+           ((0.3 + 0.7 * abs(dot(r.normal, direction))) * push.reflectance_scale);
 }
 
 // Colour of a voxel in the view. False: empty.

@@ -1,4 +1,4 @@
-// Groups divide at the mean of their keys, the one with the largest second moment first, as the
+// Groups are split at the mean of their keys, the one with the largest second moment first, as the
 // clusters of a light tree do (Walter et al. 2005, Lightcuts). Within a group lights follow the
 // leaves of a k-d tree.
 #include "techniques/vct/vct_emitter_groups.h"
@@ -45,7 +45,7 @@ static struct box3 key_bounds(const struct vct_light *lights, int count)
 }
 
 // Moves the lights before the mean along the longest axis to the front; returns their number.
-static int divide(struct vct_light *lights, int count, struct box3 bounds)
+static int partition(struct vct_light *lights, int count, struct box3 bounds)
 {
     const int axis = box3_longest_axis(bounds);
     double sum = 0.0, flux = 0.0;
@@ -98,7 +98,7 @@ int vct_group_lights(struct vct_light *lights, int count, int most,
         struct vct_emitter_group *widest = widest_of(lights, groups, made);
         if (!widest) break;
         struct vct_light *first = lights + widest->first;
-        const int before = divide(first, widest->count, key_bounds(first, widest->count));
+        const int before = partition(first, widest->count, key_bounds(first, widest->count));
         groups[made] = (struct vct_emitter_group){ widest->first + before, widest->count - before };
         widest->count = before;
     }

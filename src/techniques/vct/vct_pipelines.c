@@ -89,7 +89,7 @@ static void add_octree(uint32_t directions, struct gpu_objects *out)
     GPU_ADD(out, 0, PIPELINE(svo.mark, "svo_mark", &shader_vct_octree_mark_comp, 0),
             PIPELINE(svo.count, "svo_count", &shader_vct_octree_count_comp, 0),
             PIPELINE(svo.scan, "svo_scan", &shader_vct_octree_scan_comp, 0),
-            PIPELINE(svo.divide, "svo_divide", &shader_vct_octree_divide_comp, 0),
+            PIPELINE(svo.subdivide, "svo_subdivide", &shader_vct_octree_subdivide_comp, 0),
             PIPELINE(svo.fill[0], "svo_fill_static", &shader_vct_octree_fill_comp,
                      directions | NO_DYNAMIC),
             PIPELINE(svo.fill[1], "svo_fill", &shader_vct_octree_fill_comp, directions),

@@ -20,21 +20,21 @@ struct vct_params {
     int32_t cells_x, cells_y, cells_z; // in use
     int32_t dim;                       // voxels along a side of the index space
     float cells_per_m;
-    uint32_t capacity;             // occupied voxels that can be stored
-    float emission_fixed;          // fixed-point units per cd/m²
-    float emission_scaled;         // scaled cd/m² per fixed-point unit
-    float shadow_size;             // texels
-    int32_t shadow_radius;         // texels
-    int32_t volume_dim;            // texels of the light volume along a side
-    uint32_t light_count;          // injected lights of the frame
-    uint32_t bounced;              // bool: bounced irradiance is injected
-    float light_scale;             // radiance scale of the frame over that of the light volume
-    uint32_t small_emitters_shown; // bool: the light volume holds small emitters
-    float decay_per_m;             // of occlusion: see cones/trace.glsl
-    float offset;                  // of the cones' apex along the normal, texels
-    vec3s scene_low, scene_high;   // grid of the whole scene, in these voxels
-    int32_t volume_first;          // first texel of this level's part of the volume along z
-    int32_t level;                 // of the clip map, 0 is the finest
+    uint32_t capacity;           // occupied voxels that can be stored
+    float emission_fixed;        // fixed-point units per cd/m²
+    float emission_scaled;       // scaled cd/m² per fixed-point unit
+    float shadow_size;           // texels
+    int32_t shadow_radius;       // texels
+    int32_t volume_dim;          // texels of the light volume along a side
+    uint32_t light_count;        // injected lights of the frame
+    uint32_t bounced;            // bool: bounced irradiance is injected
+    float light_scale;           // radiance scale of the frame over that of the light volume
+    uint32_t has_small_emitters; // bool: the light volume holds small emitters
+    float decay_per_m;           // of occlusion: see cones/trace.glsl
+    float offset;                // of the cones' apex along the normal, texels
+    vec3s scene_low, scene_high; // grid of the whole scene, in these voxels
+    int32_t volume_first;        // first texel of this level's part of the volume along z
+    int32_t level;               // of the clip map, 0 is the finest
 };
 
 #define VCT_VIEW_REFLECTANCE 0
@@ -52,7 +52,7 @@ struct vct_params {
 struct vct_view_push {
     uint32_t view;
     uint32_t march;
-    float reflectance_shown; // scaled radiance displayed for a reflectance of 1
+    float reflectance_scale; // scaled radiance displayed for a reflectance of 1
 };
 
 #ifndef AG_GLSL

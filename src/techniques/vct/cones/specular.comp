@@ -70,8 +70,8 @@ vec3 reflected_radiance(ivec2 pixel, float z)
         vec3 direction = mirror_direction(to_viewer, n);
         vec4 traced =
             vct_cone(light, at, n, direction, set.offset, width, set.last_mip, vct_start_at(at));
-        vec3 seen = traced.rgb + (1.0 - traced.a) * environment_cone(direction, atan(tan_half));
-        radiance = mix(set.gain * seen, radiance, rough);
+        vec3 arriving = traced.rgb + (1.0 - traced.a) * environment_cone(direction, atan(tan_half));
+        radiance = mix(set.gain * arriving, radiance, rough);
     }
     vec4 lobe = BRDF_DEFAULT_DIELECTRIC;
     if (set.has_dielectric != 0u) lobe = texelFetch(dielectric, pixel, 0);

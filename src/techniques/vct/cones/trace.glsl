@@ -47,8 +47,8 @@ struct vct_volume_sample {
 #include "techniques/vct/volume/sample.glsl"
 #endif
 
-const float VCT_UNSEEN = 0.005; // occlusion: a cone ends when it can add no more than this
-const float VCT_OPAQUE = 0.98;  // a cone of this opacity ends and counts as opaque
+const float VCT_NEGLIGIBLE = 0.005; // occlusion: a cone ends when it can add no more than this
+const float VCT_OPAQUE = 0.98;      // a cone of this opacity ends and counts as opaque
 
 #include "techniques/vct/volume/over.glsl"
 #include "techniques/vct/cones/receiver.glsl"
@@ -119,7 +119,7 @@ vec4 vct_trace(sampler3D light, vec3 at, vec3 normal, vec3 direction, float offs
             if (sum.a > VCT_OPAQUE) return vec4(sum.rgb / sum.a, 1.0);
         }
         if (VCT_OCCLUSION &&
-            1.0 - sum.a < VCT_UNSEEN * (1.0 + decay * (ahead_of_surface + distance)))
+            1.0 - sum.a < VCT_NEGLIGIBLE * (1.0 + decay * (ahead_of_surface + distance)))
             break;
         previous_axes = here.axes;
         distance += texel;

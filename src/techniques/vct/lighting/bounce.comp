@@ -57,10 +57,10 @@ vec3 small_emitters_at(vec3 at, vec3 normal)
     return sum * (float(VCT_EMITTER_POINTS) / float(EMITTER_SAMPLES));
 }
 
-vec3 arriving(vec4 met, vec3 direction)
+vec3 arriving(vec4 traced, vec3 direction)
 {
-    return met.rgb * vct.light_scale +
-           (1.0 - met.a) * environment_lobe(direction, set.environment_sigma);
+    return traced.rgb * vct.light_scale +
+           (1.0 - traced.a) * environment_lobe(direction, set.environment_sigma);
 }
 
 #if !VCT_SVO

@@ -37,7 +37,7 @@ static void over_nodes(struct gpu_cmd *cmd, const struct vct_svo *svo, gpu_pipel
                               level_offset(depth - 1, offsetof(struct vct_svo_level, node_groups)));
 }
 
-static void divide(struct vct *vct, struct gpu_cmd *cmd, uint32_t depth)
+static void subdivide(struct vct *vct, struct gpu_cmd *cmd, uint32_t depth)
 {
     const struct vct_svo *svo = &vct->svo;
     const struct vct_svo_push push = { .depth = depth };
@@ -51,7 +51,7 @@ static void divide(struct vct *vct, struct gpu_cmd *cmd, uint32_t depth)
     const int count = sizeof bindings / sizeof bindings[0];
     over_nodes(cmd, svo, svo->count, bindings, count, depth);
     gpu_dispatch(cmd, svo->scan, bindings, count, &push, sizeof push, 1, 1, 1);
-    over_nodes(cmd, svo, svo->divide, bindings, count, depth);
+    over_nodes(cmd, svo, svo->subdivide, bindings, count, depth);
 }
 
 void vct_octree_build(struct vct *vct, struct gpu_cmd *cmd)
@@ -61,7 +61,7 @@ void vct_octree_build(struct vct *vct, struct gpu_cmd *cmd)
     for (uint32_t depth = 0; depth < vct->svo.params.depths; depth++) {
         mark(vct, cmd, &vct->clips[0].static_set, depth);
         if (vct->moving_draws > 0) mark(vct, cmd, &vct->clips[0].dynamic_set, depth);
-        divide(vct, cmd, depth);
+        subdivide(vct, cmd, depth);
     }
     gpu_scope_end(cmd);
 }

@@ -8,7 +8,7 @@ struct vct_svo {
     gpu_buffer nodes;
     gpu_buffer brick_coords; // of the node of each brick
     gpu_buffer blocks, levels;
-    gpu_pipeline mark, count, scan, divide, join, mip;
+    gpu_pipeline mark, count, scan, subdivide, join, mip;
     gpu_pipeline fill[2]; // without and with moving voxels
     struct vct_svo_params params;
 };

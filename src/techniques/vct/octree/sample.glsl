@@ -43,8 +43,8 @@ vct_volume_sample vct_sample_volume(sampler3D light, vec3 at, vec3 direction, ve
     vec4 x = textureLod(light, vec3(volume_u.x, uv.yz), 0.0);
     vec4 y = textureLod(light, vec3(volume_u.y, uv.yz), 0.0);
     vec4 z = textureLod(light, vec3(volume_u.z, uv.yz), 0.0);
-    vec3 met = mix(vec3(0.0), vec3(x.a, y.a, z.a), greaterThan(share, vec3(0.0)));
-    return vct_volume_sample(share.x * x + share.y * y + share.z * z, met);
+    vec3 opacities = mix(vec3(0.0), vec3(x.a, y.a, z.a), greaterThan(share, vec3(0.0)));
+    return vct_volume_sample(share.x * x + share.y * y + share.z * z, opacities);
 }
 
 #endif

@@ -208,17 +208,17 @@ struct vct_ray_sum {
     float opacity;
     float previous; // opacity of the last face; 0 where that is not next to what follows
     uint face, place;
-    float shown; // visible part of the last face, not yet in `light`
+    float visible; // visible part of the last face, not yet in `light`
 };
 
 void vct_ray_add(inout vct_ray_sum s, uvec2 face, float alpha)
 {
     if (alpha <= 0.0) return;
-    if (s.shown > 0.0) s.light += s.shown * vct_ray_light(s.face, s.place);
+    if (s.visible > 0.0) s.light += s.visible * vct_ray_light(s.face, s.place);
     s.face = face.x;
     s.place = face.y;
-    s.shown = vct_visible_alpha(1.0 - s.opacity, alpha, min(s.previous + alpha, 1.0));
-    s.opacity += s.shown;
+    s.visible = vct_visible_alpha(1.0 - s.opacity, alpha, min(s.previous + alpha, 1.0));
+    s.opacity += s.visible;
     s.previous = alpha;
 }
 
@@ -262,11 +262,11 @@ vec4 vct_trace_ray(vec3 from, vec3 normal, vec3 direction, float decay)
         for (int i = 0; i < 2; i++) {
             vct_ray_add(s, m.faces[i], m.alpha[i]);
             if (!VCT_OCCLUSION) continue;
-            s.light += vec3(s.shown / (1.0 + decay * m.distance[i]));
-            s.shown = 0.0;
+            s.light += vec3(s.visible / (1.0 + decay * m.distance[i]));
+            s.visible = 0.0;
         }
     }
-    if (s.shown > 0.0) s.light += s.shown * vct_ray_light(s.face, s.place);
+    if (s.visible > 0.0) s.light += s.visible * vct_ray_light(s.face, s.place);
     return s.opacity > VCT_RAY_OPAQUE ? vec4(s.light / s.opacity, 1.0) : vec4(s.light, s.opacity);
 }
 

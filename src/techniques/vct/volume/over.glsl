@@ -15,8 +15,8 @@ float vct_visible_alpha(float left, float alpha, float sheet)
 // `front` over `back`, both premultiplied, of neighbouring voxels or texels.
 vec4 vct_over(vec4 front, vec4 back)
 {
-    float shown = vct_visible_alpha(1.0 - min(front.a, 1.0), back.a, min(front.a + back.a, 1.0));
-    return front + back * (back.a > 0.0 ? shown / back.a : 0.0);
+    float visible = vct_visible_alpha(1.0 - min(front.a, 1.0), back.a, min(front.a + back.a, 1.0));
+    return front + back * (back.a > 0.0 ? visible / back.a : 0.0);
 }
 
 #endif

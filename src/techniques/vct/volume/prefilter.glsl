@@ -38,7 +38,7 @@ void add_face(vct_lit_face r, inout directional s)
     vec3 slopes = abs(r.normal);
     float steepest = max(slopes.x, max(slopes.y, slopes.z));
     vec4 face =
-        vec4(r.reflected + vct_emitted(r.emitted, vct.small_emitters_shown != 0u), 1.0) * r.opacity;
+        vec4(r.reflected + vct_emitted(r.emitted, vct.has_small_emitters != 0u), 1.0) * r.opacity;
     if (!VCT_ANISOTROPIC) {
         s.along[0] += face;
         s.along[1].a = max(s.along[1].a, face.a);

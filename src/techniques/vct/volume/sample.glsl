@@ -48,8 +48,8 @@ vct_volume_sample vct_sample_volume(sampler3D light, vec3 at, vec3 direction, ve
         y = y.rrrr;
         z = z.rrrr;
     }
-    vec3 met = mix(vec3(0.0), vec3(x.a, y.a, z.a), greaterThan(share, vec3(0.0)));
-    return vct_volume_sample(share.x * x + share.y * y + share.z * z, met);
+    vec3 opacities = mix(vec3(0.0), vec3(x.a, y.a, z.a), greaterThan(share, vec3(0.0)));
+    return vct_volume_sample(share.x * x + share.y * y + share.z * z, opacities);
 }
 
 #endif
