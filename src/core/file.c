@@ -119,7 +119,7 @@ static bool resolve_target(struct host *host, const char *path, char **out)
 static void writer_release(struct file_writer *writer)
 {
     temporary_release(&writer->temporary);
-    host_free(writer->host, writer->shown);
+    host_free(writer->host, writer->display_path);
     host_free(writer->host, writer->path);
     *writer = (struct file_writer){ 0 };
 }
@@ -128,7 +128,7 @@ static void warn_of_stale(void *user, const char *path)
 {
     const struct file_writer *writer = user;
     host_log(writer->host, LOG_WARNING, "%s: removed %s, left by an interrupted write",
-             writer->shown, path);
+             writer->display_path, path);
 }
 
 // The lock outlives the stream: a second descriptor holds it.
@@ -137,7 +137,7 @@ static bool open_stream(struct file_writer *writer)
     const int fd = fcntl(writer->temporary.lock, F_DUPFD_CLOEXEC, 0);
     writer->stream = fd >= 0 ? fdopen(fd, "wb") : NULL;
     if (writer->stream) return true;
-    fail_write(writer->host, writer->shown, strerror(errno));
+    fail_write(writer->host, writer->display_path, strerror(errno));
     if (fd >= 0) close(fd);
     return false;
 }
@@ -146,8 +146,8 @@ bool file_begin(struct file_writer *writer, struct host *host, const char *path)
 {
     *writer = (struct file_writer){ .host = host };
     if (!resolve_target(host, path, &writer->path)) goto fail;
-    writer->shown = host_strdup(host, path);
-    if (!writer->shown) goto fail;
+    writer->display_path = host_strdup(host, path);
+    if (!writer->display_path) goto fail;
     temporary_remove_stale(writer->path, warn_of_stale, writer);
     if (!temporary_file(&writer->temporary, writer->path)) {
         fail_write(host, path, errno == ENOENT ? "no such folder" : strerror(errno));
@@ -186,7 +186,7 @@ bool file_commit(struct file_writer *writer)
         writer_release(writer);
         return true;
     }
-    fail_write(writer->host, writer->shown, strerror(why));
+    fail_write(writer->host, writer->display_path, strerror(why));
     file_abort(writer);
     return false;
 }

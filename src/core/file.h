@@ -25,8 +25,8 @@ void file_bytes_finish(struct host *host, struct file_bytes *bytes);
 // each writer with exactly one of them; both accept a zeroed writer.
 struct file_writer {
     struct host *host;
-    char *shown; // as given, for messages
-    char *path;  // symbolic links resolved
+    char *display_path; // as given, for messages
+    char *path;         // symbolic links resolved
     struct temporary temporary;
     FILE *stream;
     int why; // errno of the first failed write

@@ -145,7 +145,7 @@ struct shape {
     size_t rows, columns, stride;
 };
 
-static struct shape turned(struct shape shape, enum transposed op)
+static struct shape transposed_shape(struct shape shape, enum transposed op)
 {
     return op == TRANSPOSED ? (struct shape){ shape.columns, shape.rows, shape.stride } : shape;
 }
@@ -160,7 +160,7 @@ static bool blas_stride(size_t stride, int *out)
 static bool plan_product(struct host *host, struct shape a, enum transposed op_a, struct shape b,
                          enum transposed op_b, struct shape out, struct product *plan)
 {
-    const struct shape ta = turned(a, op_a), tb = turned(b, op_b);
+    const struct shape ta = transposed_shape(a, op_a), tb = transposed_shape(b, op_b);
     if (ta.columns != tb.rows || ta.rows != out.rows || tb.columns != out.columns)
         return host_fail(host, FAIL_ARGUMENT,
                          "cannot multiply %zu x %zu by %zu x %zu into %zu x %zu: "

@@ -45,15 +45,15 @@ size_t text_escape(const char *text, char *out, size_t size)
     while (*text && size > 0) {
         const size_t length = text_utf8_length(text);
         const uint32_t c = code_point(text, length);
-        const char *shown = text;
+        const char *output = text;
         size_t bytes = length;
         if (length == 0 || is_control(c)) {
             const unsigned value = length ? c : (unsigned char)*text;
             bytes = (size_t)snprintf(escape, sizeof escape, length ? "\\u%04x" : "\\x%02x", value);
-            shown = escape;
+            output = escape;
         }
         if (used + bytes >= size) break;
-        if (out) memcpy(out + used, shown, bytes);
+        if (out) memcpy(out + used, output, bytes);
         used += bytes;
         text += length ? length : 1;
     }

@@ -108,7 +108,7 @@ static struct emitter emitter_of(const struct trace_scene *scene, uint32_t mesh,
         .normal = m->facets[triangle].normal,
         .radiance = m->material->emission,
         .reach = m->facets[triangle].reach,
-        .mapped = m->material->emissive_map.texture,
+        .textured = m->material->emissive_map.texture,
         .double_sided = m->material->double_sided,
     };
 }
@@ -229,7 +229,7 @@ struct emitter_sample light_sample_emitter(const struct trace_scene *scene, vec3
     if (!(cosine > 0.0f)) return s;
     s.position = glms_vec3_muladds(e->normal, side * e->reach, p);
     s.radiance = e->radiance;
-    if (e->mapped) s.radiance = surface_emission(&scene->meshes[e->mesh], e->triangle, b.x, b.y);
+    if (e->textured) s.radiance = surface_emission(&scene->meshes[e->mesh], e->triangle, b.x, b.y);
     s.pdf = e->density * distance2 / cosine;
     return s;
 }

@@ -15,7 +15,7 @@ struct emitter {
     vec3s normal;           // unit, of the front
     vec3s radiance;         // cd/m²; with an emissive map the factor
     float reach;            // trace_facet.reach, m
-    bool mapped, double_sided;
+    bool textured, double_sided;
     float density; // of light_sample_emitter, per m²; 0: never sampled
     // Alias table (Walker 1977; Vose 1991): this triangle with probability `stay`, else `alias`.
     float stay;

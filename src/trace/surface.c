@@ -243,7 +243,7 @@ void surface_prefetch_texels(const struct trace_scene *scene, const struct ray_h
 {
     const struct trace_mesh *mesh = &scene->meshes[hit->geometry];
     const struct trace_material *m = mesh->material;
-    if (!m->mapped) return;
+    if (!m->textured) return;
     struct triangle_point s = triangle_point_at(mesh, hit->triangle, hit->u, hit->v);
     prefetch_map(&s, &m->base_color_map);
     prefetch_map(&s, &m->metallic_roughness_map);

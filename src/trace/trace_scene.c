@@ -45,9 +45,9 @@ static bool create_material(struct trace_scene *s, const struct material *m,
         .unlit = m->unlit,
         .emissive = m->emissive.x > 0.0f || m->emissive.y > 0.0f || m->emissive.z > 0.0f,
     };
-    out->mapped = m->base_color_map.image >= 0 || m->metallic_roughness_map.image >= 0 ||
-                  m->normal_map.image >= 0 || m->emissive_map.image >= 0 ||
-                  m->specular_map.image >= 0 || m->specular_color_map.image >= 0;
+    out->textured = m->base_color_map.image >= 0 || m->metallic_roughness_map.image >= 0 ||
+                    m->normal_map.image >= 0 || m->emissive_map.image >= 0 ||
+                    m->specular_map.image >= 0 || m->specular_color_map.image >= 0;
     return texture_of(s, &m->base_color_map, true, &out->base_color_map) &&
            texture_of(s, &m->metallic_roughness_map, false, &out->metallic_roughness_map) &&
            texture_of(s, &m->normal_map, false, &out->normal_map) &&
@@ -290,17 +290,17 @@ bool trace_closest(const struct trace_scene *scene, vec3s origin, vec3s directio
                    float max_distance, struct trace_hit *hit)
 {
     struct ray ray = { origin, direction, 0.0f, max_distance };
-    struct ray_hit met;
-    if (!embree_closest(scene->embree, &ray, NULL, false, &met)) return false;
+    struct ray_hit first;
+    if (!embree_closest(scene->embree, &ray, NULL, false, &first)) return false;
     if (!hit) return true;
     struct surface s;
-    surface_at(scene, &ray, &met, NULL, &s);
+    surface_at(scene, &ray, &first, NULL, &s);
     *hit = (struct trace_hit){
-        .distance = met.distance,
-        .instance = scene->meshes[met.geometry].instance,
-        .triangle = met.triangle,
-        .u = met.u,
-        .v = met.v,
+        .distance = first.distance,
+        .instance = scene->meshes[first.geometry].instance,
+        .triangle = first.triangle,
+        .u = first.u,
+        .v = first.v,
         .position = s.position,
         .geometric = s.front ? s.geometric : glms_vec3_negate(s.geometric),
         .normal = s.normal,

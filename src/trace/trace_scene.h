@@ -9,9 +9,9 @@
 struct trace_material {
     vec3s base_color, emission; // emission: cd/m²
     float alpha, alpha_cutoff, metallic, roughness, normal_scale;
-    vec3s specular_f0;                                  // before the clamp to 1 and the weight
-    float specular;                                     // weight
-    bool masked, double_sided, unlit, emissive, mapped; // mapped: has a texture
+    vec3s specular_f0; // before the clamp to 1 and the weight
+    float specular;    // weight
+    bool masked, double_sided, unlit, emissive, textured;
     struct texture_map base_color_map, metallic_roughness_map, normal_map, emissive_map;
     struct texture_map specular_map, specular_color_map;
 };

@@ -79,16 +79,16 @@ static bool build_slabs(struct scene *scene, const int *materials)
     shape_begin(&builder, scene);
     float end = ATRIUM_HALF_LENGTH + 0.2f, edge = ATRIUM_COLONNADE - 0.4f;
     float into_wall = ATRIUM_HALF_WIDTH + 0.3f;
-    for (int turned = 0; turned < 2; turned++) {
-        builder.scene_from_shape = glms_rotate_y(glms_mat4_identity(), GLM_PIf * (float)turned);
+    for (int half_turns = 0; half_turns < 2; half_turns++) {
+        builder.scene_from_shape = glms_rotate_y(glms_mat4_identity(), GLM_PIf * (float)half_turns);
         shape_box(&builder, vec3_of(-end, ATRIUM_GALLERY - 0.3f, edge),
                   vec3_of(end, ATRIUM_GALLERY, into_wall));
         shape_box(&builder, vec3_of(-end, ATRIUM_ROOF, edge - 0.1f),
                   vec3_of(end, ATRIUM_ROOF + 0.4f, into_wall + 0.4f));
     }
     if (shape_emit(&builder, "slabs", materials[ATRIUM_PLASTER]) < 0) return false;
-    for (int turned = 0; turned < 2; turned++) {
-        builder.scene_from_shape = glms_rotate_y(glms_mat4_identity(), GLM_PIf * (float)turned);
+    for (int half_turns = 0; half_turns < 2; half_turns++) {
+        builder.scene_from_shape = glms_rotate_y(glms_mat4_identity(), GLM_PIf * (float)half_turns);
         shape_box(&builder, vec3_of(-end, ATRIUM_GALLERY - 0.16f, edge - 0.1f),
                   vec3_of(end, ATRIUM_GALLERY + 0.06f, edge + 0.2f));
         shape_box(&builder, vec3_of(-end, ATRIUM_ROOF + 0.22f, edge - 0.25f),
@@ -213,17 +213,17 @@ static bool build_doors(struct scene *scene, const int *materials)
 {
     struct shape_builder builder;
     shape_begin(&builder, scene);
-    for (int turned = 0; turned < 2; turned++) {
+    for (int half_turns = 0; half_turns < 2; half_turns++) {
         builder.scene_from_shape =
-            glms_rotate_y(glms_mat4_identity(), GLM_PI_2f + GLM_PIf * (float)turned);
+            glms_rotate_y(glms_mat4_identity(), GLM_PI_2f + GLM_PIf * (float)half_turns);
         float wall = -ATRIUM_HALF_LENGTH;
         shape_arch(&builder, vec3_of(-1.9f, -0.1f, wall - 0.1f), vec3_of(1.9f, 4.2f, wall + 0.35f),
                    1.3f, 2.3f, 16);
     }
     if (shape_emit(&builder, "door frames", materials[ATRIUM_STONE]) < 0) return false;
-    for (int turned = 0; turned < 2; turned++) {
+    for (int half_turns = 0; half_turns < 2; half_turns++) {
         builder.scene_from_shape =
-            glms_rotate_y(glms_mat4_identity(), GLM_PI_2f + GLM_PIf * (float)turned);
+            glms_rotate_y(glms_mat4_identity(), GLM_PI_2f + GLM_PIf * (float)half_turns);
         float wall = -ATRIUM_HALF_LENGTH;
         shape_box(&builder, vec3_of(-1.5f, -0.1f, wall - 0.1f), vec3_of(1.5f, 3.8f, wall + 0.08f));
     }

@@ -49,9 +49,9 @@ static bool is_empty(int i, int k)
 {
     for (int quarter = 0; quarter < 4; quarter++) {
         if (in_arm(i, k)) return true;
-        int turned = CELLS - 1 - k;
+        int rotated = CELLS - 1 - k;
         k = i;
-        i = turned;
+        i = rotated;
     }
     return false;
 }

@@ -23,7 +23,7 @@ struct growth {
     const struct surface *surface;
     double texels_per_m;
     struct cover cover;
-    uint32_t *queue, *visited; // visited: the pass that has met a triangle
+    uint32_t *queue, *visited; // visited: the pass that reached a triangle
     uint32_t queued, pass;
     bool failed;
 };
@@ -123,7 +123,7 @@ static bool fits_frame(const struct frame *frame, const struct surface_triangle 
 
 // ---- growing
 
-// Calls accept for each triangle that is met across an edge of an accepted one, once.
+// Calls accept for each triangle across an edge of an accepted one, once.
 typedef bool (*grow_accept)(struct growth *growth, const struct frame *frame, uint32_t triangle);
 
 static void grow_from(struct growth *growth, uint32_t seed, const struct frame *frame,

@@ -98,7 +98,7 @@ static int light_at(const struct added *a, size_t node)
 }
 
 // Nodes with the same light, not all of which emit: those that do not get a copy of it.
-static void divide_light(const struct added *a, size_t node, int light)
+static void separate_light(const struct added *a, size_t node, int light)
 {
     json_t *list = a->gltf->lights;
     const size_t copy = json_array_size(list);
@@ -127,7 +127,7 @@ static void find_off_lights(const struct added *a, bool *emits)
         const int light = light_at(a, i);
         const bool emitter = emits[a->gltf->scene_node[i]];
         if (light >= 0 && a->gltf->in_scene[i] && !emitter && !off[light])
-            divide_light(a, i, light);
+            separate_light(a, i, light);
     }
 }
 

@@ -227,16 +227,16 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
 static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct prt *s = state;
-    const bool mapped = view->layers[FRAME_ID].id && s->receivers.count > 0;
-    if (mapped && prt_is_glossy(&s->options) && view->layers[FRAME_SPECULAR].id)
+    const bool has_map = view->layers[FRAME_ID].id && s->receivers.count > 0;
+    if (has_map && prt_is_glossy(&s->options) && view->layers[FRAME_SPECULAR].id)
         prt_record_reflect(s, cmd, view);
-    if (mapped && s->receivers.at_vertices)
+    if (has_map && s->receivers.at_vertices)
         prt_vertex_map_record_apply(&s->vertex_map, cmd, view);
-    else if (mapped)
+    else if (has_map)
         light_map_record_apply(&s->light_map, cmd, view);
-    if (mapped && !s->followed.any_lit) return;
+    if (has_map && !s->followed.any_lit) return;
     prt_record_probes(s, cmd, view);
-    probe_apply_record(&s->probes.apply, &s->probes.volume, cmd, view, mapped);
+    probe_apply_record(&s->probes.apply, &s->probes.volume, cmd, view, has_map);
 }
 
 static bool probes(void *state, struct probe_volume *out)

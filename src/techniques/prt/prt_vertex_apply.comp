@@ -99,9 +99,9 @@ void shade(ivec2 pixel)
     uvec2 ids = texelFetch(id, pixel, 0).rg;
     uint triangle = light_map_scene_triangle(ids, push.instances);
     vec3 place = light_map_place_in(triangle, ids, push.instances, s);
-    bool mapped = place.z >= 0.0;
-    if (mapped) light = light_of(triangle, place, s.normal);
-    imageStore(irradiance, pixel, vec4(light.irradiance, mapped ? 1.0 : 0.0));
+    bool in_map = place.z >= 0.0;
+    if (in_map) light = light_of(triangle, place, s.normal);
+    imageStore(irradiance, pixel, vec4(light.irradiance, in_map ? 1.0 : 0.0));
 #if SPECULAR
     imageStore(specular, pixel, vec4(reflected(pixel, s, light), 1.0));
 #endif

@@ -151,11 +151,11 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
 static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct radiosity *s = state;
-    const bool mapped = view->layers[FRAME_ID].id && s->map.texel_count > 0;
-    if (mapped) light_map_record_apply(&s->light_map, cmd, view);
-    if (mapped && !s->followed.any_lit) return;
+    const bool has_map = view->layers[FRAME_ID].id && s->map.texel_count > 0;
+    if (has_map) light_map_record_apply(&s->light_map, cmd, view);
+    if (has_map && !s->followed.any_lit) return;
     gather_probes(s, cmd, view);
-    probe_apply_record(&s->probes.apply, &s->probes.volume, cmd, view, mapped);
+    probe_apply_record(&s->probes.apply, &s->probes.volume, cmd, view, has_map);
 }
 
 static gpu_image light_map(void *state)

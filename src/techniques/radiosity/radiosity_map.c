@@ -151,7 +151,7 @@ static void finish_sources(struct radiosity_map *map)
     map->cluster_count = 0;
 }
 
-bool radiosity_map_divide(struct radiosity_map *map, const uint8_t *part)
+bool radiosity_map_subdivide(struct radiosity_map *map, const uint8_t *part)
 {
     finish_sources(map);
     return make_clusters(map, map->edge, part) && make_hierarchy(map);

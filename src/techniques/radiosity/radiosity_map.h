@@ -32,5 +32,5 @@ bool radiosity_charts(const struct scene_pose *statics, const void *options, str
 bool radiosity_map_init(struct radiosity_map *out, struct host *host, const struct scene_pose *pose,
                         const struct radiosity_options *options);
 // Makes the clusters again, with the part of each texel, 0 or 1: at most twice as many.
-bool radiosity_map_divide(struct radiosity_map *map, const uint8_t *part);
+bool radiosity_map_subdivide(struct radiosity_map *map, const uint8_t *part);
 void radiosity_map_finish(struct radiosity_map *map);

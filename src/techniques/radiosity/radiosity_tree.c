@@ -54,7 +54,7 @@ static struct cut cut_of(const struct build *b, uint32_t first, uint32_t count)
 }
 
 // Stable. Returns the number of places on the lower side; of equal places half.
-static uint32_t divide(const struct build *b, uint32_t first, uint32_t count)
+static uint32_t subdivide(const struct build *b, uint32_t first, uint32_t count)
 {
     const struct cut cut = cut_of(b, first, count);
     if (!cut.splits) return count / 2;
@@ -86,7 +86,7 @@ static void split_all(const struct build *b, uint32_t root)
     // Nodes are numbered in the order of their making, so that all that are left to split follow.
     for (uint32_t at = root; at < tree->count; at++) {
         struct radiosity_node *node = &tree->nodes[at];
-        const uint32_t low = divide(b, node->first, node->count);
+        const uint32_t low = subdivide(b, node->first, node->count);
         node->child[0] = add_node(b, node->first, low, at);
         node->child[1] = add_node(b, node->first + low, node->count - low, at);
     }

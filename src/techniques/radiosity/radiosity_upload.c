@@ -34,13 +34,13 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
 }
 
 // The clusters that the bake has.
-static bool divide(struct radiosity *s, const struct content *c)
+static bool subdivide(struct radiosity *s, const struct content *c)
 {
     for (uint32_t i = 0; i < s->map.texel_count; i++)
         if (c->part[i] > 1)
             return host_fail(s->host, FAIL_FORMAT, "bake of radiosity: part %u of a texel",
                              (unsigned)c->part[i]);
-    return radiosity_map_divide(&s->map, c->part);
+    return radiosity_map_subdivide(&s->map, c->part);
 }
 
 static bool are_below(const uint32_t *at, size_t count, uint32_t limit)
@@ -237,7 +237,7 @@ bool radiosity_upload(struct radiosity *s, const struct tensors *bake)
     struct content c;
     if (!find_tensors(s, bake, &c)) return false;
     if (s->map.texel_count == 0) return true;
-    if (!divide(s, &c) || !check_sources(s, &c) || !check_factors(s, &c)) return false;
+    if (!subdivide(s, &c) || !check_sources(s, &c) || !check_factors(s, &c)) return false;
     c.nearest_valid = light_map_nearest_valid(&c.texels, s->host);
     const bool ok = c.nearest_valid && upload_all(s, &c, bake);
     host_free(s->host, c.nearest_valid);

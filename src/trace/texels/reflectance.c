@@ -60,7 +60,7 @@ static struct look look_of(const struct trace_scene *scene, const struct charts 
     const struct chart *chart = &charts->charts[of->chart];
     const vec3s normal = chart_texel_normal(charts, texel);
     const struct trace_mesh *mesh = trace_mesh_of(scene, of->instance);
-    const int across = mesh->material->mapped || mesh->mesh->colors ? POINTS_ACROSS : 1;
+    const int across = mesh->material->textured || mesh->mesh->colors ? POINTS_ACROSS : 1;
     struct look sum = { 0 };
     if (chart->spot) return look_of_spot(scene, charts, chart, normal);
     for (int i = 0; i < across * across; i++) {

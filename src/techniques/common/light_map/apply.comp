@@ -93,9 +93,9 @@ void shade(ivec2 pixel)
     vec3 place = light_map_place_of(texelFetch(id, pixel, 0).rg, push.instances, s);
     vec2 per_size = vec2(push.per_width, push.per_height);
     light_map_light light = light_map_light(vec3(0.0), mat3(0.0));
-    bool mapped = place.z >= 0.0;
-    if (mapped) light = light_map_lookup(light_map, per_size, place, s.normal);
-    imageStore(irradiance, pixel, vec4(light.irradiance, mapped ? 1.0 : 0.0));
+    bool in_map = place.z >= 0.0;
+    if (in_map) light = light_map_lookup(light_map, per_size, place, s.normal);
+    imageStore(irradiance, pixel, vec4(light.irradiance, in_map ? 1.0 : 0.0));
 #if SPECULAR
     imageStore(specular, pixel, vec4(reflected(pixel, s, light, place), 1.0));
 #endif

@@ -58,13 +58,13 @@ static void warn_once(struct light_map_followed *f, bool *warned, const char *wh
 
 static void check_static(struct light_map_followed *f, const struct scene_pose *pose, uint32_t i)
 {
-    const bool mapped = has_map(f, pose, i);
-    if (!mapped) {
+    const bool in_map = has_map(f, pose, i);
+    if (!in_map) {
         f->places.moves[i] = (struct light_map_move){ 0 }; // none of its pixels finds the map
         f->any_moved = true;
         f->any_lit |= pose->scene->instances[i].mesh >= 0;
     }
-    if (!mapped || f->places.at[i].moved)
+    if (!in_map || f->places.at[i].moved)
         warn_once(
             f, &f->warned_moved,
             "static geometry changed: what moved keeps the light of the bake, and the light that "

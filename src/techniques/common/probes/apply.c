@@ -29,10 +29,10 @@ void probe_apply_list(size_t base, enum probe_specular specular, struct gpu_obje
 }
 
 void probe_apply_record(const struct probe_apply *apply, const struct probe_volume *volume,
-                        struct gpu_cmd *cmd, const struct frame_view *view, bool mapped)
+                        struct gpu_cmd *cmd, const struct frame_view *view, bool has_map)
 {
     const gpu_image *layers = view->layers;
-    const struct probe_apply_push push = { volume->grid, mapped ? (int32_t)view->width : 0,
+    const struct probe_apply_push push = { volume->grid, has_map ? (int32_t)view->width : 0,
                                            layers[FRAME_DIELECTRIC].id != 0 };
     gpu_scope_begin(cmd, "apply_probes");
     gpu_dispatch(

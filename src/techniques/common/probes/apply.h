@@ -19,6 +19,7 @@ enum probe_specular {
 
 // Adds its objects at this offset of the state.
 void probe_apply_list(size_t base, enum probe_specular specular, struct gpu_objects *out);
-// mapped false: all pixels. The volume has radiance where the pass needs it.
+// has_map: pixels that a light map has lit are left out. The volume has radiance if the pass needs
+// it.
 void probe_apply_record(const struct probe_apply *apply, const struct probe_volume *volume,
-                        struct gpu_cmd *cmd, const struct frame_view *view, bool mapped);
+                        struct gpu_cmd *cmd, const struct frame_view *view, bool has_map);

@@ -8,12 +8,12 @@ enum { ALONG = 8 }; // rays along each edge of a face
 
 // Edges to either side of a face where a wall of it may be, as in clutter_find.c.
 static const float REACH = 0.15f;
-static const float LEAST_WALL = 0.5f; // share of the rays that meet a wall
+static const float LEAST_WALL = 0.5f; // share of rays that hit a wall
 
 static float share_with_wall(const struct trace_scene *walls, const struct mrt_block *block,
                              int face)
 {
-    int met = 0;
+    int hits = 0;
     for (int i = 0; i < ALONG * ALONG; i++) {
         const float s = ((float)(i % ALONG) + 0.5f) / ALONG;
         const float t = ((float)(i / ALONG) + 0.5f) / ALONG;
@@ -23,9 +23,9 @@ static float share_with_wall(const struct trace_scene *walls, const struct mrt_b
         const vec3s from = mrt_warp_point(block->corner, inner);
         const vec3s way = glms_vec3_sub(mrt_warp_point(block->corner, outer), from);
         struct trace_hit hit;
-        met += trace_closest(walls, from, way, 1.0f, &hit);
+        hits += trace_closest(walls, from, way, 1.0f, &hit);
     }
-    return (float)met / (ALONG * ALONG);
+    return (float)hits / (ALONG * ALONG);
 }
 
 static bool can_open(const struct mrt_block *block, int face, bool vertical)

@@ -147,14 +147,14 @@ bool mrt_cells_fill(struct host *host, struct mrt_cells *cells, const vec3s *see
 
 // ---- snapping
 
-struct wall_seen {
+struct wall_distance {
     float sum;
     int hits;
 };
 
 // Surfaces near a closed face of a free cell, as seen from inside.
 static void add_wall(const struct mrt_cells *cells, const int at[3], int face,
-                     struct wall_seen *seen)
+                     struct wall_distance *wall)
 {
     int axis = face / 2;
     float inside = REACH * size_along(cells, at, axis);
@@ -164,14 +164,14 @@ static void add_wall(const struct mrt_cells *cells, const int at[3], int face,
         if (!raycast_closest(cells->raycast, from, outward(face), 2.0f * inside, &hit)) continue;
         // Backs are seen from inside a wall.
         if (!hit.front || fabsf(hit.normal.raw[axis]) < ALIGNED) continue;
-        seen->sum += from.raw[axis] + (face & 1 ? hit.distance : -hit.distance);
-        seen->hits++;
+        wall->sum += from.raw[axis] + (face & 1 ? hit.distance : -hit.distance);
+        wall->hits++;
     }
 }
 
 static float snapped(const struct mrt_cells *cells, int axis, int plane)
 {
-    struct wall_seen seen[2] = { 0 }; // from below, from above
+    struct wall_distance wall[2] = { 0 }; // from below, from above
     for (int i = 0; i < mrt_cells_count(cells); i++) {
         int at[3];
         mrt_cell_place(cells, i, at);
@@ -179,14 +179,14 @@ static float snapped(const struct mrt_cells *cells, int axis, int plane)
         for (int above = 0; above < 2; above++) {
             int face = 2 * axis + !above;
             if (at[axis] + !above != plane || cells->cell[i].open >> face & 1u) continue;
-            add_wall(cells, at, face, &seen[above]);
+            add_wall(cells, at, face, &wall[above]);
         }
     }
     float sum = 0.0f;
     int sides = 0;
     for (int s = 0; s < 2; s++) {
-        if (seen[s].hits == 0) continue;
-        sum += seen[s].sum / (float)seen[s].hits;
+        if (wall[s].hits == 0) continue;
+        sum += wall[s].sum / (float)wall[s].hits;
         sides++;
     }
     return sides ? sum / (float)sides : cells->plane[axis][plane];

@@ -31,9 +31,9 @@ static float look(void *user, const struct probe_ray *from, bool *inside)
     const struct job *job = user;
     const struct ray ray = { from->from, from->direction, 0.0f, INFINITY };
     struct ray_hit hit;
-    const bool met = embree_closest(job->trace->embree, &ray, NULL, false, &hit);
-    *inside = met && texel_hit_at(job->trace, &ray, &hit).inside;
-    return met ? hit.distance : INFINITY;
+    const bool found = embree_closest(job->trace->embree, &ray, NULL, false, &hit);
+    *inside = found && texel_hit_at(job->trace, &ray, &hit).inside;
+    return found ? hit.distance : INFINITY;
 }
 
 static void trace_probe(void *user, size_t i)

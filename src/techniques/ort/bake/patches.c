@@ -43,8 +43,8 @@ static int longest_axis(const struct item *items, size_t count)
 
 // Divides the items evenly between `patches` patches from `first` on. Its depth is the logarithm of
 // their number.
-static void divide(struct item *items, size_t count, uint32_t first, uint32_t patches,
-                   uint32_t *patch_of)
+static void subdivide(struct item *items, size_t count, uint32_t first, uint32_t patches,
+                      uint32_t *patch_of)
 {
     if (patches == 1) {
         for (size_t i = 0; i < count; i++) patch_of[items[i].texel] = first;
@@ -55,8 +55,8 @@ static void divide(struct item *items, size_t count, uint32_t first, uint32_t pa
     qsort(items, count, sizeof *items, compare);
     const uint32_t low = patches / 2;
     const size_t middle = count * low / patches;
-    divide(items, middle, first, low, patch_of);
-    divide(items + middle, count - middle, first + low, patches - low, patch_of);
+    subdivide(items, middle, first, low, patch_of);
+    subdivide(items + middle, count - middle, first + low, patches - low, patch_of);
 }
 
 static void fill_items(const struct ort_map *map, struct item *items)
@@ -104,8 +104,8 @@ static vec3s point_above(const struct ort_map *map, const struct trace_scene *tr
 }
 
 // Texels that the middle of a patch does not see are the second part of it.
-static void divide_by_walls(const struct ort_map *map, const struct trace_scene *trace,
-                            const struct item *items, uint32_t patches, uint32_t *patch_of)
+static void split_by_walls(const struct ort_map *map, const struct trace_scene *trace,
+                           const struct item *items, uint32_t patches, uint32_t *patch_of)
 {
     for (size_t first = 0, end; first < map->texel_count; first = end) {
         const uint32_t patch = patch_of[items[first].texel];
@@ -126,8 +126,8 @@ uint32_t *ort_make_patches(const struct ort_map *map, const struct trace_scene *
     struct item *items = host_alloc(map->host, count, sizeof *items);
     if (patch_of && items && count > 0) {
         fill_items(map, items);
-        divide(items, count, 0, patches, patch_of);
-        divide_by_walls(map, trace, items, patches, patch_of);
+        subdivide(items, count, 0, patches, patch_of);
+        split_by_walls(map, trace, items, patches, patch_of);
     }
     const bool ok = items != NULL;
     host_free(map->host, items);

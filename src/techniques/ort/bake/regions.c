@@ -33,7 +33,7 @@ static int by_x(const void *a, const void *b)
     return (p->region > q->region) - (p->region < q->region);
 }
 
-static int64_t divide_down(int64_t a, int64_t b) // b > 0
+static int64_t floor_divide(int64_t a, int64_t b) // b > 0
 {
     return a / b - (a % b < 0);
 }
@@ -49,7 +49,7 @@ static int64_t first_nearer(const struct site *left, const struct site *right, i
         right->x * right->x + right_rise * right_rise - left->x * left->x - left_rise * left_rise;
     const bool wins_ties = right->region < left->region;
     if (between == 0) return twice < 0 || (twice == 0 && wins_ties) ? INT64_MIN : INT64_MAX;
-    return divide_down(wins_ties ? twice - 1 : twice, 2 * between) + 1;
+    return floor_divide(wins_ties ? twice - 1 : twice, 2 * between) + 1;
 }
 
 // Returns the number of parts of row y, the first of which begins at the left end.

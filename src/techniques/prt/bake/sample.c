@@ -135,7 +135,7 @@ static void surface_of(const struct prt_scene *scene, const struct corner *c, bo
 static vec4s reflectance_of_corner(const struct prt_scene *scene, const struct corner *c,
                                    vec3s normal, bool back)
 {
-    const int across = c->mesh->material->mapped || c->mesh->mesh->colors ? 4 : 1;
+    const int across = c->mesh->material->textured || c->mesh->mesh->colors ? 4 : 1;
     vec4s sum = { { 0, 0, 0, 0 } };
     for (int i = 0; i < across * across; i++) {
         const float s = ((float)(i % across) + 0.5f) / (float)across;

@@ -14,7 +14,7 @@ bool radiosity_scene_init(struct radiosity_scene *scene, struct host *host,
     if (!scene->map.host && !radiosity_map_init(&scene->map, host, &scene->statics.pose, options))
         return false;
     scene->trace = trace_scene_create(host, &scene->statics.pose);
-    return scene->trace && radiosity_divide(scene);
+    return scene->trace && radiosity_subdivide(scene);
 }
 
 void radiosity_scene_finish(struct radiosity_scene *scene)

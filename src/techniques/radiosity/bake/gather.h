@@ -41,10 +41,10 @@ struct radiosity_gather {
 uint32_t radiosity_cluster_at(const struct radiosity_scene *scene, const struct ray_hit *hit,
                               const struct texel_hit *at_hit);
 
-// ---- divide.c
+// ---- subdivide.c
 
 // Parts of all texels, the clusters that follow, and which nodes are groups.
-bool radiosity_divide(struct radiosity_scene *scene);
+bool radiosity_subdivide(struct radiosity_scene *scene);
 
 // ----
 

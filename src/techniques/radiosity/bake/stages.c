@@ -34,7 +34,7 @@ static void finish(void *argument)
     job->map = job->scene.map;
     job->scene.map = (struct radiosity_map){ 0 };
     radiosity_scene_finish(&job->scene);
-    if (job->map.host && !radiosity_map_divide(&job->map, NULL)) radiosity_map_finish(&job->map);
+    if (job->map.host && !radiosity_map_subdivide(&job->map, NULL)) radiosity_map_finish(&job->map);
 }
 
 static void destroy(void *argument)

@@ -1,5 +1,5 @@
-// Walls that stand on a chart divide its clusters, and nodes are groups only where their clusters
-// see each other: else the light of one room would be that of the next.
+// Walls that stand on a chart subdivide its clusters, and nodes are groups only if their clusters
+// are visible from each other: else light would leak from one room to the next.
 #include "techniques/radiosity/bake/gather.h"
 
 #include "core/parallel.h"
@@ -40,7 +40,7 @@ static uint32_t first_open(const struct radiosity_scene *scene, uint32_t cluster
     return map->members[map->first[cluster]];
 }
 
-static void divide_cluster(void *user, size_t cluster)
+static void subdivide_cluster(void *user, size_t cluster)
 {
     struct radiosity_scene *scene = user;
     const struct radiosity_map *map = &scene->map;
@@ -64,13 +64,13 @@ static void find_group(void *user, size_t n)
             scene->is_group[n] = false;
 }
 
-bool radiosity_divide(struct radiosity_scene *scene)
+bool radiosity_subdivide(struct radiosity_scene *scene)
 {
     struct radiosity_map *map = &scene->map;
     scene->part = host_alloc(scene->host, map->texel_count, sizeof *scene->part);
     if (!scene->part) return false;
-    parallel_for(map->cluster_count, 64, divide_cluster, scene);
-    if (!radiosity_map_divide(map, scene->part)) return false;
+    parallel_for(map->cluster_count, 64, subdivide_cluster, scene);
+    if (!radiosity_map_subdivide(map, scene->part)) return false;
     scene->is_group = host_alloc(scene->host, map->tree.count, sizeof *scene->is_group);
     if (!scene->is_group) return false;
     parallel_for(map->tree.count, 64, find_group, scene);
