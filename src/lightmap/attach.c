@@ -60,9 +60,9 @@ static uint32_t variant_of(struct unwrapped *u, uint32_t vertex, uint32_t chart,
     return u->count++;
 }
 
-// Corners of a spot are all at its texel's centre. Triangles without an area there are no unwrap:
-// in the file each has a cell of the texel, all of which shows the spot's light.
-static vec2s place_in_spot(const struct chart *chart, uint32_t triangle, uint32_t k)
+// All corners of a single-texel chart are at its texel's centre. Triangles without area are no
+// valid unwrap: in the file each has a cell of the texel, and all cells have the texel's light.
+static vec2s place_in_texel(const struct chart *chart, uint32_t triangle, uint32_t k)
 {
     static const float CORNER[3][2] = { { 0.1f, 0.1f }, { 0.9f, 0.1f }, { 0.1f, 0.9f } };
     const uint32_t at = triangle - chart->first_triangle;
@@ -70,15 +70,15 @@ static vec2s place_in_spot(const struct chart *chart, uint32_t triangle, uint32_
     while (across * across < chart->triangle_count) across++;
     const float x = ((float)(at % across) + CORNER[k][0]) / (float)across;
     const float y = ((float)(at / across) + CORNER[k][1]) / (float)across;
-    return (vec2s){ { (float)(chart->x + CHART_SPOT_GUTTER) + x,
-                      (float)(chart->y + CHART_SPOT_GUTTER) + y } };
+    return (vec2s){ { (float)(chart->x + CHART_SINGLE_TEXEL_GUTTER) + x,
+                      (float)(chart->y + CHART_SINGLE_TEXEL_GUTTER) + y } };
 }
 
 static vec2s place_of(const struct charts *charts, uint32_t triangle, uint32_t k)
 {
     const struct chart_triangle *t = &charts->triangles[triangle];
     const struct chart *chart = &charts->charts[t->chart];
-    return chart->spot ? place_in_spot(chart, triangle, k) : t->place[k];
+    return chart->single_texel ? place_in_texel(chart, triangle, k) : t->place[k];
 }
 
 static vec2s coordinates_of(const struct charts *charts, uint32_t triangle, uint32_t k)

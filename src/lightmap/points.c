@@ -142,9 +142,9 @@ static uint32_t triangle_at(const struct charts *charts, const struct chart *cha
     return t;
 }
 
-// All corners of a spot are at one place: its points are spread over its surface.
-static void find_spot_points(const struct gather_scene *s, const struct chart *chart,
-                             struct gather_points *out)
+// All corners of a single-texel chart are at one place: its points are spread over its surface.
+static void find_scattered_points(const struct gather_scene *s, const struct chart *chart,
+                                  struct gather_points *out)
 {
     for (uint32_t k = 0; k < GATHER_POINTS; k++) {
         const vec2s at = sample_triangle(sobol_2d(k, pcg_hash(out->pixel) | 1u));
@@ -162,8 +162,8 @@ void gather_find_points(const struct gather_scene *s, uint32_t texel, struct gat
     out->count = 0;
     out->pixel = chart_front(s->charts, texel);
     out->back = chart_is_back(s->charts, texel);
-    if (chart->spot) {
-        find_spot_points(s, chart, out);
+    if (chart->single_texel) {
+        find_scattered_points(s, chart, out);
         return;
     }
     for (uint32_t k = 0; k < GATHER_POINTS; k++) {

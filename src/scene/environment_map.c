@@ -187,7 +187,8 @@ static uint64_t key_of(const struct environment_map *map)
 static bool find_light(struct environment_map *map, const struct image *from)
 {
     struct image whole = { 0 };
-    bool ok = copy_clean(map, from, &whole) && environment_take_sun(map->host, &whole, &map->sun);
+    bool ok =
+        copy_clean(map, from, &whole) && environment_extract_sun(map->host, &whole, &map->sun);
     ok = ok && shrink_to(map, &whole, ENVIRONMENT_MAX_WIDTH, &map->radiance);
     image_finish(&whole, map->host);
     return ok;

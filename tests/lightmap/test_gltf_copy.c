@@ -19,20 +19,20 @@ static struct scene *written(struct gltf_doc *doc)
     return scene;
 }
 
-// With an atlas that covers all. Returns the number of spots.
+// With an atlas that covers all. Returns the number of single-texel charts.
 static int attach_at(struct gltf_doc *doc, const struct scene *scene,
                      const struct charts_options *how)
 {
     struct scene_pose pose;
     struct charts charts;
     CHECK(pose_init(&pose, scene, -1, 0));
-    int spots = 0;
+    int singles = 0;
     CHECK(charts_init(&charts, test_host(), &pose, how));
     CHECK(lightmap_attach(doc, &charts, scene));
-    for (uint32_t c = 0; c < charts.count; c++) spots += charts.charts[c].spot;
+    for (uint32_t c = 0; c < charts.count; c++) singles += charts.charts[c].single_texel;
     charts_finish(&charts);
     pose_finish(&pose);
-    return spots;
+    return singles;
 }
 
 static void attach(struct gltf_doc *doc, const struct scene *scene)
@@ -200,14 +200,14 @@ static void check_unwraps(const char *name)
     struct scene *scene = scene_load(test_host(), name);
     assert_non_null(scene);
     CHECK(gltf_doc_of_scene(&doc, test_host(), scene));
-    const int spots = attach_at(&doc, scene,
-                                &(struct charts_options){ .texels_per_m = 1e6f,
-                                                          .max_texels = 1 << 22,
-                                                          .surface_texels = 65536,
-                                                          .join = CHARTS_JOINED_ACROSS });
+    const int singles = attach_at(&doc, scene,
+                                  &(struct charts_options){ .texels_per_m = 1e6f,
+                                                            .max_texels = 1 << 22,
+                                                            .surface_texels = 65536,
+                                                            .join = CHARTS_JOINED_ACROSS });
     struct scene *copy = written(&doc);
-    print_message("%s: %d spots\n", name, spots);
-    CHECK(spots > 10);
+    print_message("%s: %d single-texel charts\n", name, singles);
+    CHECK(singles > 10);
     for (int m = 0; m < copy->mesh_count; m++) {
         enum unwrap_fault fault;
         CHECK(unwrap_check(test_host(), &copy->meshes[m], 1, 0.0, &fault));

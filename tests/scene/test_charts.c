@@ -624,10 +624,10 @@ TEST(chosen_triangles_alone_have_charts)
     close_scene(scene, &pose);
 }
 
-// ---- spots
+// ---- single-texel charts
 
-// Laws that spots keep; their texels have no extent.
-static void check_spots(const struct charts *charts)
+// Laws that single-texel charts keep; their texels have no extent.
+static void check_single_texels(const struct charts *charts)
 {
     double area = 0.0, expected = 0.0;
     check_rectangles_are_apart(charts);
@@ -637,7 +637,8 @@ static void check_spots(const struct charts *charts)
         const struct chart *chart = &charts->charts[c];
         for (uint32_t i = 0; i < chart->triangle_count; i++)
             expected += (double)charts->triangles[chart->first_triangle + i].area_m2;
-        CHECK(!chart->spot || (chart->width == 3 && chart->height == 3 && chart->texel_count == 1));
+        CHECK(!chart->single_texel ||
+              (chart->width == 3 && chart->height == 3 && chart->texel_count == 1));
     }
     CHECK_RELATIVE(area, expected, 1e-3);
 }
@@ -687,12 +688,12 @@ static uint32_t spots_of_tiles(bool wall, enum charts_join join)
     CHECK(pose_init(&pose, scene, -1, 0.0f));
     CHECK(charts_init(&charts, test_host(), &pose, &options));
     check_each_triangle_is_in_one_chart(&charts, &pose);
-    check_spots(&charts);
-    uint32_t spots = 0;
-    for (uint32_t c = 0; c < charts.count; c++) spots += charts.charts[c].spot;
+    check_single_texels(&charts);
+    uint32_t singles = 0;
+    for (uint32_t c = 0; c < charts.count; c++) singles += charts.charts[c].single_texel;
     charts_finish(&charts);
     close_scene(scene, &pose);
-    return spots;
+    return singles;
 }
 
 TEST(small_charts_that_see_each_other_share_a_texel)
@@ -717,7 +718,7 @@ TEST(instances_share_texels_only_where_wanted)
                                                 .join = cases[i].join };
         CHECK(pose_init(&pose, scene, -1, 0.0f));
         CHECK(charts_init(&charts, test_host(), &pose, &options));
-        check_spots(&charts);
+        check_single_texels(&charts);
         CHECK((charts.count < 4) == cases[i].fewer);
         charts_finish(&charts);
         close_scene(scene, &pose);

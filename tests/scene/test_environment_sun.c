@@ -95,7 +95,7 @@ static struct environment_sun take(struct image *image)
     struct environment_sun sun;
     double before[3], after[3];
     sum_light(image, before);
-    CHECK(environment_take_sun(test_host(), image, &sun));
+    CHECK(environment_extract_sun(test_host(), image, &sun));
     sum_light(image, after);
     for (int c = 0; c < 3; c++)
         CHECK_NEAR(after[c] + (double)sun.illuminance_lux.raw[c], before[c], 1e-5 * before[c]);
@@ -117,7 +117,7 @@ static void check_none(struct image *image)
     CHECK(image_init(&copy, test_host(), image->width, image->height, 3));
     memcpy(copy.pixels, image->pixels, bytes);
     struct environment_sun sun;
-    CHECK(environment_take_sun(test_host(), image, &sun));
+    CHECK(environment_extract_sun(test_host(), image, &sun));
     CHECK(!sun.found && glms_vec3_norm(sun.illuminance_lux) == 0.0f);
     CHECK(memcmp(copy.pixels, image->pixels, bytes) == 0);
     image_finish(&copy, test_host());
@@ -292,7 +292,7 @@ TEST(images_of_other_channels_are_refused)
     struct image image;
     struct environment_sun sun;
     CHECK(image_init(&image, test_host(), 4, 2, 4));
-    CHECK(!environment_take_sun(test_host(), &image, &sun));
+    CHECK(!environment_extract_sun(test_host(), &image, &sun));
     CHECK(test_host()->failure == FAIL_ARGUMENT && strstr(test_last_message(), "4 channels"));
     image_finish(&image, test_host());
 }
@@ -318,7 +318,7 @@ TEST(without_memory_the_image_is_not_changed)
         double before[3], after[3];
         sum_light(&image, before);
         blocks_left = blocks;
-        CHECK(!environment_take_sun(&host, &image, &sun));
+        CHECK(!environment_extract_sun(&host, &image, &sun));
         CHECK(host.failure == FAIL_MEMORY && !sun.found);
         sum_light(&image, after);
         CHECK(before[0] == after[0]);

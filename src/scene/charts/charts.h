@@ -7,23 +7,23 @@
 // A chart's rectangle has a gutter of CHART_GUTTER texels around the texels that its surface
 // touches; rectangles do not overlap. Coordinates in the atlas are in texels, centres at ½.
 //
-// Charts that would fit in a texel may be joined to spots: one texel at whose centre all corners
-// are, with a gutter of one texel.
+// Charts that would fit in a texel may be joined to single-texel charts: all corners are at the
+// centre of the texel, with a gutter of one texel.
 #pragma once
 
 #include "scene/pose.h"
 
-enum { CHART_GUTTER = 2, CHART_SPOT_GUTTER = 1, CHART_MAX_SIDE = 16384 };
+enum { CHART_GUTTER = 2, CHART_SINGLE_TEXEL_GUTTER = 1, CHART_MAX_SIDE = 16384 };
 #define CHART_NONE UINT32_MAX
 
 // Normals within a chart of clusters differ from its plane's by at most acos of this. Lengths are
 // therefore shortened, and areas, by at most this factor.
 #define CHART_MIN_COSINE 0.75f
 
-// Which charts that fit in a texel share one. They see each other, within a texel's length, and
-// face one way.
+// Small charts that share a single-texel chart: they fit in a texel, are visible from each other
+// within a texel's length, and have similar normals.
 enum charts_join {
-    CHARTS_APART,         // none; there are no spots
+    CHARTS_APART,         // none; there are no single-texel charts
     CHARTS_JOINED,        // those of an instance
     CHARTS_JOINED_ACROSS, // those of all instances, if all or none are double-sided
 };
@@ -51,9 +51,9 @@ struct charts_options {
 };
 
 struct chart {
-    int instance;   // of a spot: of its first triangle
+    int instance;   // of a single-texel chart: of its first triangle
     bool unwrapped; // an island of texture coordinates
-    bool spot;
+    bool single_texel;
     uint32_t first_triangle, triangle_count;
     uint32_t first_texel, texel_count;
     uint32_t first_back;          // of the texels of both sides; CHART_NONE: it has no back

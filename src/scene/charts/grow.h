@@ -5,7 +5,7 @@
 
 struct grown_chart {
     uint32_t first_triangle, triangle_count; // in `order`
-    bool unwrapped, spot; // spot: it has one texel, whose centre all corners are at
+    bool unwrapped, single_texel; // single_texel: one texel, whose centre all corners are at
     vec3s normal;
     double width, height; // texels; the least coordinates of the corners are 0
 };

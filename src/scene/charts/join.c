@@ -1,5 +1,5 @@
-// Small charts of one cell of a grid, the largest first: each joins the first chart before it that
-// faces its way and that it sees.
+// Small charts of one cell of a grid, the largest first: each joins the first chart before it with
+// a similar normal that is visible from it.
 #include "scene/charts/join.h"
 
 #include "scene/charts/sight.h"
@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct spot {
+struct small_chart {
     struct sight_place place; // the middle of the largest triangle; the chart's normal
     uint64_t cell;
-    uint32_t chart, kind; // kind: spots of different ones stay apart
+    uint32_t chart, kind; // kind: charts of different ones stay apart
     float area_m2;
 };
 
@@ -20,13 +20,13 @@ struct joining {
     const struct surface *surface;
     double texels_per_m;
     bool across;
-    struct spot *spots;
-    uint32_t spot_count;
+    struct small_chart *small;
+    uint32_t small_count;
     uint32_t *joined; // [charts] the chart that a chart is part of
-    uint32_t *heads;  // [charts] spots of a cell that are not part of others
+    uint32_t *heads;  // [charts] small charts of a cell that are not part of others
 };
 
-// ---- spots
+// ---- small charts
 
 static bool is_small(const struct grown_chart *chart)
 {
@@ -47,71 +47,71 @@ static uint64_t cell_of(vec3s position, double texels_per_m)
     return cell;
 }
 
-static struct spot spot_of(const struct joining *j, uint32_t chart)
+static struct small_chart small_chart_of(const struct joining *j, uint32_t chart)
 {
     const struct grown_chart *of = &j->grown->charts[chart];
-    struct spot spot = { .place.normal = of->normal, .chart = chart };
+    struct small_chart small = { .place.normal = of->normal, .chart = chart };
     float largest = 0.0f;
     for (uint32_t i = of->first_triangle; i < of->first_triangle + of->triangle_count; i++) {
         const struct surface_triangle *t = &j->surface->triangles[j->grown->order[i]];
-        spot.area_m2 += t->area_m2;
+        small.area_m2 += t->area_m2;
         if (!(t->area_m2 > largest)) continue;
         largest = t->area_m2;
-        spot.kind = j->across ? t->double_sided : 2 * (uint32_t)t->instance + t->double_sided;
+        small.kind = j->across ? t->double_sided : 2 * (uint32_t)t->instance + t->double_sided;
         const vec3s sum = glms_vec3_add(t->corner[0], glms_vec3_add(t->corner[1], t->corner[2]));
-        spot.place.position = glms_vec3_scale(sum, 1.0f / 3.0f);
+        small.place.position = glms_vec3_scale(sum, 1.0f / 3.0f);
     }
-    spot.cell = cell_of(spot.place.position, j->texels_per_m);
-    return spot;
+    small.cell = cell_of(small.place.position, j->texels_per_m);
+    return small;
 }
 
-static int compare_spots(const void *a, const void *b)
+static int compare_small(const void *a, const void *b)
 {
-    const struct spot *p = a, *q = b;
+    const struct small_chart *p = a, *q = b;
     if (p->cell != q->cell) return p->cell < q->cell ? -1 : 1;
     if (p->kind != q->kind) return p->kind < q->kind ? -1 : 1;
     if (p->area_m2 != q->area_m2) return p->area_m2 > q->area_m2 ? -1 : 1;
     return p->chart < q->chart ? -1 : p->chart > q->chart;
 }
 
-static bool find_spots(struct joining *j)
+static bool find_small(struct joining *j)
 {
     const struct grown *grown = j->grown;
-    j->spots = host_alloc(grown->host, grown->count, sizeof *j->spots);
+    j->small = host_alloc(grown->host, grown->count, sizeof *j->small);
     j->joined = host_alloc(grown->host, grown->count, sizeof *j->joined);
     j->heads = host_alloc(grown->host, grown->count, sizeof *j->heads);
-    if (!j->spots || !j->joined || !j->heads) return false;
+    if (!j->small || !j->joined || !j->heads) return false;
     for (uint32_t c = 0; c < grown->count; c++) {
         j->joined[c] = c;
-        if (is_small(&grown->charts[c])) j->spots[j->spot_count++] = spot_of(j, c);
+        if (is_small(&grown->charts[c])) j->small[j->small_count++] = small_chart_of(j, c);
     }
-    qsort(j->spots, j->spot_count, sizeof *j->spots, compare_spots);
+    qsort(j->small, j->small_count, sizeof *j->small, compare_small);
     return true;
 }
 
 // ---- joining
 
-// Spots that a spot is tried with, at most: tests of visibility take time.
+// Charts that a small chart is tried with, at most: tests of visibility take time.
 enum { MOST_TRIED = 8 };
 
-// The irradiance of a spot is that of its normal and its direction; other normals of the half space
-// before it lack what is behind it.
+// A texel has the irradiance of one normal. Charts with other normals share it only within this
+// cosine, beyond which they would lack light from behind its plane.
 static const float MIN_COSINE = 0.5f;
 
-// Joins a spot to one of its cell and kind, or adds it to them. heads: of other joined ones.
-static void join_spot(struct joining *j, const struct sight *sight, const struct spot *spot,
-                      uint32_t *head_count)
+// Joins a chart to one of its cell and kind, or adds it to their heads.
+static void join_small(struct joining *j, const struct sight *sight,
+                       const struct small_chart *small, uint32_t *head_count)
 {
     int tried = 0;
     for (uint32_t k = 0; k < *head_count && tried < MOST_TRIED; k++) {
-        const struct spot *to = &j->spots[j->heads[k]];
-        if (glms_vec3_dot(to->place.normal, spot->place.normal) < MIN_COSINE) continue;
+        const struct small_chart *to = &j->small[j->heads[k]];
+        if (glms_vec3_dot(to->place.normal, small->place.normal) < MIN_COSINE) continue;
         tried++;
-        if (!sight_is_free(sight, &to->place, &spot->place)) continue;
-        j->joined[spot->chart] = to->chart;
+        if (!sight_is_free(sight, &to->place, &small->place)) continue;
+        j->joined[small->chart] = to->chart;
         return;
     }
-    j->heads[(*head_count)++] = (uint32_t)(spot - j->spots);
+    j->heads[(*head_count)++] = (uint32_t)(small - j->small);
 }
 
 static bool join_all(struct joining *j)
@@ -119,10 +119,10 @@ static bool join_all(struct joining *j)
     struct sight sight;
     if (!sight_init(&sight, j->grown->host, j->surface)) return false;
     uint32_t heads = 0;
-    for (uint32_t i = 0; i < j->spot_count; i++) {
-        const struct spot *spot = &j->spots[i];
-        if (i > 0 && (spot->cell != spot[-1].cell || spot->kind != spot[-1].kind)) heads = 0;
-        join_spot(j, &sight, spot, &heads);
+    for (uint32_t i = 0; i < j->small_count; i++) {
+        const struct small_chart *small = &j->small[i];
+        if (i > 0 && (small->cell != small[-1].cell || small->kind != small[-1].kind)) heads = 0;
+        join_small(j, &sight, small, &heads);
     }
     sight_finish(&sight);
     return true;
@@ -139,7 +139,7 @@ static void number_charts(struct joining *j, uint32_t *number)
         if (j->joined[c] != c) continue;
         number[c] = count;
         grown->charts[count] = grown->charts[c];
-        grown->charts[count].spot = is_small(&grown->charts[c]);
+        grown->charts[count].single_texel = is_small(&grown->charts[c]);
         grown->charts[count++].triangle_count = 0;
     }
     grown->count = count;
@@ -180,14 +180,14 @@ static bool rebuild(struct joining *j)
     return ok;
 }
 
-bool join_spots(struct grown *grown, const struct surface *surface, double texels_per_m,
-                bool across)
+bool join_small_charts(struct grown *grown, const struct surface *surface, double texels_per_m,
+                       bool across)
 {
     struct joining j = {
         .grown = grown, .surface = surface, .texels_per_m = texels_per_m, .across = across
     };
-    const bool ok = find_spots(&j) && join_all(&j) && rebuild(&j);
-    host_free(grown->host, j.spots);
+    const bool ok = find_small(&j) && join_all(&j) && rebuild(&j);
+    host_free(grown->host, j.small);
     host_free(grown->host, j.joined);
     host_free(grown->host, j.heads);
     return ok;

@@ -102,11 +102,11 @@ static void add_triangle(const struct charts *charts, uint32_t triangle, struct 
     }
 }
 
-// All of a spot is in one texel, whose triangle is the largest.
-static void add_spot(const struct charts *charts, struct cells *cells)
+// All of a single-texel chart is in one texel, whose triangle is the largest.
+static void add_single_texel(const struct charts *charts, struct cells *cells)
 {
     const struct chart *chart = cells->chart;
-    struct cell *cell = &cells->at[CHART_SPOT_GUTTER * (chart->width + 1)];
+    struct cell *cell = &cells->at[CHART_SINGLE_TEXEL_GUTTER * (chart->width + 1)];
     for (uint32_t i = 0; i < chart->triangle_count; i++) {
         const uint32_t t = chart->first_triangle + i;
         const double area = (double)charts->triangles[t].area_m2;
@@ -120,8 +120,8 @@ static void add_spot(const struct charts *charts, struct cells *cells)
 static void add_chart(const struct charts *charts, struct cells *cells)
 {
     const struct chart *chart = cells->chart;
-    if (chart->spot) {
-        add_spot(charts, cells);
+    if (chart->single_texel) {
+        add_single_texel(charts, cells);
         return;
     }
     for (uint32_t t = 0; t < chart->triangle_count; t++)
@@ -132,17 +132,18 @@ static struct chart_texel texel_of(const struct charts *charts, const struct cel
                                    uint32_t y)
 {
     const struct chart_triangle *t = &charts->triangles[cell->triangle];
-    const bool is_spot = charts->charts[t->chart].spot;
+    const bool is_single_texel = charts->charts[t->chart].single_texel;
     double weight[3] = { 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 }, position[3];
     struct chart_texel texel = { .x = x, .y = y, .triangle = cell->triangle };
-    if (!is_spot) weigh(t, cell->middle, weight);
+    if (!is_single_texel) weigh(t, cell->middle, weight);
     texel.u = (float)weight[1];
     texel.v = (float)weight[2];
     texel.area_m2 = (float)cell->area_m2;
     position_at(t, weight, position);
     for (int c = 0; c < 3; c++) {
         texel.position.raw[c] = (float)position[c];
-        texel.centroid.raw[c] = (float)(is_spot ? position[c] : cell->moment[c] / cell->area_m2);
+        texel.centroid.raw[c] =
+            (float)(is_single_texel ? position[c] : cell->moment[c] / cell->area_m2);
     }
     return texel;
 }

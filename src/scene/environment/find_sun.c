@@ -276,7 +276,7 @@ static void subtract_excess(const struct region *region, const double ring[3], s
     }
 }
 
-bool environment_take_sun(struct host *host, struct image *equirect, struct environment_sun *out)
+bool environment_extract_sun(struct host *host, struct image *equirect, struct environment_sun *out)
 {
     struct environment_sun sun = { 0 };
     struct region region;

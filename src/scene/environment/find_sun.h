@@ -22,4 +22,5 @@ struct environment_sun {
 // Σ L·Δω before is Σ L·Δω after plus the illuminance. Images without a sun, or with values that
 // are not finite, are not changed. Texels must be smaller than the sun: below about 70 columns none
 // is found. False: other channels, or no memory; the image is not changed.
-bool environment_take_sun(struct host *host, struct image *equirect, struct environment_sun *out);
+bool environment_extract_sun(struct host *host, struct image *equirect,
+                             struct environment_sun *out);

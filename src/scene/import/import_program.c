@@ -129,10 +129,10 @@ static int input_of(struct import *import, const struct file_bytes *bytes)
     int fd = made >= 0 ? fcntl(made, F_DUPFD_CLOEXEC, STDERR_FILENO + 1) : -1;
     if (made >= 0) close(made);
     for (size_t at = 0; fd >= 0 && at < bytes->size;) {
-        const ssize_t put = write(fd, bytes->data + at, bytes->size - at);
-        if (put < 0 && errno == EINTR) continue;
-        if (put > 0) at += (size_t)put;
-        if (put > 0) continue;
+        const ssize_t written = write(fd, bytes->data + at, bytes->size - at);
+        if (written < 0 && errno == EINTR) continue;
+        if (written > 0) at += (size_t)written;
+        if (written > 0) continue;
         close(fd);
         fd = -1;
     }

@@ -12,7 +12,7 @@
 // Specialization constants that differ from the defaults of the shaders, as bit sets. The first
 // ones are those of frame/scene.glsl, in the same order.
 enum {
-    MAPPED = 1 << 0,
+    TEXTURED = 1 << 0,
     MASKED = 1 << 1,
     COLUMNS = 1 << 2,
     UNLIT = 1 << 3,
@@ -74,14 +74,14 @@ static void add_voxelize(const struct vct_options *o, struct gpu_objects *out)
           .consts = (bits) }
     GPU_ADD(out, 0, VOXELIZE(mark, "mark", mark, 0),
             VOXELIZE(outermost[0], "outermost", outermost, 0),
-            VOXELIZE(outermost[1], "outermost_masked", outermost, MAPPED | MASKED),
+            VOXELIZE(outermost[1], "outermost_masked", outermost, TEXTURED | MASKED),
             VOXELIZE(add[VCT_PLAIN], "add", add, NOT_EMISSIVE),
             VOXELIZE(add[VCT_EMISSIVE], "add_emissive", add, 0),
             VOXELIZE(add[VCT_SMALL_EMITTER], "add_small_emitter", add, SMALL_EMITTERS),
-            VOXELIZE(add[VCT_MAPPED], "add_mapped", add, MAPPED),
-            VOXELIZE(add[VCT_MAPPED_SMALL_EMITTER], "add_mapped_small_emitter", add,
-                     MAPPED | SMALL_EMITTERS),
-            VOXELIZE(add[VCT_MASKED], "add_masked", add, MAPPED | MASKED));
+            VOXELIZE(add[VCT_TEXTURED], "add_textured", add, TEXTURED),
+            VOXELIZE(add[VCT_TEXTURED_SMALL_EMITTER], "add_textured_small_emitter", add,
+                     TEXTURED | SMALL_EMITTERS),
+            VOXELIZE(add[VCT_MASKED], "add_masked", add, TEXTURED | MASKED));
 }
 
 static void add_octree(uint32_t directions, struct gpu_objects *out)

@@ -108,8 +108,8 @@ static void try_grid(struct search *s, const struct chart_texel *t, const struct
     s->triangle = own;
 }
 
-// A spot has no extent in the atlas: the middles of its triangles.
-static void try_spot(struct search *s, const struct chart *chart)
+// A single-texel chart has no extent in the atlas: tries the middles of its triangles.
+static void try_triangles(struct search *s, const struct chart *chart)
 {
     const uint32_t step = 1 + chart->triangle_count / (ACROSS * ACROSS);
     s->tried = 1;
@@ -122,8 +122,8 @@ static void try_spot(struct search *s, const struct chart *chart)
 static void try_texel(struct search *s, const struct chart_texel *t, const struct chart *chart,
                       int across)
 {
-    if (chart->spot)
-        try_spot(s, chart);
+    if (chart->single_texel)
+        try_triangles(s, chart);
     else
         try_grid(s, t, chart, across);
 }
@@ -231,7 +231,7 @@ struct texel_point texel_find_point(const struct trace_scene *scene, const struc
     try_texel(&s, t, chart, inside ? ACROSS : ACROSS / 2);
     if (least_crossings(&s) <= most) return middle_of(&s, most);
     if (!inside) return middle;
-    const float part = chart->spot ? 0.0f : try_edges(&s, t, most);
+    const float part = chart->single_texel ? 0.0f : try_edges(&s, t, most);
     if (part == 0.0f) return (struct texel_point){ t->position, 0.0f };
     struct texel_point point = middle_of(&s, most);
     point.share *= part;

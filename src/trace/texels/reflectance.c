@@ -41,8 +41,8 @@ static void add_look(struct look *sum, const struct trace_scene *scene,
 }
 
 // The mean of the middles of its triangles by area.
-static struct look look_of_spot(const struct trace_scene *scene, const struct charts *charts,
-                                const struct chart *chart, vec3s normal)
+static struct look look_of_triangles(const struct trace_scene *scene, const struct charts *charts,
+                                     const struct chart *chart, vec3s normal)
 {
     struct look sum = { 0 };
     for (uint32_t i = 0; i < chart->triangle_count; i++) {
@@ -62,7 +62,7 @@ static struct look look_of(const struct trace_scene *scene, const struct charts 
     const struct trace_mesh *mesh = trace_mesh_of(scene, of->instance);
     const int across = mesh->material->textured || mesh->mesh->colors ? POINTS_ACROSS : 1;
     struct look sum = { 0 };
-    if (chart->spot) return look_of_spot(scene, charts, chart, normal);
+    if (chart->single_texel) return look_of_triangles(scene, charts, chart, normal);
     for (int i = 0; i < across * across; i++) {
         const float x = ((float)(i % across) + 0.5f) / (float)across;
         const float y = ((float)(i / across) + 0.5f) / (float)across;

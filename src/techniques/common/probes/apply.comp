@@ -60,7 +60,8 @@ void radiance_at(vec3 position, vec3 n, out vec3 radiance[25])
     for (int k = 0; k < 25; k++) radiance[k] = vec3(0.0);
     for (int i = 0; i < 8; i++) {
         probe_corner corner = probe_corner_of(volume, probe_depths, push.grid, at, i);
-        float weight = corner.linear * (corner.visibility * probe_facing(n, corner.to) + PROBE_OCCLUDED);
+        float weight =
+            corner.linear * (corner.visibility * probe_facing(n, corner.to) + PROBE_OCCLUDED);
         uint probe = uint((corner.cell.z * push.grid.count_y + corner.cell.y) * push.grid.count_x +
                           corner.cell.x);
         for (uint k = 0u; k < 25u; k++)

@@ -86,7 +86,7 @@ vec3 probe_irradiance(sampler3D volume, int slab, ivec3 cell, float basis[9])
 // Irradiance by direction, at a point of a surface in the world; points beyond the grid are moved
 // to its cells.
 vec3 probes_visible_irradiance(sampler3D volume, sampler2D depth, frame_probes grid, vec3 position,
-                            vec3 normal, vec3 direction)
+                               vec3 normal, vec3 direction)
 {
     vec3 at = (position - grid.first_m) / grid.spacing_m + PROBE_BIAS * normal;
     at = clamp(at, vec3(-0.5), vec3(grid.count_x, grid.count_y, grid.count_z) - 0.5);
@@ -105,8 +105,8 @@ vec3 probes_visible_irradiance(sampler3D volume, sampler2D depth, frame_probes g
 }
 
 // Irradiance over directions, as coefficients, at a point that is on no surface.
-void probes_visible_coefficients(sampler3D volume, sampler2D depth, frame_probes grid, vec3 position,
-                              out vec3 c[9])
+void probes_visible_coefficients(sampler3D volume, sampler2D depth, frame_probes grid,
+                                 vec3 position, out vec3 c[9])
 {
     vec3 last = vec3(grid.count_x, grid.count_y, grid.count_z) - 1.0;
     vec3 at = clamp((position - grid.first_m) / grid.spacing_m, vec3(0.0), last);

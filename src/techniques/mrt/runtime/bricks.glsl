@@ -77,7 +77,8 @@ vec3 lookup_of(mrt_visible_probes visible, int i, out float weight)
 {
     bool all = visible.lookups == 1;
     weight = visible.scale * (all ? 1.0 : share_of_probe(visible, i));
-    return all ? visible.texel : floor(visible.texel - 0.5) + vec3(i & 1, i >> 1 & 1, i >> 2 & 1) + 0.5;
+    return all ? visible.texel
+               : floor(visible.texel - 0.5) + vec3(i & 1, i >> 1 & 1, i >> 2 & 1) + 0.5;
 }
 
 vec3 bricks_irradiance(mrt_place place, vec3 normal)

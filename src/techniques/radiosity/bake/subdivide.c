@@ -8,18 +8,19 @@
 // surface does not hide its own.
 static const float HEIGHT = 0.25f;
 
-struct spot {
+struct surface_point {
     vec3s position, normal;
 };
 
-static struct spot spot_of(const struct radiosity_scene *scene, uint32_t texel)
+static struct surface_point point_of(const struct radiosity_scene *scene, uint32_t texel)
 {
     const struct charts *charts = &scene->map.charts;
-    return (struct spot){ chart_texel_of(charts, texel)->position,
-                          chart_texel_normal(charts, texel) };
+    return (struct surface_point){ chart_texel_of(charts, texel)->position,
+                                   chart_texel_normal(charts, texel) };
 }
 
-static bool see_each_other(const struct radiosity_scene *scene, struct spot a, struct spot b)
+static bool are_mutually_visible(const struct radiosity_scene *scene, struct surface_point a,
+                                 struct surface_point b)
 {
     const float height = HEIGHT * glms_vec3_distance(a.position, b.position);
     const vec3s from = glms_vec3_muladds(a.normal, height, a.position);
@@ -45,10 +46,10 @@ static void subdivide_cluster(void *user, size_t cluster)
     struct radiosity_scene *scene = user;
     const struct radiosity_map *map = &scene->map;
     if (map->first[cluster + 1] - map->first[cluster] < 2) return;
-    const struct spot from = spot_of(scene, first_open(scene, (uint32_t)cluster));
+    const struct surface_point from = point_of(scene, first_open(scene, (uint32_t)cluster));
     for (uint32_t m = map->first[cluster]; m < map->first[cluster + 1]; m++)
         scene->part[map->members[m]] =
-            !see_each_other(scene, from, spot_of(scene, map->members[m]));
+            !are_mutually_visible(scene, from, point_of(scene, map->members[m]));
 }
 
 static void find_group(void *user, size_t n)
@@ -57,10 +58,10 @@ static void find_group(void *user, size_t n)
     const struct radiosity_map *map = &scene->map;
     const struct radiosity_node *node = &map->tree.nodes[n];
     if (node->count > RADIOSITY_GROUP) return;
-    const struct spot from = spot_of(scene, first_open(scene, node->first));
+    const struct surface_point from = point_of(scene, first_open(scene, node->first));
     scene->is_group[n] = true;
     for (uint32_t c = node->first + 1; c < node->first + node->count; c++)
-        if (!see_each_other(scene, from, spot_of(scene, first_open(scene, c))))
+        if (!are_mutually_visible(scene, from, point_of(scene, first_open(scene, c))))
             scene->is_group[n] = false;
 }
 

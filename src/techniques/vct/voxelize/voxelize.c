@@ -18,7 +18,7 @@ static enum vct_draw_kind kind_of(const struct vct *vct, const struct scene_gpu 
     const uint32_t maps =
         VARIANT_BASE_COLOR_MAP | VARIANT_METALLIC_ROUGHNESS_MAP | VARIANT_EMISSIVE_MAP;
     const bool small_emitter = vct_small_emitters_have(&vct->small_emitters, index);
-    if (draw->variant & maps) return small_emitter ? VCT_MAPPED_SMALL_EMITTER : VCT_MAPPED;
+    if (draw->variant & maps) return small_emitter ? VCT_TEXTURED_SMALL_EMITTER : VCT_TEXTURED;
     if (small_emitter) return VCT_SMALL_EMITTER;
     return emissive.x > 0.0f || emissive.y > 0.0f || emissive.z > 0.0f ? VCT_EMISSIVE : VCT_PLAIN;
 }

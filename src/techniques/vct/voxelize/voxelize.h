@@ -25,8 +25,8 @@ enum vct_draw_kind {
     VCT_PLAIN,
     VCT_EMISSIVE,
     VCT_SMALL_EMITTER,
-    VCT_MAPPED, // with maps, of emission too
-    VCT_MAPPED_SMALL_EMITTER,
+    VCT_TEXTURED, // with maps, of emission too
+    VCT_TEXTURED_SMALL_EMITTER,
     VCT_MASKED,
     VCT_DRAW_KINDS
 };
