@@ -115,6 +115,22 @@ fails "a phrase that has a term" 'notes.md:1:Surfaces that glow' "$here/wording.
 rm "$tree/notes.md"
 printf 'int x; // a picture of it\n' >"$tree/src/core/bad.c"
 fails "a phrase in a comment" 'write instead: image' "$here/wording.sh" "$tree"
+printf 'int x; // of it, what it is, where it is\nint lampshade; // so it is\n' >"$tree/src/core/bad.c"
+passes "a comment of a member" "$here/wording.sh" "$tree"
+for word in Of What Where So; do
+    printf '// %s it is.\nint x;\n' "$word" >"$tree/src/core/bad.c"
+    fails "a comment without a subject, $word" "bad.c:1:// $word it is" "$here/wording.sh" "$tree"
+done
+printf 'int x; // light of two lamps\n' >"$tree/src/core/bad.c"
+fails "a lamp" 'write instead: punctual light' "$here/wording.sh" "$tree"
+printf 'The point is inside of something.\n' >"$tree/src/core/bad.c"
+fails "an inside without geometry" 'write instead: inside geometry' "$here/wording.sh" "$tree"
+mkdir -p "$tree/src/techniques/vct"
+printf '    { "lamps", "small_emitters" },\n' >"$tree/src/core/bad.c"
+mv "$tree/src/core/bad.c" "$tree/src/techniques/vct/vct.c"
+passes "a line that is allowed" "$here/wording.sh" "$tree"
+cp "$tree/src/techniques/vct/vct.c" "$tree/src/core/bad.c"
+fails "the same line in another file" 'core/bad.c:1:' "$here/wording.sh" "$tree"
 
 fresh
 passes "a header that stands alone" "$here/headers_alone.sh" "$tree/include" "$cc" "$cxx"
