@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 enum { TRIES = 8 };
-// Densities are rounded to what a user reads and types.
+// Densities are rounded to three digits, as users read and type them.
 #define DENSITY_FORMAT "%.3g"
 static const double NEAR_ENOUGH = 1.03;
 

@@ -1,4 +1,4 @@
-// A bake: creation, and what is known of it.
+// A bake: creation, and facts about it.
 #include "bake/bake_state.h"
 
 static bool copy_identity(struct bake *bake, const struct bake_identity *identity)

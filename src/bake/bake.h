@@ -64,9 +64,9 @@ struct bake_run_options {
     bool (*progress)(void *user, const struct bake_progress *progress);
     void *user;
 };
-// Runs what is missing. FAIL_CANCELLED: `progress` returned false; finished tasks are kept, also in
-// the checkpoint. A checkpoint of another identity, or a damaged one, is ignored with a warning. It
-// is read once, and removed by bake_save and bake_save_partial.
+// Runs the missing tasks. FAIL_CANCELLED: `progress` returned false; finished tasks are kept, also
+// in the checkpoint. A checkpoint of another identity, or a damaged one, is ignored with a warning.
+// It is read once, and removed by bake_save and bake_save_partial.
 bool bake_run(struct bake *bake, const struct bake_run_options *options);
 bool bake_is_complete(const struct bake *bake);
 
@@ -74,8 +74,8 @@ bool bake_is_complete(const struct bake *bake);
 // bake_run then does the rest, or with a shard a part of the next wave that is worth splitting.
 bool bake_save_partial(struct bake *bake, const char *path);
 bool bake_merge(struct bake *bake, const char *path);
-// The costliest stage of the wave that a run with a shard would split now; NULL: what is left is
-// not worth splitting.
+// The costliest stage of the wave that a run with a shard would split now; NULL: the remaining
+// stages are not worth splitting.
 const char *bake_split_stage(const struct bake *bake);
 
 // The bake that a partial file is a part of: new texts owned by the caller, and the seed.

@@ -66,9 +66,9 @@ uint64_t output_rows(const struct bake_output *output);
 // The memory that a task writes to, and its size.
 char *output_block(const struct planned_stage *stage, const struct planned_output *output,
                    size_t task, size_t *bytes);
-// Allocates what the tasks of a wave write to. Kept where it exists.
+// Allocates the outputs of a wave's tasks; keeps those that exist.
 bool results_begin(struct bake *bake, int wave);
-// Adds up sums and frees what no later wave reads.
+// Adds up sums and frees tensors that no later wave reads.
 bool results_reduce(struct bake *bake, int wave);
 // Is every task of the wave done?
 bool results_wave_is_done(const struct bake *bake, int wave);

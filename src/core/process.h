@@ -1,4 +1,4 @@
-// Runs another program and collects what it writes. POSIX only.
+// Runs another program and collects its output. POSIX only.
 #pragma once
 
 #include "core/file.h"

@@ -1,4 +1,4 @@
-// Temporary names with locks: creation, and removal of what a killed process left.
+// Temporary names with locks: creation, and removal of those that a killed process left.
 #include "core/temporary.h"
 
 #include <dirent.h>

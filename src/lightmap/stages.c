@@ -58,7 +58,7 @@ static bool run(const struct bake_task *task)
     return ok;
 }
 
-// ---- what the light depends on
+// ---- dependencies of the light
 
 static struct hash128 key_of(const struct scene_pose *pose)
 {

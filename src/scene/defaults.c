@@ -164,7 +164,7 @@ static struct world_camera outside_camera(const struct scene_pose *pose, vec3s t
 
 enum { VIEW_ACROSS = 16 };
 
-// The share of what a square image shows that is lit directly.
+// The directly lit share of the visible surfaces in a square image.
 static float lit_share_of_view(const struct survey *survey, const struct world_camera *camera)
 {
     struct lit_count count = { 0 };

@@ -1,4 +1,4 @@
-// Refuses scenes beyond what 32-bit floats can trace.
+// Refuses scenes that 32-bit floats cannot trace.
 #include "scene/limits.h"
 
 #include "scene/environment_map.h"

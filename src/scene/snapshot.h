@@ -15,8 +15,8 @@ struct scene_snapshot {
     uint64_t materials;                 // revision
 };
 
-// Takes what differs from the last time; a zeroed one, with its host, holds nothing. False without
-// memory: then it holds nothing again.
+// Copies the parts that changed since the last call; a zeroed snapshot, with its host, is empty.
+// False without memory: then it is empty again.
 bool scene_snapshot_take(struct scene_snapshot *snapshot, const struct scene_pose *pose);
 void scene_snapshot_finish(struct scene_snapshot *snapshot); // accepts zero
 

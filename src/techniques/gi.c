@@ -9,7 +9,7 @@
 
 enum { LIST_SIZE = 512 };
 
-// Around the functions of a technique: what they create and record is named "technique.thing".
+// Around the functions of a technique: objects and passes are named "technique.thing".
 static const struct technique *enter(const struct gi *gi, int term)
 {
     gpu_owner_push(gi->gpu, gi->spec.technique[term]->name);

@@ -105,8 +105,8 @@ struct technique {
     bool (*bake_export)(struct host *host, const struct tensors *bake,
                         const struct technique_bake *how, const char *folder);
     bool (*create)(void *state, const struct technique_create *how);
-    // After `create`: takes what it needs of a bake, whose identity has been checked and whose
-    // content is untrusted (tensors_expect). The tensors end with the call.
+    // After `create`: copies or uploads the data of a bake, whose identity has been checked and
+    // whose content is untrusted (tensors_expect). The tensors end with the call.
     bool (*load)(void *state, const struct tensors *bake);
     // A view has this size, and objects for it: view 0 that of `create` until then. 0 × 0: the view
     // has ended.

@@ -64,7 +64,7 @@ static struct guide_record record_of(const struct path_vertex *v, vec3s arriving
     return r;
 }
 
-// From the end of the path: what leaves a vertex is what arrives at the one before.
+// From the end of the path: light that leaves a vertex arrives at the one before.
 static uint32_t add_records(const struct path_trail *trail, const struct guide *guide,
                             struct guide_record *out)
 {

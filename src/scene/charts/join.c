@@ -128,7 +128,7 @@ static bool join_all(struct joining *j)
     return true;
 }
 
-// ---- charts of what was joined
+// ---- joined charts
 
 // Numbers the charts that are left, and moves them there. number: [charts].
 static void number_charts(struct joining *j, uint32_t *number)

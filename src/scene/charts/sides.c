@@ -1,4 +1,4 @@
-// Texels of both sides: numbers, lookups, and what hidden ones show.
+// Texels of both sides: numbers, lookups, and nearest valid texels.
 #include "scene/charts/sides.h"
 
 #include <string.h>

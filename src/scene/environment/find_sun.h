@@ -1,5 +1,5 @@
 // Takes a small bright sun out of an equirectangular image. As a directional light it has sharp
-// shadows and needs few samples; what is left of the image is smooth.
+// shadows and needs few samples; the rest of the image is smooth.
 //
 // A sun is the connected region about the brightest texel whose luminance exceeds 8 times the mean
 // of the ring of 5° to 10° about it, if

@@ -189,7 +189,7 @@ static bool add_instances(const struct added *a)
     return ok;
 }
 
-// ---- what can be added
+// ---- objects that can be added
 
 static bool has_maps(const struct material *m)
 {

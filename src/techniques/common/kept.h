@@ -14,6 +14,6 @@ struct kept {        // zero: no frame before
     uint64_t since; // index of the first frame that is the same
 };
 
-// Once for each frame that is recorded. light: hash of what light depends on; frame_view.light_hash
-// with what the technique adds.
+// Called once for each recorded frame. light: hash of the inputs of light, frame_view.light_hash
+// and those that the technique adds.
 void kept_update(struct kept *kept, const struct frame_view *view, uint64_t light);

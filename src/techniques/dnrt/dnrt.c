@@ -1,7 +1,7 @@
-// Deferred neighboring radiance transfer (Giuffrida 2016): what dynamic objects do to the light of
-// a source that ignores them. Each reflects light onto its surroundings and hides light behind it,
-// by a volume of transfer vectors that is baked once for its mesh and multiplied by the light at
-// the object in every frame.
+// Deferred neighboring radiance transfer (Giuffrida 2016): changes by dynamic objects to the light
+// of a source that ignores them. Each reflects light onto its surroundings and occludes light
+// behind it, by a volume of transfer vectors. The volume is baked once for the object's mesh and
+// multiplied by the light at the object in every frame.
 #include "techniques/dnrt/dnrt.h"
 
 #include "techniques/dnrt/dnrt_bake.h"

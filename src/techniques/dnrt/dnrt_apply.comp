@@ -1,6 +1,6 @@
-// Adds to each pixel's irradiance what objects change: their volumes times weights of its normal,
-// (n_o·n)₊ of one volume (Giuffrida 2016, equation 16). Workgroups are the tiles of the image that
-// some object reaches. A pixel that none changes is not written.
+// Adds the changes by objects to each pixel's irradiance: their volumes times weights of its
+// normal, (n_o·n)₊ of one volume (Giuffrida 2016, equation 16). Workgroups are the tiles of the
+// image that some object reaches. A pixel that none changes is not written.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require

@@ -1,7 +1,7 @@
-// The light at each object with what the others change of it: the function q of equation 18
-// (Giuffrida 2016, section 9.1) for light between objects. Object A changes the irradiance of a
-// receiver at the centre of B that faces it by V, that of others by V (n·n_o)₊, whose coefficients
-// are V Y_j(n_o) times the bands' factors of the clamped cosine. A workgroup has an object B, its
+// The light at each object with its changes by the others: the function q of equation 18 (Giuffrida
+// 2016, section 9.1) for light between objects. Object A changes the irradiance of a receiver at
+// the centre of B by V if the receiver faces it, else by V (n·n_o)₊. The coefficients of this are
+// V Y_j(n_o) times the bands' factors of the clamped cosine. A workgroup has an object B, its
 // invocations the others.
 #version 460
 #extension GL_EXT_scalar_block_layout : require

@@ -56,8 +56,8 @@ vec3 intrusion_point(intrusion i, vec3 to)
 
 const float NOTHING = 0.0, HIDES = 1.0, BEHIND = 2.0;
 
-// x: the distance along the axis of what is in a direction before the receiver; y: whether it is in
-// front of the receiver's tangent plane, which it then hides something from, or behind.
+// x: distance along the axis of the occluder in a direction; y: whether it is in front of the
+// receiver's tangent plane (HIDES) or behind it (BEHIND). NOTHING: none is before the receiver.
 vec2 intrusion_texel(intrusion i, vec3 to)
 {
     vec3 point = intrusion_point(i, to), from_receiver = point - i.receiver;

@@ -1,6 +1,6 @@
 // The light at each object: irradiance of the source's probes at its centre, as coefficients over
-// normals in the object's frame, times π: what the volumes are multiplied by. Lists the objects
-// whose volumes have another light.
+// normals in the object's frame, times π. It is the factor of the object's volumes. Lists the
+// objects whose volumes have another light.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

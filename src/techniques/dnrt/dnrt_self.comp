@@ -42,7 +42,7 @@ layout(set = 0, binding = 7, scalar) readonly buffer dnrt_patches
 };
 layout(set = 0, binding = 8, scalar) readonly buffer dnrt_points
 {
-    uvec2 point_table[]; // [point][coefficient]: change by colour, what is occluded
+    uvec2 point_table[]; // [point][coefficient]: change by colour, occluded part
 };
 layout(set = 0, binding = 9, scalar) readonly buffer dnrt_light
 {

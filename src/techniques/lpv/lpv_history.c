@@ -34,7 +34,7 @@ bool lpv_statics_equal(const struct lpv_statics *cached, const struct lpv_static
 
 // Lights that did not change and objects that did not move have equal reflective shadow maps. Their
 // surfels of the camera's view (geometry=maps) may still differ. A frame without light is not
-// recorded, nor what moved in it.
+// recorded, nor its moving draws.
 bool lpv_is_kept(struct lpv *lpv, const struct frame_view *view)
 {
     const uint64_t steps = hash_bytes(&lpv->options.steps, sizeof(int32_t), view->light_hash);

@@ -119,8 +119,8 @@ struct lpv_crossing lpv_closed_crossing(void)
     return (struct lpv_crossing){ 1.0, 1.0, 2.0 / 3.0 };
 }
 
-// A hemisphere above a lit wall is uniform over 0…1 along the normal: what crosses the side of a
-// cell has the moments of a clamped cosine.
+// A hemisphere above a lit wall is uniform over 0…1 along the normal: light that crosses the side
+// of a cell has the moments of a clamped cosine.
 struct lpv_crossing lpv_product_crossing(void)
 {
     return (struct lpv_crossing){ 1.0, 1.0, 2.0 / 3.0 };

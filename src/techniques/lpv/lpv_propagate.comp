@@ -258,7 +258,7 @@ void from_bands(inout receivers to, lpv_light light, ivec2 step, vec3 transmitta
     }
 }
 
-// The light of a source that moves by a step along x and y, its moments and what they are where it
+// The light of a source that moves by a step along x and y: its moments, and those of the part that
 // does not move along z.
 struct column {
     vec3 flux, along_x, along_y, along_z, square_x, square_y, square_z, product_xy;

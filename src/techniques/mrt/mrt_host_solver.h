@@ -43,7 +43,7 @@ struct mrt_host_frame {
     bool feedback;
     float radiance_scale;
 };
-// Reads `direct`, solves what has arrived and uploads the newest solution into `irradiance` and
-// `radiosity`; false: there is none yet.
+// Reads `direct`, solves for light that has arrived, and uploads the newest solution into
+// `irradiance` and `radiosity`; false: there is none yet.
 bool mrt_host_solver_record(struct mrt_host_solver *solver, struct gpu_cmd *cmd,
                             const struct mrt_host_frame *frame);

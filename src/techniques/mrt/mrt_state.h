@@ -50,7 +50,7 @@ struct mrt {
     struct mrt_published published; // with `probes`
     gpu_image probe_depth;
     struct mrt_update update; // drt
-    // The dictionary and what follows from both.
+    // The dictionary and data that depend on both.
     struct mrt_dictionary dictionary;
     struct mrt_level level;
     struct mrt_runtime runtime;
@@ -77,7 +77,7 @@ bool mrt_parts_init(struct mrt_parts *out, struct host *host, const struct mrt *
 void mrt_parts_finish(struct mrt_parts *parts);
 // Moves images and walls, of parts without clutter.
 void mrt_parts_replace(struct mrt_parts *to, struct mrt_parts *from);
-// Frees what operators are made of. Images and walls stay.
+// Frees the inputs of operators. Images and walls stay.
 void mrt_parts_end_clutter(struct mrt_parts *parts);
 
 struct mrt_build {

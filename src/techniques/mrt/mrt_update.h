@@ -49,7 +49,7 @@ void mrt_update_finish(struct mrt *mrt); // accepts zero
 // After a failure with memory of the update: gives its message to the technique's host. False.
 bool mrt_update_pass_on(struct mrt *mrt);
 
-// Before a frame: takes what the thread has made, and starts it where the scene has changed. With
+// Before a frame: accepts results of the thread, and starts it if the scene has changed. With
 // update=wait, or if the program wants it, it waits. After a failure the old operators stay, with
 // one warning.
 void mrt_update_follow(struct mrt *mrt, const struct scene_pose *pose, bool wait);

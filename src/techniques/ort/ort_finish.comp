@@ -1,4 +1,4 @@
-// Light of each texel: what the maps transfer, and the first-order light of the sky, emissive
+// Light of each texel: transfer of the maps, and the first-order light of the sky, emissive
 // surfaces and paint, unless that scatters below surfaces and is in the maps. The maps have no
 // directions: their vector irradiance is along the normal.
 #version 460

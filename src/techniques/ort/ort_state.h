@@ -14,7 +14,7 @@ struct ort_tables {
     gpu_image lists, entries, bins; // of the gather
     gpu_image first_order, light;   // of the newest light: by place; in pairs, levels of it
     gpu_image steps, filtered;      // between linked texels; light along rows
-    gpu_image sums, texel_light;    // what the maps transfer; light of texels
+    gpu_image sums, texel_light;    // transfer of the maps; light of texels
 };
 
 struct ort_pipelines {

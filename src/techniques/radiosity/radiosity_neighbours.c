@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-// With R the harmonic mean of the distances of what a texel sees, irradiance at distance d differs
+// With R the harmonic mean distance of the hits of a texel's rays, irradiance at distance d differs
 // by about d/R (Ward, Rubinstein & Clear 1988, "A Ray Tracing Solution for Diffuse
 // Interreflection"): weights fall to 0 where that is 1/4.
 static float weight_of(const struct radiosity_surroundings *c, uint32_t a, uint32_t b)

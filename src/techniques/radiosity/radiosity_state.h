@@ -61,7 +61,7 @@ struct radiosity_update {
     bool running;
     bool changed;             // light has changed since it started
     bool at_once;             // to be completed in this frame
-    struct radiosity_part at; // what it goes on with
+    struct radiosity_part at; // the next part
 };
 
 struct radiosity {
@@ -94,7 +94,7 @@ void radiosity_destroy_rows(struct radiosity *state, struct radiosity_rows *rows
 // The content of a bake about the surroundings of texels.
 struct radiosity_surroundings {
     const struct light_map_texels *texels;
-    const float *inverse_distance; // [texels] harmonic mean of the distances of what each one sees
+    const float *inverse_distance; // [texels] mean of 1/distance over the hits, 1/m
     const uint32_t *nearest_valid; // [texels]
 };
 // The neighbours over which light is smoothed. sky: [texels][4], becomes that of the texels,
@@ -115,7 +115,7 @@ void radiosity_record_update(struct radiosity *state, struct gpu_cmd *cmd,
 
 uint32_t radiosity_stage_rows(const struct radiosity *state, enum radiosity_stage stage);
 const char *radiosity_stage_name(enum radiosity_stage stage);
-// The rows of a part, and with the last ones what follows the stage or the step.
+// Records the rows of a part, and with the last ones the passes that follow the stage or the step.
 void radiosity_record_part(struct radiosity *state, struct gpu_cmd *cmd,
                            const struct frame_view *view, const struct radiosity_part *part);
 

@@ -1,4 +1,4 @@
-// Debug views: what the light map is made of, on the surfaces that have it.
+// Debug views: charts, texels and clusters of the light map, on its surfaces.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

@@ -15,5 +15,6 @@ void vct_log_diagnostics(struct host *host, const char *technique,
 // Reads the overflow counters of new voxels back without waiting. Once a frame, after voxelization.
 // A level whose voxels exceed the capacity logs one warning, some frames later.
 void vct_watch_overflow(struct vct *vct, struct gpu_cmd *cmd);
-// Logs what has been read back. Before destruction too: a short run ends before the next frame.
+// Logs counters that have been read back. Before destruction too: a short run ends before the next
+// frame.
 void vct_report_overflow(struct vct *vct);

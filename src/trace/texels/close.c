@@ -251,7 +251,7 @@ static uint32_t merge(const struct near *n, struct chart_share *row)
     return merged;
 }
 
-// Uniform light stays: the largest weight has what the others lack.
+// Uniform light stays: the remainder is added to the largest weight.
 static void write_row(const struct chart_share *row, uint32_t count, struct chart_share *out)
 {
     float rest = 1.0f;

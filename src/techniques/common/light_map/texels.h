@@ -1,5 +1,4 @@
-// Texels of a light map: what a bake has of each, which is untrusted, and their table
-// (texels.glsl).
+// Texels of a light map: their data in a bake, which is untrusted, and their table (texels.glsl).
 #pragma once
 
 #include "techniques/common/light_map/table.h"

@@ -100,7 +100,7 @@ struct moments {
     float sum, square, along[2];
 };
 
-// Mean, and what is left of the standard deviation about a linear function.
+// Mean, and standard deviation about a linear function.
 static void finish_moments(const struct moments *m, int across, uint16_t out[2])
 {
     const float count = (float)(across * across), mean = m->sum / count;
@@ -111,7 +111,7 @@ static void finish_moments(const struct moments *m, int across, uint16_t out[2])
     out[1] = half_from_float(sqrtf(fmaxf(variance, 0.0f)));
 }
 
-// Spacings over the L1 norm of the way to what a ray meets.
+// Nearness of a hit: spacings over the L1 norm of the way to it.
 static float nearness(const struct probe_tracer *tracer, const struct probe_ray *ray, float spacing)
 {
     bool inside;

@@ -11,8 +11,8 @@
 struct probe_volume {
     gpu_image image; // RGBA16F
     struct frame_probes grid;
-    // Not empty: what probes see, RG16F, and the image has the slab that common/probes/lookup.glsl
-    // needs, by which no light passes through walls.
+    // Depths of the probes, RG16F, against leaks through walls; the image then has the slab that
+    // common/probes/lookup.glsl needs. May be empty.
     gpu_image depth;
     // Coefficients of the radiance that arrives at probes, bands 0 to 4: RGBA16F, a table
     // (common/light_map/table.h) of [coefficient][probe]. May be empty.

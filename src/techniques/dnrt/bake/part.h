@@ -1,4 +1,4 @@
-// An object as a scene of its own, in its frame: what rays are traced against.
+// An object as a scene of its own, in its frame, against which rays are traced.
 #pragma once
 
 #include "techniques/dnrt/dnrt_object.h"

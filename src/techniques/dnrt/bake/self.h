@@ -6,9 +6,9 @@
 #include "trace/surface.h"
 
 // ρ T_j by colour: the reflectance times the irradiance at the point, of irradiance Y_j(n) over
-// normals n in space. Without `self` T_j = Y_j of the normal; with it, what the object occludes at
-// the point is replaced by light that it reflects there (Sloan 2002, diffuse self-transfer): one
-// path, whose mean is exact but for its end after 16 bounces.
+// normals n in space. Without `self` T_j = Y_j of the normal. With it, light that the object
+// occludes at the point is replaced by light that it reflects there (Sloan 2002, diffuse
+// self-transfer): one path, whose mean is exact but for its end after 16 bounces.
 void dnrt_reflected(const struct trace_scene *trace, int bands, bool self,
                     const struct surface *surface, struct rng *rng, vec3s *out);
 

@@ -1,5 +1,5 @@
-// Walls between two blocks that clutter alone stands for, such as an arcade with drapes: a map that
-// was found in the free space has them, and clutter does what they were to do.
+// Walls between two blocks that only clutter makes, such as an arcade with drapes. A map found in
+// the free space has them; they are opened, since the clutter itself occludes.
 #include "techniques/mrt/clutter/clutter.h"
 
 #include "techniques/mrt/level/wall.h"

@@ -1,5 +1,5 @@
-// Operators of blocks, kept by what they depend on: after a change of clutter only those of the
-// blocks that it was in, or is in, are traced again.
+// A cache of operators of blocks, by hashes of their inputs: after a change of clutter only those
+// of the blocks that it was in, or is in, are traced again.
 #pragma once
 
 #include "core/hash.h"

@@ -41,7 +41,7 @@ static inline struct mrt_shape mrt_bake_shape(const struct mrt_bake_job *job, in
     return mrt_dictionary_shape(job->maze, job->options.texels, i);
 }
 
-// The argument of a stage of a shape: i in mrt_bake_shape, and what its rays measure.
+// The argument of a stage of a shape: i in mrt_bake_shape, and the measure of its rays.
 struct mrt_shape_stage {
     int shape;
     enum mrt_measure measure;

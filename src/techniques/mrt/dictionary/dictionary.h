@@ -1,5 +1,5 @@
-// The dictionary of modular radiance transfer: what a bake computes for all scenes, and the run
-// time uses (Loos 2015, table 3.1). dictionary_bake.c computes it, dictionary.c reads it.
+// The dictionary of modular radiance transfer: operators that serve all scenes (Loos 2015, table
+// 3.1). dictionary_bake.c computes them, dictionary.c reads them.
 //
 // Tensors of the bake, n texels of the shape, k_b = modes, k_l = lightfield_modes, k_r =
 // response_modes, N openings of the cube in ascending order of their faces; all F32:

@@ -1,5 +1,5 @@
-// Members of `afterglow bake --report`: what the modes of each shape reach (Loos 2015, table 3.2),
-// how exact its operators are, and what they cost.
+// Members of `afterglow bake --report`: energy of the modes of each shape (Loos 2015, table 3.2),
+// the accuracy of its operators, and their cost.
 #include "dictionary.h"
 
 #include "techniques/mrt/dictionary/transfer.h"

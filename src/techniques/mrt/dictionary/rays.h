@@ -1,5 +1,5 @@
-// Sets of rays that measure light at a point: directions around +z, and for each ray what a unit of
-// radiosity adds to each measured quantity (Loos 2015, sections 3.5.4, 3.5.5 and 3.6.1). One set
+// Sets of rays that measure light at a point: directions around +z, and for each ray the weight of
+// its radiosity in each measured quantity (Loos 2015, sections 3.5.4, 3.5.5 and 3.6.1). One set
 // serves all points.
 #pragma once
 

@@ -16,7 +16,7 @@ struct geometry_job {
     const struct mrt_atlas *atlas;
     const struct trace_scene *scene;
     struct mrt_geometry_texel *texels;
-    enum sight *sight; // what each texel sees
+    enum sight *sight; // of each texel
 };
 
 // Whether the way from a point to the middle of the block leaves a solid: a thick wall, a pillar.

@@ -1,4 +1,4 @@
-// Vectors of the compiler: it splits them into what the processor has.
+// Vectors of the compiler: it splits them into those of the processor.
 #include "kernels.h"
 
 typedef float lanes __attribute__((vector_size(4 * MRT_LANES), aligned(4), may_alias));

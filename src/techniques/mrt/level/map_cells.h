@@ -24,7 +24,7 @@ struct mrt_cells {
 
 // Planes where the scene has large surfaces of one axis, the bounds included.
 void mrt_cells_find_planes(struct mrt_cells *cells);
-// Allocates the cells and finds what is open and free.
+// Allocates the cells and finds open faces and free cells.
 bool mrt_cells_fill(struct host *host, struct mrt_cells *cells, const vec3s *seeds, size_t count);
 // Moves the planes to the walls, as seen from the free cells on either side.
 void mrt_cells_snap(struct mrt_cells *cells);

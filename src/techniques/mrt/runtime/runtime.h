@@ -105,7 +105,7 @@ struct mrt_runtime {
 bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
                       const struct mrt_runtime_input *input,
                       const struct mrt_runtime_options *options);
-// On a thread without a GPU: what the run time has, but for the handles (objects.h).
+// Makes all of the run time but its handles (objects.h), on a thread without a GPU.
 bool mrt_runtime_plan(struct mrt_runtime *out, struct mrt_plan *plan,
                       const struct mrt_runtime_input *input,
                       const struct mrt_runtime_options *options);

@@ -1,8 +1,8 @@
 // The stage of transfer maps: R(t, t + Δt) TVA(t, Δt) for all offsets of a texel (equation 10),
-// then its weights are brought to the sum of its row, which the rays know. One bounce and more are
-// treated apart. What the points of the offsets have too much of one bounce is scaled down; what
-// they miss comes from the patches that the rays have met. Scattered light is integrated over the
-// regions of offsets (shares.c).
+// then its weights are scaled to the sum of its row, which follows from the rays. One bounce and
+// more are treated apart. One bounce that the points of the offsets overestimate is scaled down;
+// missing transfer is added from the patches that rays have hit. Scattered light is integrated over
+// the regions of offsets (shares.c).
 #include "core/half.h"
 #include "techniques/ort/bake/shares.h"
 #include "techniques/ort/bake/stages.h"
@@ -101,7 +101,7 @@ static void find_factors(const struct ort_receiver *r, const struct row *row, in
         factor[PATCH] = missed / sum[PATCH];
         missed = 0.0f;
     }
-    if (missed > 0.0f) multiple += missed; // no offset leads to what the rays have met
+    if (missed > 0.0f) multiple += missed; // no offset leads to a hit of the rays
     factor[SCATTERED] = sum[SCATTERED] > 0.0f ? r->scattered[c] / sum[SCATTERED] : 0.0f;
     factor[MULTIPLE] = sum[MULTIPLE] > 0.0f ? multiple / sum[MULTIPLE] : 0.0f;
 }

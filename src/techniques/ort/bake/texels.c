@@ -1,4 +1,4 @@
-// The first stage: where texels are sampled, what they reflect, what their rays meet, and the light
+// The first stage: sample points of texels, their reflectance, hits of their rays, and the light
 // of emissive surfaces and the sky.
 #include "techniques/ort/bake/texels.h"
 

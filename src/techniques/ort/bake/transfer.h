@@ -14,7 +14,7 @@ struct ort_transfer {
 };
 bool ort_transfer_init(struct ort_transfer *out, const struct bake_task *task);
 
-// A receiver: what its rays meet, and the light of more than one bounce that they see.
+// A receiver: hits of its rays, and their light of more than one bounce.
 struct ort_receiver {
     uint32_t texel;
     struct ort_texel at;

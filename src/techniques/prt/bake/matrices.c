@@ -106,7 +106,7 @@ static void trace(const struct work *w, const struct frame *frame, size_t s)
     const struct prt_scene *scene = w->scene;
     float *out = w->radiance + s * w->coefficients * w->planes;
     vec3s direction = glms_mat3_mulv(frame->to_world, scene->lobes.direction[s]);
-    // Directions below the surface, by shading normals, meet what their mirror images meet.
+    // Directions below the surface, by shading normals, are mirrored at it.
     const float below = glms_vec3_dot(direction, frame->geometric);
     if (below < 0.0f) direction = glms_vec3_muladds(frame->geometric, -2.0f * below, direction);
     const struct ray ray = { frame->position, direction, 0.0f, INFINITY };

@@ -1,4 +1,4 @@
-// The first stage: where receivers are sampled, what they reflect, what their rays meet, the
+// The first stage: sample points of receivers, their reflectance, hits of their rays, the
 // transfer of the sky that they see (Sloan, Kautz & Snyder 2002), and light of emissive surfaces.
 #include "techniques/prt/bake/scene.h"
 

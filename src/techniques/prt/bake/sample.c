@@ -1,4 +1,4 @@
-// Receivers in the traced scene: where they are sampled, and what they reflect.
+// Receivers in the traced scene: their sample points and reflectance.
 #include "techniques/prt/bake/scene.h"
 
 #include "core/rng.h"

@@ -1,4 +1,4 @@
-// Probes at run time: what moves has their light, and they may be published.
+// Probes at run time: they light moving objects, and may be published.
 #pragma once
 
 #include "techniques/common/probes/apply.h"

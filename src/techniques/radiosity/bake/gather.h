@@ -53,5 +53,5 @@ bool radiosity_subdivide(struct radiosity_scene *scene);
 void radiosity_gather(const struct radiosity_scene *scene, uint32_t texel, vec3s position,
                       uint64_t seed, struct radiosity_gather *gather);
 
-// Clears what the last call left.
+// Clears the result of the last call.
 void radiosity_gather_clear(struct radiosity_gather *gather);

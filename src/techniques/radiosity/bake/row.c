@@ -54,7 +54,7 @@ static struct radiosity_entry pop(struct radiosity_entry *heap, uint32_t *count)
 
 // ---- rows
 
-// Adds the factors of a cluster to itself and to what is above it.
+// Adds the factors of a cluster to its node and to all nodes above it.
 static uint32_t add_upwards(struct radiosity_rows *rows, uint32_t cluster,
                             struct radiosity_factor factor, uint32_t touched)
 {

@@ -1,4 +1,4 @@
-// Probes at run time: what moves has their light, and they may be published.
+// Probes at run time: they light moving objects, and may be published.
 #pragma once
 
 #include "techniques/common/probes/apply.h"
@@ -14,7 +14,7 @@ struct radiosity_probes {
     bool fresh; // the volume has the light of the newest update
 };
 
-// The light of these clusters and nodes, and of what is not in them.
+// Gathers the light of clusters and nodes, emitters and the sky.
 void radiosity_probes_record_gather(struct radiosity_probes *probes, struct gpu_cmd *cmd,
                                     const struct frame_view *view, gpu_image radiosity,
                                     bool emitters);

@@ -60,7 +60,7 @@ struct job {
     struct probe_sphere sphere;
     uint32_t light_samples; // 0: no emissive surfaces
     uint32_t seed;
-    struct radiosity_gather *gather; // NULL: what rays meet does not count
+    struct radiosity_gather *gather; // NULL: hits are not gathered
     struct probe *out;
 };
 

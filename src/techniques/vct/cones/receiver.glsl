@@ -48,8 +48,8 @@ float vct_receiver_opacity(vct_receiver r, vec3 at, int level)
     return mix(after.y - before.x, after.z - before.y, between);
 }
 
-// A sample without the receiver's own sheet, as if that were independent of what else it has.
-// weights: as of vct_sample_volume.
+// A sample without the receiver's own sheet, as if the sheet were independent of other surfaces in
+// it. weights: as of vct_sample_volume.
 vct_volume_sample vct_sample_others(sampler3D light, vct_receiver r, vec3 at, vec3 direction,
                                     vec3 weights, int level)
 {
@@ -57,7 +57,7 @@ vct_volume_sample vct_sample_others(sampler3D light, vct_receiver r, vec3 at, ve
     vec3 within = vct_within_volume(at, level, weight);
     vct_volume_sample s = vct_sample_volume(light, within, direction, weights, level);
     float plane = vct_receiver_opacity(r, within, level);
-    // One volume for all directions cannot tell the sheet from what is above it.
+    // One volume for all directions cannot separate the sheet from surfaces above it.
     vec3 own = plane * (VCT_ANISOTROPIC ? abs(r.slope) : vec3(0.0));
     vec3 others = max(s.axes - own, vec3(0.0)) / max(1.0 - own, vec3(1e-3));
     float alpha = VCT_ANISOTROPIC ? dot(abs(weights), others) : others.x;

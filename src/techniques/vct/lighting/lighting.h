@@ -18,7 +18,7 @@ void vct_list_parts(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd
 // Gathers light from other voxels, if that has changed: see vct_record_light.
 bool vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
 // Lights the voxels and fills the light volume, unless all is as in the previous frame. bounced:
-// what vct_record_bounce returned.
+// the result of vct_record_bounce.
 void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
                       bool bounced);
 // Fills the light volume again from voxels that are lit already.

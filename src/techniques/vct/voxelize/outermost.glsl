@@ -1,5 +1,5 @@
 // Second pass: heights of the outermost surfaces on faces of voxels that have more than a single
-// large triangle. The third pass leaves out what they hide.
+// large triangle. The third pass leaves out surfaces that they hide.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

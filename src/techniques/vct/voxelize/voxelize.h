@@ -20,7 +20,7 @@ struct vct_voxel_set {
     gpu_buffer part_counts;         // struct vct_part_count
 };
 
-// Draws by what their materials read; a map that a material lacks is white.
+// Draws by the maps of their materials; a map that a material lacks is white.
 enum vct_draw_kind {
     VCT_PLAIN,
     VCT_EMISSIVE,

@@ -1,6 +1,6 @@
 // couple.comp of a level with clutter: r = T_b→r b + T_c→r c. The coefficients of an opening that
-// is clutter are c, the radiosity of its faces: of direct light, and what they reflect of the
-// irradiance E after the bounce before. E of this bounce, C_b b + C_c c, is summed as r is.
+// is clutter are c, the radiosity of its faces: that of direct light, and the reflected irradiance
+// E after the bounce before. E of this bounce, C_b b + C_c c, is summed as r is.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -30,7 +30,7 @@ layout(set = 0, binding = 10) readonly buffer mrt_clutter_senders
 };
 layout(set = 0, binding = 11, scalar) readonly buffer mrt_clutter_before
 {
-    float before[]; // what faces reflect of E after the bounce before: [clutter][colour][face]
+    float before[]; // reflected E of faces after the bounce before: [clutter][colour][face]
 };
 layout(set = 0, binding = 12, scalar) writeonly buffer mrt_clutter_reflected
 {

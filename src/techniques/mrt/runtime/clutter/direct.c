@@ -69,7 +69,7 @@ static void fill_groups(const struct mrt_runtime_input *input, void *items)
     }
 }
 
-// Means over the area of a face of what its texels reflect of emissive surfaces and of the sky.
+// Radiosity of a face by area lights: means over the area of its texels.
 static void add_area_light(const struct mrt_runtime_input *input,
                            const struct mrt_clutter_face_input *from,
                            struct mrt_gpu_clutter_face *to)
