@@ -1,5 +1,5 @@
-// Times of a bake, predicted: a stage with finished tasks goes on at their mean; any other one is
-// as fast for each ray as the rays so far, and for each operation as a product of matrices.
+// Predicted times of a bake. A stage with finished tasks continues at their mean. Any other stage
+// has the time per ray of the rays so far, and the time per operation of a product of matrices.
 #include "bake/bake_state.h"
 
 #include "core/linalg.h"

@@ -37,7 +37,7 @@ bool gi_resize(struct gi *gi, uint32_t width, uint32_t height);
 // false: there is no such view any more.
 bool gi_resize_view(struct gi *gi, int view, const struct scene_pose *pose, uint32_t width,
                     uint32_t height);
-// technique_change bits. A technique that cannot follow them warns once and goes on.
+// changes: technique_change bits. A technique that cannot follow them warns once and continues.
 void gi_invalidate(struct gi *gi, uint32_t changes);
 // Before each frame, with its pose, once the changes are known. `wait`: for work beside frames.
 void gi_follow(struct gi *gi, const struct scene_pose *pose, bool wait);

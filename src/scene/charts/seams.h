@@ -1,6 +1,6 @@
 // Seams: edges at which two charts meet and the surface is smooth. Bilinear lookups of both charts
-// differ there, since their texels do. Points along the edges say by how much: the difference is a
-// weighted sum of eight places of the light map. Made of the charts alone.
+// differ there, since their texels do. The difference at points along the edges is a weighted sum
+// of eight places of the light map. It depends on the charts alone.
 #pragma once
 
 #include "scene/charts/charts.h"

@@ -35,9 +35,9 @@ vec3 light_map_lobe_along(vec3 n, vec3 to_viewer, float alpha)
     return (dot(to_viewer, n) * n - to_viewer) * lobe_lean(alpha);
 }
 
-// Radiance in the mean direction of a specular lobe, from what both say of the radiance over the
-// surface, L(ω) = E(n)/π + 3/(2π) V·t, with t the part of ω along the surface: its irradiance is
-// E(n) and its vector irradiance V along the surface, and uniform light is exact.
+// Radiance in the mean direction of a specular lobe, L(ω) = E(n)/π + 3/(2π) V·t, with t the part of
+// ω along the surface. Its irradiance is E(n), its vector irradiance along the surface V. Uniform
+// light is exact.
 vec3 light_map_radiance(light_map_light light, vec3 n, vec3 to_viewer, float alpha)
 {
     vec3 along = light_map_lobe_along(n, to_viewer, alpha);

@@ -12,7 +12,7 @@ struct tensors;
 // How pixels get specular light.
 enum light_map_specular {
     LIGHT_MAP_DIFFUSE,   // none
-    LIGHT_MAP_SPECULAR,  // of the map's light, and of the environment that it sees
+    LIGHT_MAP_SPECULAR,  // of the map's light, and of the visible environment
     LIGHT_MAP_REFLECTED, // that of texels, light_map_record_reflected
 };
 

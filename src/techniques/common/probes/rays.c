@@ -75,7 +75,7 @@ bool probe_find_place(const struct probe_tracer *tracer, vec3s center, float spa
     return false;
 }
 
-// ---- how far it sees
+// ---- depths
 
 struct probe_sphere probe_sphere_of(int rays)
 {

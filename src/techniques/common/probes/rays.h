@@ -1,5 +1,5 @@
-// Rays around a probe, in equal squares of the octahedral map (frame/octahedral.h): where a probe
-// is outside of geometry, and how far it sees.
+// Rays around a probe, in equal squares of the octahedral map (frame/octahedral.h): its place
+// outside geometry, and its depths.
 #pragma once
 
 #include "core/vec.h"

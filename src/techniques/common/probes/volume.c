@@ -16,8 +16,8 @@ struct gpu_image_desc probe_volume_desc(const char *name, struct frame_probes gr
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
 }
 
-// The square of an octahedral map that a texel of its tile shows: beyond an edge the map goes on at
-// the same edge, mirrored.
+// The square of an octahedral map in a texel of its tile: beyond an edge the map continues at the
+// same edge, mirrored.
 static int square_of(int x, int y)
 {
     x -= 1;

@@ -1,7 +1,6 @@
-// Clutter: parts of a scene inside blocks that no wall of a block stands for (Loos 2015, section
-// 5.1). A connected part of a mesh is clutter where more than half of its area is in blocks, away
-// from the walls that it faces away from or does not face: by the rule that tells pixels of walls
-// from surfaces inside (light_map.glsl).
+// Clutter: parts of a scene inside blocks that no wall of a block represents (Loos 2015, section
+// 5.1). A connected part of a mesh is clutter if more than half of its area is in blocks and on no
+// wall, by the distances and cosines that separate pixels of walls from others (light_map.glsl).
 //
 // Nodes can be named as clutter or as walls instead (docs/block-maps.md).
 //

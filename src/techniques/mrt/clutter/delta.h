@@ -6,7 +6,7 @@
 // of walls, c that of faces of clutter. With the share V of rays to a wall texel that no clutter
 // blocks, the irradiance of a point is Σ V L_imp b + Σ (1 − V) c, so
 //     ΔU_b = −Σ over blocked rays of w L_imp at the wall behind the clutter,
-//     ΔU_c = Σ over blocked rays of w, into the column of the face that is met first, from either
+//     ΔU_c = Σ over blocked rays of w, into the column of the face that is hit first, from either
 //            side,
 // w being a ray's weight (dictionary/rays.h): by normal and at probes the same with their weights.
 // Light of an opening has no L_imp: it is scaled by the share of its rays that are not blocked.

@@ -98,8 +98,8 @@ struct mrt_runtime_input {
     const struct mrt_pair_input *pairs; // in the order of their openings
     int pair_count, t_br_stride;
     const struct mrt_clutter_input *clutter; // NULL: none
-    // By block: where its voxels begin (clutter/probe_sight.h), 0: it sees all of its probes; then
-    // the voxels. NULL: none has any.
+    // By block: the start of its voxels (clutter/probe_sight.h), 0: all of its probes are visible;
+    // then the voxels. NULL: none has any.
     const uint32_t *sight;
     size_t sight_count;
     const struct mrt_published *published; // NULL: none

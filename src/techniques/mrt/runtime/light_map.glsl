@@ -184,7 +184,7 @@ vec3 room_irradiance(vec3 position, vec3 normal, mrt_place place)
     return mix(inside, on_wall, wall.share);
 }
 
-// Edges beyond its block over which a surface outdoors goes over from the light of the room.
+// Edges beyond its block over which a surface outdoors blends out of the light of the room.
 const float MRT_LEAVING = 0.25;
 
 // Beyond its block an enclosed surface, such as that of a niche, has the light of the room.

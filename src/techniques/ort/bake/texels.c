@@ -60,8 +60,8 @@ static bool sees_texel(const struct ort_scene *scene, vec3s from, uint32_t texel
     return !trace_occluded(scene->trace, from, glms_vec3_sub(to, from), 1.0f);
 }
 
-// A texel may reach through a thin wall. Where a hit does not see its middle, the hit is of a
-// neighbour in the chart that it sees.
+// A texel may reach through a thin wall. If its middle is hidden from the hit, the hit belongs to a
+// neighbour in the chart whose middle is visible.
 static uint32_t hit_texel(const struct ort_scene *scene, vec3s hit, uint32_t texel)
 {
     static const int32_t NEAR[8][2] = { { -1, 0 },  { 1, 0 },  { 0, -1 }, { 0, 1 },

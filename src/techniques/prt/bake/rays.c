@@ -1,5 +1,5 @@
-// The first stage: sample points of receivers, their reflectance, hits of their rays, the
-// transfer of the sky that they see (Sloan, Kautz & Snyder 2002), and light of emissive surfaces.
+// The first stage: sample points of receivers, their reflectance, hits of their rays, the transfer
+// of the visible sky (Sloan, Kautz & Snyder 2002), and light of emissive surfaces.
 #include "techniques/prt/bake/scene.h"
 
 #include "bake/plan.h"

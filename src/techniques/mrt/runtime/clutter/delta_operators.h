@@ -1,9 +1,9 @@
 // Operators of a level with clutter (clutter/delta.h), as input of the run time.
 //
-// Clutter changes the operators, not the passes: blocks that it touches have bases U_b + ΔU_b and
-// responses of their openings of their own, and the faces of a block's clutter are one more opening
-// of it, whose response is ΔU_c. Its r is c, the radiosity of the faces: light of b of all blocks
-// that they see is carried by T_b→r, and clutter.c adds direct light and albedo.
+// Clutter changes the operators, not the passes. Blocks that it touches have bases U_b + ΔU_b and
+// responses of their openings of their own. The faces of a block's clutter are one more opening of
+// it, with the response ΔU_c. Its r is c, the radiosity of the faces: T_b→r carries light of b of
+// all visible blocks, and clutter.c adds direct light and albedo.
 #pragma once
 
 #include "techniques/mrt/clutter/delta_cache.h"
