@@ -10,6 +10,7 @@
 #include <afterglow/environment.h>
 #include <afterglow/image.h>
 #include <afterglow/lightmap.h>
+#include <afterglow/preparation.h>
 #include <afterglow/probes.h>
 #include <afterglow/reference.h>
 #include <afterglow/renderer.h>

@@ -234,7 +234,7 @@ static uint32_t kept_layers(const struct frame *f, const struct frame_input *inp
     return f->pinned | (by_layer ? 1u << input->shown->layer : 0);
 }
 
-static uint32_t composite_variant_of(const struct frame_input *input, uint32_t needs)
+uint32_t frame_composite_variant(const struct frame_input *input, uint32_t needs)
 {
     return (needs & FRAME_WRITES_IRRADIANCE ? COMPOSITE_IRRADIANCE : 0) |
            (needs & FRAME_WRITES_SPECULAR ? COMPOSITE_SPECULAR : 0) |
@@ -243,8 +243,7 @@ static uint32_t composite_variant_of(const struct frame_input *input, uint32_t n
            (input->want_display && !shows_layer(input) ? COMPOSITE_DISPLAY : 0);
 }
 
-// The same radiance, without images.
-static uint32_t meter_variant_of(uint32_t variant)
+uint32_t frame_meter_variant(uint32_t variant)
 {
     const uint32_t outputs = COMPOSITE_INDIRECT | COMPOSITE_DISPLAY;
     return (variant & ~outputs) | COMPOSITE_METER;
@@ -252,11 +251,11 @@ static uint32_t meter_variant_of(uint32_t variant)
 
 static bool prepare_composite(struct frame *f, const struct frame_input *input)
 {
-    f->composite_variant = composite_variant_of(input, f->needs);
+    f->composite_variant = frame_composite_variant(input, f->needs);
     return composite_prepare(&f->common->composite, f->composite_variant) &&
            (!shows_layer(input) || display_prepare(&f->common->display, f->gpu)) &&
            (!input->auto_exposure ||
-            composite_prepare(&f->common->composite, meter_variant_of(f->composite_variant)));
+            composite_prepare(&f->common->composite, frame_meter_variant(f->composite_variant)));
 }
 
 static uint32_t direct_features(const struct frame *f)
@@ -577,7 +576,7 @@ static void record_exposure(struct frame *f, struct gpu_cmd *cmd, const struct f
     gpu_scope_begin(cmd, "exposure");
     if (input->auto_exposure) {
         exposure_record_clear(&f->exposure, cmd);
-        composite(f, cmd, meter_variant_of(f->composite_variant));
+        composite(f, cmd, frame_meter_variant(f->composite_variant));
         exposure_record_auto(&f->exposure, cmd, f->constants_binding, f->fallback_luminance);
     } else {
         exposure_record_fixed(&f->exposure, cmd, input->exposure_ev);

@@ -102,6 +102,10 @@ void frame_forget_gbuffer(struct frame *frame);
 void frame_destroy_layers(struct frame *frame);
 void frame_clear_unwritten(struct frame *frame, struct gpu_cmd *cmd);
 
+// frame.c. The second: of the same radiance, without images.
+uint32_t frame_composite_variant(const struct frame_input *input, uint32_t needs);
+uint32_t frame_meter_variant(uint32_t variant);
+
 // frame_report.c
 bool reports_init(struct frame *frame);
 void reports_finish(struct frame *frame);

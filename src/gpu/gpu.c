@@ -144,6 +144,7 @@ static void free_objects(struct gpu *gpu)
     deferred_delete_finish(gpu);
     for (struct pipeline *p; (p = pipeline_pool_remove_oldest(&gpu->pipeline_pool));)
         pipeline_free(gpu, p);
+    compiled_finish(gpu);
     free_table(gpu, &gpu->pipelines, "pipeline", offsetof(struct pipeline, name), pipeline_release);
     free_table(gpu, &gpu->images, "image", offsetof(struct image, name), image_free);
     free_table(gpu, &gpu->buffers, "buffer", offsetof(struct buffer, name), buffer_free);

@@ -304,6 +304,15 @@ void gpu_pipeline_destroy(struct gpu *gpu, gpu_pipeline *pipeline);
 // Rebuilds pipelines whose .spv in shader_dir changed and returns their number. On an invalid
 // shader the old pipeline stays, with a warning.
 int gpu_reload_shaders(struct gpu *gpu);
+// Compiles pipelines on another thread: it takes the creation of pipelines and gpu_owner_… alone.
+// All hosts have the same allocator. Created and destroyed on the thread of `gpu`. Handles of it
+// are not needed and not destroyed. NULL: no memory.
+struct gpu *gpu_compiler_create(const struct gpu *gpu, struct host *host);
+void gpu_compiler_set_host(struct gpu *compiler, struct host *host); // of its thread
+uint32_t gpu_compiler_count(const struct gpu *compiler);             // pipelines that it has
+// On the thread of `gpu`, which keeps the pipelines for later creations of equal ones. Accepts
+// NULL.
+void gpu_compiler_destroy(struct gpu *compiler, struct gpu *gpu);
 // What the driver compiled so far, for gpu_desc.pipeline_cache. Sets *bytes to the size and writes
 // it all. out NULL: the size alone. false: more than `capacity`, or out of memory.
 bool gpu_pipeline_cache_read(struct gpu *gpu, void *out, size_t capacity, size_t *bytes);
@@ -345,6 +354,8 @@ void gpu_objects_add(struct gpu_objects *table, size_t base, const struct gpu_ob
                         sizeof(struct gpu_object))
 // Those from the row `first` on; false, too, where rows were left out. gpu_objects_destroy then
 // frees what was created; it accepts any half-built state.
+// The pipelines of the table alone, for a compiler.
+bool gpu_objects_compile(struct gpu *compiler, const struct gpu_objects *table);
 bool gpu_objects_create(struct gpu *gpu, const struct gpu_objects *table, int first, void *state);
 void gpu_objects_destroy(struct gpu *gpu, const struct gpu_objects *table, void *state);
 // Bytes of buffers and texels, without what a driver pads.

@@ -86,6 +86,16 @@ bool gpu_objects_create(struct gpu *gpu, const struct gpu_objects *table, int fi
     return true;
 }
 
+bool gpu_objects_compile(struct gpu *compiler, const struct gpu_objects *table)
+{
+    gpu_pipeline unused;
+    for (int i = 0; i < table->count; i++)
+        if (table->at[i].kind == GPU_PIPELINE &&
+            !create_pipeline(compiler, table, &table->at[i], &unused))
+            return false;
+    return true;
+}
+
 void gpu_objects_destroy(struct gpu *gpu, const struct gpu_objects *table, void *state)
 {
     for (int i = 0; i < table->count; i++) {

@@ -26,7 +26,7 @@ static bool same_constants(const struct pipeline *a, const struct pipeline *b)
                                          (size_t)a->constant_count * sizeof *a->constants) == 0);
 }
 
-static bool same(const struct pipeline *a, const struct pipeline *b)
+bool pipeline_is_equal(const struct pipeline *a, const struct pipeline *b)
 {
     bool same = a->graphics == b->graphics && a->stage_count == b->stage_count &&
                 strcmp(a->name, b->name) == 0 && same_constants(a, b) &&
@@ -39,7 +39,7 @@ static bool same(const struct pipeline *a, const struct pipeline *b)
 struct pipeline *pipeline_find_equal(const struct table *pipelines, const struct pipeline *like)
 {
     for (uint32_t i = 0; i < pipelines->count; i++)
-        if (pipelines->objects[i] && same(pipelines->objects[i], like))
+        if (pipelines->objects[i] && pipeline_is_equal(pipelines->objects[i], like))
             return pipelines->objects[i];
     return NULL;
 }
@@ -56,7 +56,7 @@ static struct pipeline *remove_at(struct pipeline_pool *pool, int index)
 struct pipeline *pipeline_pool_take(struct pipeline_pool *pool, const struct pipeline *like)
 {
     for (int i = pool->count; i-- > 0;)
-        if (same(pool->pipelines[i], like)) return remove_at(pool, i);
+        if (pipeline_is_equal(pool->pipelines[i], like)) return remove_at(pool, i);
     return NULL;
 }
 

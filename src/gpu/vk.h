@@ -284,11 +284,22 @@ struct pipeline_pool {
 // A pipeline with the name, shaders, constants and fixed state of `like`; NULL: there is none, or
 // its shaders are files.
 struct pipeline *pipeline_pool_take(struct pipeline_pool *pool, const struct pipeline *like);
+bool pipeline_is_equal(const struct pipeline *a, const struct pipeline *b);
 // The same among those that were not destroyed.
 struct pipeline *pipeline_find_equal(const struct table *pipelines, const struct pipeline *like);
 // Returns the pipeline to free: the oldest, `pipeline` if its shaders are files, or NULL.
 struct pipeline *pipeline_pool_give(struct pipeline_pool *pool, struct pipeline *pipeline);
 struct pipeline *pipeline_pool_remove_oldest(struct pipeline_pool *pool); // NULL: empty
+
+// compiler.c. Pipelines of other threads, which nothing uses yet.
+enum { COMPILED_PIPELINES = 512 };
+struct compiled_pipelines {
+    struct pipeline **at; // in the order of their compilation
+    int count;
+};
+// As pipeline_pool_take.
+struct pipeline *compiled_take(struct gpu *gpu, const struct pipeline *like);
+void compiled_finish(struct gpu *gpu);
 
 // ---- Commands -----------------------------------------------------------------------------------
 
@@ -469,6 +480,8 @@ struct gpu {
     uint32_t alias_count;
     struct table images, buffers, samplers, pipelines;
     struct pipeline_pool pipeline_pool;
+    struct compiled_pipelines compiled;
+    bool compiler;             // of another thread: has pipelines alone, see compiler.c
     uint32_t internal_buffers; // rings, not counted as live objects
     gpu_sampler default_sampler;
     struct buffer *staging[2]; // upload, download

@@ -30,6 +30,16 @@ bool technique_create(const struct technique *technique, void *state,
            (!technique->create || technique->create(state, how));
 }
 
+bool technique_compile(const struct technique *technique, const void *options, struct gpu *compiler)
+{
+    struct gpu_objects table;
+    list(technique, options, 0, 1, 1, &table);
+    gpu_owner_push(compiler, technique->name);
+    const bool ok = gpu_objects_compile(compiler, &table);
+    gpu_owner_pop(compiler);
+    return ok;
+}
+
 void technique_set_options(const struct technique *technique, void *state, const void *options)
 {
     const int effect = option_difference(&technique->options, state, options);

@@ -156,6 +156,9 @@ static inline bool technique_has_light_map(const struct technique *technique, co
 
 // ---- technique.c: a technique with its objects. The owner is pushed by the caller.
 
+// The pipelines of its objects, for a compiler.
+bool technique_compile(const struct technique *technique, const void *options,
+                       struct gpu *compiler);
 bool technique_create(const struct technique *technique, void *state,
                       const struct technique_create *how);
 void technique_set_options(const struct technique *technique, void *state, const void *options);

@@ -156,7 +156,7 @@ TEST(a_scene_in_memory_has_the_same_rule_for_its_folder)
     char *json = json_of(TRIANGLE(PLAIN));
     snprintf(folder, sizeof folder, "%s", test_path("scene"));
     link_to("../../outside/made.bin", "scene/data/made.bin");
-    const struct import_bytes from = { json, strlen(json), "made.gltf", folder, NULL, NULL };
+    const struct import_bytes from = { json, strlen(json), "made.gltf", folder, NULL, NULL, 0 };
     CHECK(!import_memory(test_host(), &from));
     CHECK(strstr(test_last_message(), "--follow-links"));
     free(json);

@@ -71,6 +71,14 @@ bool direct_prepare(struct direct *d, uint32_t variant, size_t pixels)
            (!blocks || (prepare_pipeline(d, blocks) && prepare_undecided(d, blocks)));
 }
 
+bool direct_compile(struct gpu *compiler, uint32_t variant, uint32_t cascades)
+{
+    struct direct scratch = { .gpu = compiler, .cascades = cascades };
+    const uint32_t blocks = direct_variant_of_blocks(variant);
+    return prepare_pipeline(&scratch, variant) &&
+           (!blocks || (prepare_pipeline(&scratch, blocks) && prepare_undecided(&scratch, blocks)));
+}
+
 // No pixels, and 0 x 1 x 1 groups.
 static void clear_list(const struct direct *d, struct gpu_cmd *cmd)
 {

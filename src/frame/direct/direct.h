@@ -43,6 +43,8 @@ uint32_t direct_variant_of_blocks(uint32_t variant);
 // Creates what is missing for the variant, and for its variant of blocks, in images of up to so
 // many pixels.
 bool direct_prepare(struct direct *direct, uint32_t variant, size_t pixels);
+// The pipelines alone, for a compiler.
+bool direct_compile(struct gpu *compiler, uint32_t variant, uint32_t cascades);
 // irradiance: with DIRECT_IRRADIANCE, else empty.
 void direct_record(const struct direct *direct, struct gpu_cmd *cmd, const struct direct_input *in,
                    gpu_image out, gpu_image irradiance);

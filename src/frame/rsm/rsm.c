@@ -114,6 +114,16 @@ bool rsm_prepare(struct rsm *r, int face_count, uint32_t variants)
     return true;
 }
 
+bool rsm_compile(struct gpu *compiler, uint32_t variants)
+{
+    struct rsm scratch = { .gpu = compiler };
+    for (uint32_t v = 0; v < VARIANT_COUNT; v++) {
+        if (!(variants >> v & 1u) || scratch.pipelines[v & VARIANT_BITS].id) continue;
+        if (!make_pipeline(&scratch, v & VARIANT_BITS)) return false;
+    }
+    return true;
+}
+
 // Covers the whole scene and does not follow the camera, so that indirect light is stable.
 static void place_sun(const struct rsm *r, struct rsm_face *face, const struct frame_light *light,
                       struct box3 bounds)

@@ -25,6 +25,8 @@ int rsm_faces_of(uint32_t light_type);
 // Allocates face_count layers (0: frees the images), and creates pipelines for these variants (bit
 // v: variant v).
 bool rsm_prepare(struct rsm *rsm, int face_count, uint32_t variants);
+// The pipelines alone, for a compiler.
+bool rsm_compile(struct gpu *compiler, uint32_t variants);
 // Computes the faces of these lights in order. Lights beyond the capacity get none.
 void rsm_place(struct rsm *rsm, const struct frame_light *lights, int light_count,
                struct box3 bounds);

@@ -38,13 +38,15 @@ const float PI = 3.14159265;
 const float SMALLEST_FALLOFF = 1.0e-6; // radii
 const float LEAST_COSINE = 1.0e-3;     // of normal and line of sight
 const float SECTORS = 32.0;
+const float FAR_RADII = 1.0e6; // at which sight lines are parallel
 
 struct gtao_point {
     ivec2 pixel;
     float depth;     // D
     vec3 n;          // unit
     vec3 to_camera;  // V
-    float distance;  // from the camera, in radii
+    float distance;  // from the camera, in radii; large in orthographic views
+    float per_depth; // radii per difference of D, in orthographic views
     float thickness; // of occluders, in radii
 };
 
@@ -76,7 +78,8 @@ vec3 perpendicular(screen_sphere sphere, vec2 s)
 // pixels, its position is v = (m (k − 1) + k o/f, k − 1) f/radius_px. As (m, 1) is −ℓ V, its
 // components are v·V = (ℓ (1 − k) + k o·V/f) f/radius_px and v·T = k o·T/radius_px. Pixel centers
 // are beside the slice: v is moved into it parallel to the tangent plane, by its component across
-// times lean (n_V, n_T), so that n·v is the same.
+// times lean (n_V, n_T), so that n·v is the same. In orthographic views m = 0 and k = 1, and v·V is
+// the difference of the distances.
 gtao_side side_of(gtao_point p, screen_sphere sphere, vec2 s)
 {
     gtao_side side;
@@ -102,9 +105,10 @@ bool surface_at(gtao_point p, gtao_side side, float reach, out vec2 front)
         any(greaterThanEqual(pixel, ivec2(view.width, view.height))))
         return false;
     float there = texelFetch(depth, pixel, 0).r;
-    float ratio = p.depth / there;
-    if (there > 0.0)
-        front = vec2(p.distance * (1.0 - ratio), 0.0) + ratio * (side.moved * vec2(offset));
+    bool perspective = view.perspective != 0.0;
+    float ratio = perspective ? p.depth / there : 1.0;
+    float nearer = perspective ? p.distance * (1.0 - ratio) : p.per_depth * (there - p.depth);
+    if (there > 0.0) front = vec2(nearer, 0.0) + ratio * (side.moved * vec2(offset));
     return true;
 }
 
@@ -195,9 +199,10 @@ gtao_point point_of(screen_point at, screen_sphere sphere)
     p.to_camera = vec3(sphere.m, 1.0) / -sphere.l;
     float cosine = dot(at.n, p.to_camera);
     p.n = normalize(at.n + p.to_camera * max(LEAST_COSINE - cosine, 0.0));
-    float radii = view.focal_px / sphere.radius_px; // in a distance along the view axis
-    p.distance = sphere.l * radii;
-    p.thickness = table.thickness_m * at.depth / view.near_m * radii;
+    // A distance along the view axis is focal_px / radius_px radii.
+    p.distance = view.perspective != 0.0 ? sphere.l * view.focal_px / sphere.radius_px : FAR_RADII;
+    p.per_depth = sphere.z_per_depth;
+    p.thickness = table.thickness_m * screen_pixels_per_m(view.scale, at.depth) / sphere.radius_px;
     return p;
 }
 

@@ -1,0 +1,43 @@
+#include "frame/frame_compile.h"
+
+#include "frame/frame_state.h"
+
+// A frame that has not been prepared compiles its own pass of direct light.
+static uint32_t direct_of(const struct frame *f, uint32_t needs)
+{
+    if (!f->prepared) return 0;
+    const uint32_t irradiance = needs & FRAME_NEEDS_DIRECT_IRRADIANCE ? DIRECT_IRRADIANCE : 0;
+    return (f->direct_variant & ~(uint32_t)DIRECT_IRRADIANCE) | irradiance;
+}
+
+struct frame_pipelines frame_pipelines_of(const struct frame *f, const struct frame_input *wants,
+                                          uint32_t needs)
+{
+    const struct frame_common *c = f->common;
+    if (needs & FRAME_WRITES_SPECULAR_OF_MAP && c->environment.map) needs |= FRAME_WRITES_SPECULAR;
+    const bool motion = needs & FRAME_NEEDS_MOTION || wants->want_motion_layer;
+    const bool ids = needs & FRAME_NEEDS_ID || wants->want_id_layer;
+    const uint32_t variant = frame_composite_variant(wants, needs);
+    return (struct frame_pipelines){
+        .scene_variants = c->scene.variants_used,
+        .gbuffer_layers = (motion ? GBUFFER_MOTION : 0) | (ids ? GBUFFER_ID : 0) |
+                          (c->scene.has_dielectrics ? GBUFFER_DIELECTRIC : 0),
+        .own_gbuffer = !wants->gbuffer,
+        .rsm = needs & FRAME_NEEDS_RSM,
+        .composite = { variant, frame_meter_variant(variant) },
+        .direct = direct_of(f, needs),
+        .cascades = c->direct.cascades,
+    };
+}
+
+bool frame_pipelines_compile(const struct frame_pipelines *p, struct gpu *compiler)
+{
+    struct gbuffer gbuffer = { 0 };
+    struct composite composite = { .gpu = compiler };
+    return (!p->own_gbuffer ||
+            gbuffer_prepare(&gbuffer, compiler, p->scene_variants, p->gbuffer_layers)) &&
+           composite_prepare(&composite, p->composite[0]) &&
+           composite_prepare(&composite, p->composite[1]) &&
+           (!p->rsm || rsm_compile(compiler, p->scene_variants)) &&
+           (!p->direct || direct_compile(compiler, p->direct, p->cascades));
+}
