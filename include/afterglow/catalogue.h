@@ -23,6 +23,7 @@ struct ag_option_info {
 struct ag_technique_info {
     const char *name, *title, *paper;
     const char *role; ///< "source", "delta" or "visibility"
+    /// moving_geometry: its light follows objects that move, as drt's does those in free space.
     bool moving_geometry, moving_lights, needs_bake, makes_specular, publishes_probes;
     bool has_lightmap; ///< see lightmap.h
     bool exports_bake; ///< see ag_bake_export

@@ -32,7 +32,8 @@ AG_API void ag_probes_irradiance(const struct ag_probes *probes, const float *po
 /// The same volume on the GPU, for programs that share the device: one 3D image,
 /// VK_FORMAT_R16G16B16A16_SFLOAT, of seven slabs along z with `slab` texels each, of which the
 /// first `counts` texels are used. Coefficient i of a colour channel c is component (3 i + c) mod 4
-/// of slab (3 i + c) div 4. Values are lux × scale. src/frame/probes.glsl samples it.
+/// of slab (3 i + c) div 4. Values are lux × scale. frame/probes.glsl of
+/// the installed shader functions (share/afterglow/glsl) samples it.
 struct ag_probes_handle {
     void *vk_image;
     uint32_t vk_layout;

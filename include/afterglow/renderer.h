@@ -142,7 +142,7 @@ struct ag_gbuffer {
     /// orthographic views (far − distance) / (far − near).
     struct ag_layer_handle depth;
     /// Required. R16G16_SFLOAT: unit shading normal in world space, octahedral
-    /// (src/frame/octahedral.glsl).
+    /// (frame/octahedral.glsl of the installed shader functions, share/afterglow/glsl).
     struct ag_layer_handle normal;
     /// Required. R8G8B8A8_SRGB: base colour; alpha 1: surface, 0.5: unlit, 0: none.
     struct ag_layer_handle albedo;
@@ -240,9 +240,9 @@ AG_API enum ag_result ag_renderer_read(struct ag_renderer *renderer, const char 
 ///
 /// Values: radiance and irradiance are physical values × scale (1 for other layers). The scale is a
 /// power of two; it follows lights, sky and emission and is that of the newest recorded frame: ask
-/// again after each frame. Depth is reversed and as in ag_gbuffer, normals are
-/// octahedral (src/frame/octahedral.glsl), albedo and display are sRGB-encoded; id has integers,
-/// each plus 1, 0: no surface.
+/// again after each frame. Depth is reversed and as in ag_gbuffer, normals are octahedral
+/// (frame/octahedral.glsl, as above), albedo and display are sRGB-encoded; id has integers, each
+/// plus 1, 0: no surface.
 ///
 /// Synchronization: before and after each frame the image is in vk_layout, for all queue accesses
 /// of the adopted family. The library waits for all that was submitted before its frame. The

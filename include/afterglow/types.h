@@ -10,6 +10,8 @@
 /// Strings: UTF-8; arguments are copied.
 /// Threads: one thread at a time per context; different contexts are independent. A scene can be
 /// transferred from the context of a loading thread to that of a renderer (ag_scene_transfer).
+/// Functions without an object of a context (ag_…_default, those of catalogue.h, ag_version,
+/// ag_printable, ag_image_auto_exposure) may be called on any thread at any time.
 /// ABI: structs with `reserved` keep their size; new members take its place, and 0 is what they
 /// were without. A description whose reserved words are not 0 is refused: the program needs a newer
 /// library. ag_X_desc_default sets them. A program links only with a library of the same minor

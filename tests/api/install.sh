@@ -77,6 +77,7 @@ done
 
 # ---- the texts, and shader functions for a host's own shaders
 grep -q . "$doc/LICENSE"
+grep -q . "$doc/docs/library.md"
 cat >"$work/host.comp" <<'END'
 #version 460
 #extension GL_EXT_scalar_block_layout : require

@@ -1,7 +1,7 @@
 #!/bin/sh
 # light_build.sh SOURCE LIBRARY CC CXX LAUNCHER TYPE: a library without the reference, bakes, files and OpenMP needs the Vulkan
 # loader alone beside the C library. It renders the images of the full LIBRARY, refuses in words what it is without, and exports
-# the same functions.
+# the same functions. Installed, its static library needs no more.
 set -eu
 export CMAKE_GENERATOR=Ninja
 source=$1 library=$2 cc=$3 cxx=$4 launcher=$5 type=$6
@@ -10,7 +10,7 @@ trap 'rm -rf "$work"' EXIT
 cmake -S "$source" -B "$work/build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_C_COMPILER_LAUNCHER="$launcher" \
     -DCMAKE_BUILD_TYPE="$type" -DAFTERGLOW_TESTS=OFF -DAFTERGLOW_PROGRAMS=OFF -DAFTERGLOW_REFERENCE=OFF -DAFTERGLOW_FILES=OFF \
     -DAFTERGLOW_OPENMP=OFF >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-cmake --build "$work/build" --target afterglow_shared --parallel 2 >"$work/log" 2>&1 || { tail -40 "$work/log"; exit 1; }
+cmake --build "$work/build" --parallel 2 >"$work/log" 2>&1 || { tail -40 "$work/log"; exit 1; }
 light=$work/build/libafterglow.so
 ! grep -q 'warning:' "$work/log" || { grep -A4 'warning:' "$work/log"; exit 1; }
 
@@ -33,5 +33,13 @@ for kind in light full; do
     "$work/$kind" $kind >"$work/$kind.out" || status=$?
     [ $status -eq 0 ] || { cat "$work/$kind.out"; exit $status; }
 done
+
+cmake --install "$work/build" --prefix "$work/installed" >/dev/null
+PKG_CONFIG_PATH=$(dirname "$(find "$work/installed" -name afterglow-static.pc)")
+export PKG_CONFIG_PATH
+# shellcheck disable=SC2046 # a list of words
+"$cc" "$source/tests/api/light_host.c" $(pkg-config --cflags --libs afterglow-static) -o "$work/static"
+"$work/static" >"$work/static.out"
+diff "$work/light.out" "$work/static.out"
 cat "$work/light.out"
 diff "$work/full.out" "$work/light.out"

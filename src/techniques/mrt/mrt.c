@@ -285,10 +285,10 @@ static uint64_t drt_memory_estimate(const void *options)
     return estimate(options, true);
 }
 
-// Members that mrt and drt have in common.
+// Capabilities of both; drt can also follow objects.
+enum { MRT_CAN = CAN_MOVE_LIGHTS | NEEDS_BAKE | PUBLISHES_PROBES | GATHERS_EMISSION };
 #define MRT_TECHNIQUE(of_name, of_title, of_paper, rows)                                           \
     .name = of_name, .title = of_title, .paper = of_paper, .role = ROLE_SOURCE,                    \
-    .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | PUBLISHES_PROBES | GATHERS_EMISSION,            \
     .needs = FRAME_WRITES_IRRADIANCE, .bake_version = 4,                                           \
     .options = OPTION_TABLE(struct mrt_options, rows, NULL), .presets = presets,                   \
     .debug_views = debug_views, .state_size = sizeof(struct mrt), .resolve = mrt_resolve,          \
@@ -300,6 +300,7 @@ static uint64_t drt_memory_estimate(const void *options)
 const struct technique technique_mrt = {
     MRT_TECHNIQUE("mrt", "modular radiance transfer",
                   "Loos 2015, Modular Radiance Transfer, ch. 3 and 4", option_rows),
+    .capabilities = MRT_CAN,
     .check = mrt_check,
     .create = mrt_create,
     .memory_estimate = mrt_memory_estimate,
@@ -308,6 +309,7 @@ const struct technique technique_mrt = {
 const struct technique technique_drt = {
     MRT_TECHNIQUE("drt", "delta radiance transfer", "Loos 2015, Modular Radiance Transfer, ch. 5",
                   drt_option_rows),
+    .capabilities = MRT_CAN | CAN_MOVE_GEOMETRY,
     .folder = "mrt",
     .bake_name = "mrt",
     .more_needs = drt_more_needs,
