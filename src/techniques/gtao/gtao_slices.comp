@@ -16,7 +16,8 @@
 // the 32 of a side has the directions with k ≤ 32 F/F(t) < k + 1: all sectors have the same
 // cosine-weighted share, so that counting them integrates.
 //
-// The sum over slices is divided by Σ F(t) instead of π: few slices then leave a plane open.
+// The sum over slices is divided by Σ F(t) instead of their number: few slices then leave a plane
+// open.
 //
 // Positions are relative to P, in radii of the sphere; axes are x right, y down, z forward.
 #version 460
