@@ -17,7 +17,8 @@ AG_API enum ag_result ag_scene_load(struct ag_context *context, const char *name
 /// ag_scene_load_desc_default.
 struct ag_scene_load_desc {
     /// Metres per unit of length of the file, 1e-6…1e6; 0: 1. Multiplies all lengths: of geometry,
-    /// skins, animations, cameras, and positions and ranges of lights. Candela, lux and cd/m² stay.
+    /// skins, animations, cameras, and positions and ranges of lights, by the root nodes: meshes
+    /// and other nodes keep the unit of the file. Candela, lux and cd/m² stay.
     float scale;
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };

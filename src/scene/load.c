@@ -7,8 +7,9 @@
 static struct scene *load_builtin(struct host *host, const char *name, float scale)
 {
     struct scene *scene = builtin_load(host, name);
-    if (!scene || scale == 1.0f || (scene_rescale(scene, scale) && limits_scene(scene)))
-        return scene;
+    if (!scene || scale == 1.0f) return scene;
+    scene_rescale(scene, scale);
+    if (limits_scene(scene)) return scene;
     scene_destroy(scene);
     return NULL;
 }

@@ -8,8 +8,7 @@
 #define SCENE_SCALE_MIN 1e-6f
 #define SCENE_SCALE_MAX 1e6f
 
-// Multiplies all lengths of a scene that was just loaded: vertices, morph targets, translations of
-// nodes, joints and animations, near planes, ranges of lights. Rotations and scales of nodes stay:
-// no node is added. Intensities stay too (candela, lux, cd/m²). A factor of 1 changes nothing.
-// False: out of memory.
-bool scene_rescale(struct scene *scene, float factor);
+// Multiplies all lengths of a scene that was just loaded: the transforms of root nodes, with their
+// animations, near planes and ranges of lights. The space of meshes, skins and other nodes keeps
+// the unit of the file, as do lengths in extras. Intensities stay (candela, lux, cd/m²).
+void scene_rescale(struct scene *scene, float factor);

@@ -132,9 +132,11 @@ TEST(the_report_has_the_documented_fields_and_files)
     CHECK(file_exists(in(folder, "report.html")));
     CHECK(file_exists(in(folder, "sheet.png")));
     json_t *report = report_of(folder);
-    check_keys(report, "scene camera size exposure_ev reference methods device driver frames "
-                       "scene_scale direct command version date light light_is_default "
-                       "camera_is_default");
+    check_keys(
+        report,
+        "scene camera size exposure_ev reference methods device driver frames "
+        "scene_scale indirect_exposure_ev direct command version date light light_is_default "
+        "camera_is_default");
     check_keys(json_object_get(report, "direct"), "relmse flip mae images");
     check_images(folder, json_object_get(json_object_get(report, "direct"), "images"), 24, 18);
     const char *command = json_string_value(json_object_get(report, "command"));
@@ -320,6 +322,77 @@ TEST(the_exposure_is_that_of_the_reference_or_the_given_one)
     CHECK_NEAR(number(report, "exposure_ev"), 3.25, 0);
     json_decref(report);
     CHECK(files_are_equal(png, in(folder, "1-none.png")));
+}
+
+// A floor and a wall of an albedo that leaves little indirect light.
+static const char *write_dark_corner(const char *name)
+{
+    char text[1024];
+    int used = snprintf(text, sizeof text,
+                        "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\n"
+                        "property float y\nproperty float z\nproperty uchar red\n"
+                        "property uchar green\nproperty uchar blue\nelement face 2\n"
+                        "property list uchar int vertex_indices\nend_header\n");
+    static const char *const corners[] = { "0 0 0", "4 0 0", "4 0 4", "0 0 4", "4 4 0", "0 4 0" };
+    for (int i = 0; i < 6; i++)
+        used += snprintf(text + used, sizeof text - (size_t)used, "%s 10 10 10\n", corners[i]);
+    snprintf(text + used, sizeof text - (size_t)used, "4 0 3 2 1\n4 0 1 4 5\n");
+    const char *path = path_of(name);
+    write_file(path, text, strlen(text));
+    return path;
+}
+
+static double brightest(const char *path)
+{
+    struct image image = { 0 };
+    float most = 0.0f;
+    assert_true(png_read(test_host(), path, &image));
+    for (int i = 0; i < image.width * image.height * image.channels; i++)
+        most = fmaxf(most, image.pixels[i]);
+    image_finish(&image, test_host());
+    return (double)most;
+}
+
+static const char CORNER[] =
+    "compare --size 24x18 --spp 4 --frames 1 --quiet --gi lpv:dim=16 --eye "
+    "2,2,7 --target 2,1,0 --light point:2,2,2:50,50,50 -o";
+
+TEST(dim_indirect_light_has_an_exposure_of_its_own)
+{
+    require_device();
+    own_cache("indirect-exposure-cache");
+    const char *folder = path_of("indirect-exposure"), *dark = write_dark_corner("dark.ply");
+    run_expect(0, CORNER, folder, dark, NULL);
+    json_t *report = report_of(folder);
+    const double ev = number(report, "exposure_ev");
+    CHECK(number(report, "indirect_exposure_ev") < ev - 2);
+    CHECK(brightest(in(folder, "reference-indirect.png")) > 0.3);
+    json_decref(report);
+    run_expect(0,
+               "compare @cornell:light=point --size 24x18 --spp 2 --frames 1 --gi none --quiet -o",
+               folder, NULL); // its indirect light is not dim
+    report = report_of(folder);
+    CHECK(number(report, "indirect_exposure_ev") == number(report, "exposure_ev"));
+    json_decref(report);
+    run_expect(0, CORNER, folder, dark, "--exposure", "1.5", NULL); // as it was asked for
+    report = report_of(folder);
+    CHECK_NEAR(number(report, "indirect_exposure_ev"), 1.5, 0);
+    CHECK(brightest(in(folder, "reference-indirect.png")) < 0.3);
+    json_decref(report);
+}
+
+TEST(black_indirect_light_keeps_the_exposure_of_the_image)
+{
+    require_device();
+    own_cache("black-indirect-cache");
+    const char *folder = path_of("black-indirect");
+    run_expect(0,
+               "compare @cornell:light=point --bounces 0 --size 24x18 --spp 2 --frames 1 "
+               "--gi none --quiet -o",
+               folder, NULL);
+    json_t *report = report_of(folder);
+    CHECK(number(report, "indirect_exposure_ev") == number(report, "exposure_ev"));
+    json_decref(report);
 }
 
 // ---- cached references

@@ -34,7 +34,8 @@ static bool close_shared(void)
     return true;
 }
 
-static void begin(struct fixture *f, const char *name)
+// A member of the report is set; takes over the value. key NULL: none.
+static void begin_with(struct fixture *f, const char *name, const char *key, json_t *value)
 {
     if (!shared) {
         shared = browser_open();
@@ -42,8 +43,15 @@ static void begin(struct fixture *f, const char *name)
     }
     f->browser = shared;
     snprintf(f->folder, sizeof f->folder, "%s", make_folder(name));
-    write_page(f, sample_report(f->folder, "@cornell", "none"));
+    json_t *report = sample_report(f->folder, "@cornell", "none");
+    if (key) json_object_set_new(report, key, value);
+    write_page(f, report);
     browser_load(f->browser, f->page, WIDTH, HEIGHT);
+}
+
+static void begin(struct fixture *f, const char *name)
+{
+    begin_with(f, name, NULL, NULL);
 }
 
 static void end(struct fixture *f)
@@ -319,6 +327,27 @@ TEST(any_two_images_can_be_compared)
     CHECK(browser_true(
         f.browser, "[...document.querySelectorAll('.method')].map(m => m.textContent).join() === "
                    "'none,ambient:strength=1,lpv:dim=16,steps=8,lpv:dim=16,steps=64'"));
+    end(&f);
+}
+
+TEST(captions_state_an_exposure_of_indirect_light)
+{
+    static const char captions[] =
+        "[...document.querySelectorAll('.row:nth-child(1) figcaption')].map(c => c.textContent)"
+        ".join('; ')";
+    struct fixture f = { 0 };
+    begin(&f, "exposures");
+    CHECK(
+        browser_true(f.browser, "%s === 'Image; Reference; Error map; Indirect light'", captions));
+    end(&f);
+    begin_with(&f, "own-exposure", "indirect_exposure_ev", json_real(3.25));
+    CHECK(browser_true(f.browser, "(%s).endsWith('Indirect light, 3.5 EV brighter')", captions));
+    browser_true(f.browser, "document.querySelector('#layers').scrollIntoView()");
+    click(&f, "#layers label:nth-child(2)");
+    CHECK(browser_true(f.browser,
+                       "%s === 'Indirect light, 3.5 EV brighter; Reference, 3.5 EV "
+                       "brighter; Error map; Image'",
+                       captions));
     end(&f);
 }
 

@@ -50,6 +50,7 @@ struct comparison {
     struct ag_camera camera;
     struct ag_device *device;
     float exposure_ev; // of all images: --exposure, or the reference's
+    float indirect_ev; // of images of indirect light: the same, or lower where that is dim
     struct method methods[MAX_METHODS];
     uint64_t gpu_bytes; // the largest estimate of a method
     int method_count;
@@ -75,7 +76,7 @@ void methods_finish(struct comparison *c);
 enum status reference_begin(struct comparison *c);
 // Traces missing samples (none with --reference) and fills the rest of c->reference.
 enum status reference_complete(struct comparison *c);
-// Determines the exposure of all images.
+// Determines the exposures of all images.
 enum status reference_expose(struct comparison *c);
 // Writes reference.exr: the traced layers or a copy of the given file.
 enum status reference_write_exr(struct comparison *c, const char *path);

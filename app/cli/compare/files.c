@@ -51,12 +51,11 @@ static enum status write_png(struct comparison *c, enum ag_result result, struct
     return FAILED;
 }
 
-static enum status write_image(struct comparison *c, const struct ag_image *radiance,
+static enum status write_image(struct comparison *c, const struct ag_image *radiance, float ev,
                                const char *stem, const char *ending)
 {
     struct ag_image *display = NULL;
-    enum ag_result result =
-        ag_image_tonemap(c->session.context, radiance, c->exposure_ev, &display);
+    enum ag_result result = ag_image_tonemap(c->session.context, radiance, ev, &display);
     return write_png(c, result, display, stem, ending);
 }
 
@@ -129,11 +128,12 @@ static bool find_full_indirect(struct comparison *c)
 static enum status write_method(struct comparison *c, const struct method *m)
 {
     const struct reference *reference = &c->reference;
-    enum status status = write_image(c, m->color, m->stem, ".png");
+    enum status status = write_image(c, m->color, c->exposure_ev, m->stem, ".png");
     if (status == DONE)
         status = write_map(c, m->color, reference->color, AG_DIFFERENCE_FLIP, 0.0f, m->stem,
                            "-flip.png");
-    if (status == DONE) status = write_image(c, m->indirect, m->stem, "-indirect.png");
+    if (status == DONE)
+        status = write_image(c, m->indirect, c->indirect_ev, m->stem, "-indirect.png");
     if (status == DONE && reference->indirect)
         status = write_map(c, m->indirect, reference->indirect, AG_DIFFERENCE_ABSOLUTE,
                            c->full_indirect, m->stem, "-indirect-error.png");
@@ -143,9 +143,10 @@ static enum status write_method(struct comparison *c, const struct method *m)
 static enum status write_reference(struct comparison *c)
 {
     char path[PATH_SIZE];
-    enum status status = write_image(c, c->reference.color, "reference", ".png");
+    enum status status = write_image(c, c->reference.color, c->exposure_ev, "reference", ".png");
     if (status == DONE && c->reference.indirect)
-        status = write_image(c, c->reference.indirect, "reference", "-indirect.png");
+        status =
+            write_image(c, c->reference.indirect, c->indirect_ev, "reference", "-indirect.png");
     if (status == DONE) status = path_of(c, "reference", ".exr", path);
     return status == DONE ? reference_write_exr(c, path) : status;
 }

@@ -299,12 +299,33 @@ enum status reference_complete(struct comparison *c)
 
 // ---- exposure
 
+static bool is_black(const struct ag_image *image)
+{
+    const size_t count = (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < count; i++)
+        if (image_luminance(&image->pixels[i * (size_t)image->channels]) > 0.0) return false;
+    return true;
+}
+
+// Indirect light that would be almost black at the exposure of the image has one of its own.
+static enum ag_result expose_indirect(struct comparison *c)
+{
+    static const float DIM_EV = 2.0f; // a quarter of the image's light
+    float ev = c->exposure_ev;
+    c->indirect_ev = c->exposure_ev;
+    if (!c->reference.indirect || is_black(c->reference.indirect)) return AG_OK;
+    const enum ag_result result = image_exposure(&c->session, c->reference.indirect, c->depth, &ev);
+    if (result == AG_OK && ev <= c->exposure_ev - DIM_EV) c->indirect_ev = ev;
+    return result;
+}
+
 enum status reference_expose(struct comparison *c)
 {
-    c->exposure_ev = c->arguments->exposure_ev;
+    c->exposure_ev = c->indirect_ev = c->arguments->exposure_ev;
     if (c->arguments->has_exposure) return DONE;
     enum ag_result result =
         image_exposure(&c->session, c->reference.color, c->depth, &c->exposure_ev);
+    if (result == AG_OK) result = expose_indirect(c);
     return result == AG_OK ? DONE : fail_library(c->session.context, result);
 }
 

@@ -182,6 +182,7 @@ json_t *report_json(const struct comparison *c)
                   json_text(device.name), "driver", json_text(device.driver), "frames", a->frames);
     if (!report) return NULL;
     json_object_set_new(report, "scene_scale", json_float(a->scene_scale));
+    json_object_set_new(report, "indirect_exposure_ev", json_float(c->indirect_ev));
     if (c->direct_error_image) json_object_set_new(report, "direct", direct_json(c));
     add_origin(report, c);
     return report;

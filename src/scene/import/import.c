@@ -54,8 +54,9 @@ static struct scene *import_scene(struct import *import, const char *format,
     import->scene = scene_create(import->host, import->path);
     if (!import->scene) return NULL;
     import->scene->content_hash = hash_bytes(bytes->data, bytes->size, 0);
-    if (dispatch(import, format, bytes) && scene_rescale(import->scene, scale) &&
-        limits_scene(import->scene)) {
+    const bool ok = dispatch(import, format, bytes);
+    if (ok) scene_rescale(import->scene, scale);
+    if (ok && limits_scene(import->scene)) {
         import_log_notes(import);
         return import->scene;
     }

@@ -391,6 +391,24 @@ TEST(blocks_come_from_the_extras_of_gltf_nodes)
     mrt_block_map_finish(&map);
 }
 
+// Corners are in the unit of the file, as nodes are.
+TEST(blocks_of_a_scaled_scene_are_scaled)
+{
+    struct scene *scene = scene_load_scaled(test_host(), "@maze:blocks=3", 2);
+    struct mrt_block_map scaled, original = map_of("@maze:blocks=3");
+    CHECK(scene && mrt_block_map_of_scene(test_host(), scene, &scaled));
+    assert_int_equal(scaled.count, original.count);
+    for (int b = 0; b < scaled.count; b++)
+        for (int c = 0; c < MRT_CORNERS; c++)
+            for (int k = 0; k < 3; k++)
+                CHECK_NEAR(scaled.blocks[b].corner[c].raw[k],
+                           2 * original.blocks[b].corner[c].raw[k], 1e-5);
+    assert_int_equal(connections(&scaled), connections(&original));
+    mrt_block_map_finish(&scaled);
+    mrt_block_map_finish(&original);
+    scene_destroy(scene);
+}
+
 static void check_refused(const char *gltf, const char *why)
 {
     struct scene *scene = scene_load(test_host(), write_gltf(gltf));

@@ -1,8 +1,11 @@
 // Image viewer: two images with a divider, and a row of thumbnails for each method.
 
+// Dim indirect light has an exposure of its own, which its captions state.
+const brighter = report.exposure_ev - report.indirect_exposure_ev;
+const ownExposure = brighter > 0.05 ? `, ${numberText(brighter, 1)} EV brighter` : '';
 const LAYERS = [
   { key: 'picture', error: 'error', name: 'Full image', tile: 'Image' },
-  { key: 'indirect', error: 'indirect_error', name: 'Indirect light', tile: 'Indirect light' },
+  { key: 'indirect', error: 'indirect_error', name: `Indirect light${ownExposure}`, tile: `Indirect light${ownExposure}`, exposure: ownExposure },
 ];
 const shows = { layer: LAYERS[0], left: '', right: '' }; // left, right: "reference", "0 picture", "0 error"
 
@@ -153,7 +156,7 @@ function sheetRow(i) {
   const metric = METRICS.find(candidate => candidate.group === (layer.key === 'picture' ? 'Image' : 'Indirect light') &&
     isNumber(candidate.value(methods[i])) && !candidate.hidden);
   const figure = metric ? element('span', { className: 'figure' }, `${metric.name} ${numberText(metric.value(methods[i]))}`) : null;
-  const tiles = [tile('left', `${i} picture`, layer, layer.tile), tile('right', 'reference', layer, 'Reference'),
+  const tiles = [tile('left', `${i} picture`, layer, layer.tile), tile('right', 'reference', layer, `Reference${layer.exposure ?? ''}`),
     tile('left', `${i} error`, layer, 'Error map'), tile('left', `${i} picture`, other, other.tile)].filter(Boolean);
   if (!tiles.length) return null;
   return element('div', { className: 'row' }, element('h3', { title: changesText(methods[i]) }, colourChip(i), labels[i], figure), element('div', { className: 'tiles' }, ...tiles));
