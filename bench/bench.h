@@ -13,7 +13,7 @@
 
 enum { BENCH_TEXT = 256 };
 
-// What every benchmark has. The caller sets the defaults of width, height and frames.
+// Common parts of every benchmark. The caller sets the defaults of width, height and frames.
 struct bench {
     struct ag_context *context;
     struct ag_device *device;

@@ -1,4 +1,4 @@
-// What a move of an object inside a block costs drt: processor time of the update, times of frames
+// Cost in drt of moving an object inside a block: processor time of the update, times of frames
 // meanwhile, and the steps in which the light changes.
 //
 //     clutter [--gi SPEC] [--instance N] [--step CM] [--frames N] [--size WxH] [--device NAME]

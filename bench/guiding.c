@@ -24,7 +24,7 @@ struct bench {
     int width, height, samples, seeds, bounces;
 };
 
-// Of the images of one method.
+// Statistics over the images of one method.
 struct method {
     double *sums, *squares; // [pixels]: luminance
     double mean, mean_square;

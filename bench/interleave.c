@@ -69,7 +69,7 @@ static double total_ms(const double ms[STAGES])
     return sum;
 }
 
-// Of irradiance, in lux.
+// Differences of irradiance, in lux.
 struct difference {
     double mean, absolute, bias;
 };

@@ -4,8 +4,8 @@
 //     paper-drt [--spp N] [--bounces N] [--options …] [--frames N] [--size WxH] [--csv FILE]
 //     [SCENE]…
 //
-// Frames of all variants alternate. Errors are those of irradiance against the reference, both of
-// so many bounces.
+// Frames of all variants alternate. Errors are those of irradiance against the reference, both with
+// N bounces.
 #include "bakes.h"
 #include "bench.h"
 #include "csv.h"

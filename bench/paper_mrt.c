@@ -237,7 +237,7 @@ struct curves {
     double blocks[SIZES], cpu_ms[SIZES], gpu_ms[SIZES], part_ms[PARTS][SIZES];
 };
 
-// Of the least-squares line.
+// Coefficient of determination of the least-squares line.
 static double r_squared(const double *x, const double *y, int n)
 {
     double sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;

@@ -10,7 +10,7 @@
 int paper_mrt_modes(const struct ag_bake *bake, const char *sigma, double share);
 
 struct paper_dictionary;
-// Of a complete bake of mrt.
+// Opens the dictionary of a complete bake of mrt.
 enum ag_result paper_dictionary_open(const struct ag_bake *bake, struct paper_dictionary **out);
 void paper_dictionary_close(struct paper_dictionary *dictionary);       // accepts NULL
 int paper_dictionary_texels(const struct paper_dictionary *dictionary); // along an edge
@@ -21,7 +21,7 @@ struct paper_solver_time {
     double level_ms; // connections and T_b→r
     double solve_ms; // b, r and reconstruction: the least of the runs
 };
-// Of the random @maze with so many blocks, on all cores.
+// Times of the random @maze with `blocks` blocks, on all cores.
 enum ag_result paper_solver_measure(const struct paper_dictionary *dictionary, int blocks, int seed,
                                     int runs, struct paper_solver_time *out);
 

@@ -10,7 +10,7 @@ endif()
 install(FILES LICENSE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.[ch])
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
-# What a host's own shaders include: `glslc -DAG_GLSL=1 -I <prefix>/share/afterglow/glsl`. Paths are those of src/.
+# Headers for a host's own shaders: `glslc -DAG_GLSL=1 -I <prefix>/share/afterglow/glsl`. Paths are those of src/.
 foreach(file core/shared.h core/sh.glsl frame/frame_shared.h frame/octahedral.glsl frame/probes.glsl)
   get_filename_component(folder ${file} DIRECTORY)
   install(FILES src/${file} DESTINATION ${CMAKE_INSTALL_DATADIR}/afterglow/glsl/${folder})

@@ -425,7 +425,7 @@ static void describe(const struct slot *slot, enum surface_image which, struct a
     out->scale = 1;
 }
 
-// Where an engine would rasterise. The images of two frames alternate; what they had is discarded.
+// An engine would rasterise here. The images of two frames alternate; their content is discarded.
 static void draw_surfaces(const struct host *host, const struct ag_camera *camera,
                           const struct slot *slot, struct ag_gbuffer *out)
 {
@@ -446,7 +446,7 @@ static void draw_surfaces(const struct host *host, const struct ag_camera *camer
     describe(slot, SURFACE_ALBEDO, &out->albedo);
 }
 
-// Where an engine would light its own surfaces with "irradiance", or present "display". The layout
+// An engine would light its own surfaces with "irradiance" here, or present "display". The layout
 // that the copy needs is exchanged for the library's afterwards.
 static void copy_picture(const struct host *host, const struct slot *slot)
 {

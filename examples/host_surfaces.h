@@ -21,8 +21,8 @@ enum ag_result box_move(const struct box *box, struct ag_scene *scene);
 
 // A G-buffer as struct ag_gbuffer describes it: 4 bytes a pixel in each image.
 enum surface_image { SURFACE_DEPTH, SURFACE_NORMAL, SURFACE_ALBEDO, SURFACE_IMAGES };
-// Where an engine would rasterise: a ray for each pixel, on the CPU. `mapped`: the images one after
-// the other, rows from the top.
+// Stands for an engine's rasterisation: a ray for each pixel, on the CPU. `mapped`: the images one
+// after the other, rows from the top.
 void boxes_draw(const struct box *boxes, const struct ag_camera *camera, int width, int height,
                 void *mapped);
 

@@ -84,7 +84,7 @@ static enum status begin(struct job *job)
     return status;
 }
 
-// What only the report shows is not in the file.
+// A full report is not loaded: the file lacks data that only the report has.
 static bool may_load(const struct arguments *a)
 {
     return !a->force && !a->report_full && !a->merge && a->shard_count == 0;

@@ -188,7 +188,7 @@ static enum status add_default_light(struct session *session)
     return DONE;
 }
 
-// What the library says of an option's value, without the name of the function.
+// Fails with the library's message about an option's value, without the name of the function.
 static enum status fail_option(const struct session *session, enum ag_result result,
                                const char *option)
 {

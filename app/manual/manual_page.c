@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// What stands for a character in roff; NULL: the character. A line may end after \:.
+// The escape of a character in roff; NULL: the character itself. A line may end after \:.
 static const char *escape_of(char c)
 {
     static const char characters[] = "\\-'`^~|,";

@@ -47,7 +47,7 @@ struct dnrt_method {
 enum ag_result dnrt_view_render(const struct dnrt_view *view, const char *gi,
                                 struct ag_image **indirect);
 enum ag_result dnrt_view_errors(const struct dnrt_view *view, struct dnrt_method *method);
-// Of all methods; their frames alternate. new_light: lights change a little in each frame.
+// Measures all methods; their frames alternate. new_light: lights change a little in each frame.
 enum ag_result dnrt_view_times(const struct dnrt_view *view, bool new_light,
                                struct dnrt_method *methods, int count);
 

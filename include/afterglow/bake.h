@@ -23,8 +23,8 @@ struct ag_bake_desc {
     double checkpoint_every_s; ///< with a checkpoint; default 30; 0: only when cancelled
     uint64_t max_memory_bytes; ///< refuse to run if more would be needed; default 0: no limit
     bool full_report;          ///< also compute what only ag_bake_report shows; default false
-    /// Not the data of the technique, but its light map (lightmap.h), by so many paths a texel, 1
-    /// to 1000000. Lights and sky are those at ag_bake_create. Default 0
+    /// Paths of a texel, 1 to 1000000: bakes not the data of the technique, but its light map
+    /// (lightmap.h). Lights and sky are those at ag_bake_create. Default 0: the data
     int lightmap_samples;
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
@@ -57,8 +57,8 @@ struct ag_bake_estimate {
     float texels_per_m;         ///< of a light map, on all charts
     uint64_t reserved[3];       ///< 0; see ABI in types.h
 };
-/// What ag_bake_run will need. probe: run a few tasks, about a second, to estimate the time; their
-/// results are kept.
+/// Estimates the resources of ag_bake_run. probe: run a few tasks, about a second, to estimate the
+/// time; their results are kept.
 AG_API enum ag_result ag_bake_estimate_cost(struct ag_bake *bake, bool probe,
                                             struct ag_bake_estimate *out);
 #ifndef __cplusplus
@@ -114,7 +114,7 @@ struct ag_bake_origin {
     float scene_scale;    ///< ag_scene_load_desc.scale
     uint64_t reserved[3]; ///< 0; see ABI in types.h
 };
-/// What such a file is a part of, for ag_bake_create.
+/// The bake that such a file is a part of, for ag_bake_create.
 AG_API enum ag_result ag_bake_partial_origin(struct ag_context *context, const char *path,
                                              struct ag_bake_origin *out);
 

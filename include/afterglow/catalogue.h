@@ -11,8 +11,8 @@ struct ag_option_info {
     const char *name;
     const char *type;         ///< "int", "float", "bool", "choice" or "text"
     double initial, min, max; ///< initial: the default; of a choice, its index; 0 for texts
-    /// Of a choice: the names, separated by '|'. Of a text, which is empty by default: what it
-    /// stands for, such as "path"; its commas are written %2C, plus signs %2B, percent signs %25.
+    /// The names of a choice, separated by '|'; the meaning of a text, such as "path". A text is
+    /// empty by default; its commas are written %2C, plus signs %2B, percent signs %25.
     const char *unit;
     const char *effect; ///< of a change: "live", "invalidate", "resize", "recreate" or "rebake"
     const char *help;

@@ -27,7 +27,7 @@ struct ag_memory_request {
     bool mapped;             ///< must be mapped, and stay so until it is freed
     uint64_t reserved[4];    ///< 0; see ABI in types.h
 };
-/// What it gets: a VkDeviceMemory or a part of one.
+/// The memory that it returns: a VkDeviceMemory or a part of one.
 struct ag_memory_block {
     void *vk_memory;      ///< VkDeviceMemory
     uint64_t offset;      ///< in it, a multiple of the alignment
@@ -99,7 +99,7 @@ AG_API int ag_device_validation_messages(const struct ag_device *device);
 AG_API enum ag_result ag_device_pipeline_cache(struct ag_device *device, void *out, size_t capacity,
                                                size_t *bytes);
 
-/// What has been created and submitted on a device so far.
+/// Counts of objects created and work submitted on a device so far.
 struct ag_device_counters {
     uint64_t images, buffers, pipelines; ///< created
     uint64_t compiled;    ///< of the pipelines: compiled, not reused after their destruction

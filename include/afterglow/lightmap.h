@@ -30,14 +30,14 @@ AG_API void ag_lightmap_desc_default(struct ag_lightmap_desc *desc);
 AG_API enum ag_result ag_lightmap_technique(struct ag_context *context, const char *gi,
                                             const char **name);
 
-/// Of a complete bake with lightmap_samples; bake and scene may be destroyed before the light map.
+/// The light map of a complete bake with lightmap_samples; bake and scene may be destroyed before the light map.
 /// desc NULL: the defaults.
 AG_API enum ag_result ag_lightmap_from_bake(const struct ag_bake *bake,
                                             const struct ag_lightmap_desc *desc,
                                             struct ag_lightmap **out);
-/// Of the newest frame; waits for the GPU. AG_ERROR_ARGUMENT where no technique of the renderer has
-/// a light map. Direct light of punctual lights is traced on the CPU; where a technique scatters it
-/// below surfaces, its map has it already, and indirect_only is AG_ERROR_UNSUPPORTED.
+/// The light map of the newest frame; waits for the GPU. AG_ERROR_ARGUMENT if no technique of the
+/// renderer has a light map. Direct light of punctual lights is traced on the CPU. If a technique
+/// scatters it below surfaces, its map has it already, and indirect_only is AG_ERROR_UNSUPPORTED.
 AG_API enum ag_result ag_lightmap_from_renderer(struct ag_renderer *renderer,
                                                 const struct ag_lightmap_desc *desc,
                                                 struct ag_lightmap **out);

@@ -261,16 +261,16 @@ struct ag_finished_frame {
 /// Does not wait. A recorded frame is finished with ag_renderer_recorded_done.
 AG_API enum ag_result ag_renderer_finished(struct ag_renderer *renderer,
                                            struct ag_finished_frame *out);
-/// What a pixel of a frame shows.
+/// The surface of a pixel.
 struct ag_pick {
     uint64_t frame;         ///< its number; 0: none with `pick` is finished
     int x, y;               ///< the pixel
     int instance, triangle; ///< as in the layer id; -1: no surface
     uint64_t reserved[4];   ///< 0; see ABI in types.h
 };
-/// Of the newest frame with `pick` (ag_frame_desc) that the GPU has finished. Neither waits nor
-/// submits. Instances are numbered as at the time of that frame: the index of one that was removed
-/// since may belong to another one.
+/// The pick of the newest frame with `pick` (ag_frame_desc) that the GPU has finished. Neither
+/// waits nor submits. Instances are numbered as at the time of that frame: the index of one that
+/// was removed since may belong to another one.
 AG_API enum ag_result ag_renderer_picked(struct ag_renderer *renderer, struct ag_pick *out);
 /// EV of the newest frame; waits for the GPU.
 AG_API enum ag_result ag_renderer_exposure(struct ag_renderer *renderer, float *ev);

@@ -7,9 +7,9 @@
 /// description names, and those whose handle has been asked for (ag_view_layer_handle); only these
 /// can be read. The renderer's own camera is rendered last and keeps all its layers.
 ///
-/// What follows a camera follows that of ag_frame_desc: the finer shadow cascades of a sun, and the
-/// finer grids of lpv:cascades and vct:levels. Other views have their light from the coarser ones
-/// where they look elsewhere.
+/// The finer shadow cascades of a sun and the finer grids of lpv:cascades and vct:levels follow the
+/// camera of ag_frame_desc. Other views have their light from the coarser ones where they look
+/// elsewhere.
 #ifndef AFTERGLOW_VIEW_H
 #define AFTERGLOW_VIEW_H
 
@@ -29,9 +29,9 @@ struct ag_view_desc {
     uint64_t reserved[7];                           ///< 0; see ABI in types.h
 };
 AG_API void ag_view_desc_default(struct ag_view_desc *desc);
-/// What a view adds to the GPU memory of a renderer, in bytes, as ag_renderer_estimate_memory
-/// counts them. Either description may be NULL: the defaults. Handles that are asked for later add
-/// their layers.
+/// Bytes that a view adds to the GPU memory of a renderer, as ag_renderer_estimate_memory counts
+/// them. Either description may be NULL: the defaults. Handles that are asked for later add their
+/// layers.
 AG_API enum ag_result ag_view_estimate_memory(struct ag_context *context,
                                               const struct ag_renderer_desc *renderer,
                                               const struct ag_view_desc *desc, uint64_t *bytes);

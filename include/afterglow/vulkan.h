@@ -11,9 +11,9 @@
 
 AG_BEGIN
 
-/// What a device must be created with: `features` is the pNext of VkDeviceCreateInfo (without
-/// pEnabledFeatures). The structs are chained in this order; set further features in them, append
-/// further structs to vulkan13.pNext. Do not copy or move the struct.
+/// Features that a device must be created with: `features` is the pNext of VkDeviceCreateInfo
+/// (without pEnabledFeatures). The structs are chained in this order; set further features in them,
+/// append further structs to vulkan13.pNext. Do not copy or move the struct.
 struct ag_vulkan_requirements {
     VkPhysicalDeviceFeatures2 features;
     VkPhysicalDeviceVulkan11Features vulkan11;

@@ -98,7 +98,7 @@ enum ag_result api_refuse(struct ag_context *context, const char *function, cons
                    api_zero((desc)->reserved, sizeof(desc)->reserved / sizeof *(desc)->reserved),  \
                    API_UNKNOWN_MEMBERS)
 #define AG_REQUIRE_POINTER(context, pointer) AG_REQUIRE(context, pointer, #pointer " is NULL")
-// Of functions that create an object: *out is NULL unless they succeed.
+// For functions that create an object: *out is NULL unless they succeed.
 #define AG_REQUIRE_OUT(context, out)                                                               \
     do {                                                                                           \
         AG_REQUIRE_POINTER(context, out);                                                          \

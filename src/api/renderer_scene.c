@@ -1,4 +1,4 @@
-// What a renderer does about changes of its scene, before a frame.
+// A renderer follows the changes of its scene before each frame.
 #include "api/renderer_scene.h"
 
 #include "api/renderer_state.h"

@@ -1,4 +1,4 @@
-// What scenes are built of: materials, meshes, instances, lights.
+// Building blocks of scenes: materials, meshes, instances, lights.
 #include "api/scene_parts.h"
 
 #include "scene/limits.h"

@@ -1,4 +1,4 @@
-// What a device must be created with, in Vulkan's types. Only this file of api/ has them.
+// Features that a device must be created with, in Vulkan's types. Only this file of api/ has them.
 #include "api/objects.h"
 
 #include "gpu/gpu.h"

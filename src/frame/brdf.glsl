@@ -50,7 +50,7 @@ float brdf_alpha(float roughness)
     return r * r;
 }
 
-// What single scattering loses, relative to what it reflects without Fresnel losses.
+// Energy that single scattering loses, relative to its reflection without Fresnel losses.
 float brdf_loss(vec2 ab)
 {
     float ess = ab.x + ab.y;

@@ -425,7 +425,7 @@ static bool place_sun(struct frame *f)
            shadow_view_is_precise(&f->sun, f->common->shadow.faces, count);
 }
 
-// Of the only sun, if the direct pass has a variant for them.
+// Records shadow blocks of the only sun, if the direct pass has a variant for them.
 static void record_blocks(struct frame *f, struct gpu_cmd *cmd)
 {
     f->has_blocks = place_sun(f) && shadow_record_blocks(&f->common->shadow, cmd, &f->lights[0]);
@@ -513,7 +513,7 @@ static void record_emitters(struct frame *f, struct gpu_cmd *cmd)
     view->emitted_irradiance = f->emitted_irradiance;
 }
 
-// What is of this view alone.
+// Fills the members of this view alone.
 static void complete_view(struct frame *f)
 {
     struct frame_view *view = &f->view;

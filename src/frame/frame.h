@@ -19,7 +19,7 @@
 struct frame;
 struct scene_gpu;
 
-// Where a virtual point light of the frame is from.
+// The origin of a virtual point light of the frame.
 struct frame_emitter_origin {
     int instance;        // of the scene
     bool back;           // of a double-sided surface: the point is on its back
@@ -178,7 +178,7 @@ struct frame_indirect {
     uint32_t needs; // frame_need bits
 };
 
-// What the display image shows, needed until the frame is recorded.
+// The layer or image that the display image shows, needed until the frame is recorded.
 struct frame_shown {
     enum frame_layer layer;
     gpu_image image; // not empty: shown instead; RGBA16F of the frame's size, scaled radiance
@@ -242,7 +242,7 @@ bool frame_prepare(struct frame *frame, const struct frame_input *input,
 // These cannot fail and do not allocate. What all views share; `frame` is the first.
 void frame_record_light(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input,
                         const struct frame_indirect *indirect);
-// What one view sees: the further views of the frame, then the first, whose layers last.
+// Records one view: call it for the further views of the frame, then the first, whose layers last.
 void frame_record_view(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input,
                        const struct frame_indirect *indirect);
 // Whether the layer has its value after the newest recorded frame.
@@ -272,9 +272,9 @@ struct frame_pick {
     uint32_t x, y;
     uint32_t instance, triangle; // each plus 1; 0: no surface
 };
-// Of the newest completed frame that was asked for one. Does not wait. false: there is none yet.
+// The pick of the newest completed frame that was asked for one. Does not wait. false: none yet.
 bool frame_newest_pick(struct frame *frame, struct frame_pick *out);
-// Of the newest completed frame. Does not wait. false: there is none yet.
+// The report of the newest completed frame. Does not wait. false: there is none yet.
 bool frame_newest_report(struct frame *frame, struct frame_report *out);
 // Number of the newest recorded frame; 0: none.
 uint64_t frame_number(const struct frame *frame);
@@ -304,8 +304,8 @@ bool frame_read(struct frame *frame, enum frame_readback what, float *pixels, in
 // specular.
 uint64_t frame_memory_estimate(const struct frame_options *options, const struct frame_input *input,
                                uint32_t needs, uint32_t width, uint32_t height);
-// What a further view adds. It shares layers of the first one if that is not smaller: `first`;
-// NULL: it is. more_pixels: than the largest view before.
+// Bytes that a further view adds. It shares layers of the first one if that is not smaller:
+// `first`; NULL: it is. more_pixels: than the largest view before.
 uint64_t frame_view_memory_estimate(const struct frame_input *input,
                                     const struct frame_input *first, uint32_t needs, uint32_t width,
                                     uint32_t height, uint64_t more_pixels);

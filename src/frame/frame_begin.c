@@ -99,7 +99,7 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
         c->radiance_scale * unlit_white(input->lights, input->light_count, light.sky,
                                         luminance(f->common->emitters.flux), input->pose->bounds);
     f->fallback_luminance = frame_fallback_luminance(&light) * c->radiance_scale;
-    // Where all that is seen is unlit, its white exposes to 1.
+    // If all visible surfaces are unlit, their white exposes to 1.
     if (f->common->scene.has_unlit) f->fallback_luminance = 0.18f * c->unlit_white;
     c->emissive_scale = emissive_scale(c, input);
     c->previous_scale_ratio = f->index == 0 ? 1.0f : c->radiance_scale / previous_scale;

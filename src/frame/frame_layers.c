@@ -114,7 +114,7 @@ void frame_forget_gbuffer(struct frame *frame)
     frame->gbuffer = NULL;
 }
 
-// Of a further view: its image has the memory that it should have.
+// Whether the image of a further view has the memory that it should have.
 static bool is_settled(const struct frame *frame, int l)
 {
     return frame->view_number == 0 || frame->imported >> l & 1u ||

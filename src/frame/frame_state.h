@@ -25,7 +25,7 @@ struct frame_reports {
     struct frame_pick newest_pick;
 };
 
-// What the views of a frame share, owned by the first.
+// Data that the views of a frame share, owned by the first.
 struct frame_common {
     struct frame_options options;
     struct scene_gpu scene;
@@ -113,6 +113,6 @@ void reports_finish(struct frame *frame);
 void reports_record(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input);
 
 // frame_begin.c: constants, lights and change flags of a new frame.
-// Of a further view: the light and the scale are those of the first.
+// Begins a further view: the light and the scale are those of the first.
 void frame_begin_view(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input);
 void frame_begin(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input);

@@ -10,7 +10,7 @@ vec2 octahedral_encode(vec3 n)
     return n.z < 0.0 ? folded : p;
 }
 
-// Of any length.
+// The direction of a point of the map, of any length.
 vec3 octahedral_direction(vec2 e)
 {
     vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));

@@ -43,7 +43,7 @@ struct scene_gpu {
     bool has_unlit;
     bool has_dielectrics; // a drawn material has another specular lobe than the default
 
-    // What is uploaded: positions (vec3), tangent frames (two words, see scene.glsl), surfaces,
+    // Uploaded data: positions (vec3), tangent frames (two words, see scene.glsl), surfaces,
     // indices, materials.
     gpu_buffer positions, frames, surfaces, indices, materials;
     size_t *index_offset; // [mesh_count] bytes

@@ -313,8 +313,8 @@ uint32_t gpu_compiler_count(const struct gpu *compiler);             // pipeline
 // On the thread of `gpu`, which keeps the pipelines for later creations of equal ones. Accepts
 // NULL.
 void gpu_compiler_destroy(struct gpu *compiler, struct gpu *gpu);
-// What the driver compiled so far, for gpu_desc.pipeline_cache. Sets *bytes to the size and writes
-// it all. out NULL: the size alone. false: more than `capacity`, or out of memory.
+// Pipelines that the driver compiled so far, for gpu_desc.pipeline_cache. Sets *bytes to the size
+// and writes all. out NULL: the size alone. false: more than `capacity`, or out of memory.
 bool gpu_pipeline_cache_read(struct gpu *gpu, void *out, size_t capacity, size_t *bytes);
 
 // ---- Tables of objects --------------------------------------------------------------------------

@@ -245,7 +245,7 @@ static bool is_empty(const struct memory_block *block)
     return block->free_count == 1 && block->free[0].bytes == block->bytes;
 }
 
-// Of blocks that became empty one of each kind is kept, which saves a call of the driver later.
+// One empty block of each kind is kept, which saves a call of the driver later.
 static bool has_another_empty(const struct gpu *gpu, const struct memory_block *block)
 {
     for (const struct memory_block *b = gpu->memory.blocks; b; b = b->next)

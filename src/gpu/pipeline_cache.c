@@ -17,7 +17,7 @@ struct header {
     uint64_t zero;
 };
 
-// Of the data behind the header; NULL: they fit.
+// The reason why the data behind the header do not fit; NULL: they fit.
 static const char *misfit(const struct gpu *gpu, const struct header *header, const char *data)
 {
     VkPhysicalDeviceProperties device;

@@ -463,7 +463,7 @@ struct gpu {
     uint32_t owner_depth;
     VkPhysicalDevice physical;
     VkDevice device;
-    // Of all objects of the device: NULL, or a copy of the caller's.
+    // Allocator of all objects of the device: NULL, or a copy of the caller's.
     const VkAllocationCallbacks *allocator;
     VkAllocationCallbacks allocator_copy;
     VkQueue queue;

@@ -1,4 +1,4 @@
-// What a long run costs: objects made and destroyed, frames with moved instances. Nothing grows.
+// Memory in a long run: objects made and destroyed, frames with moved instances. Nothing grows.
 #include "api/renderer_fixture.h"
 
 #include <malloc.h>
@@ -141,7 +141,7 @@ static void check_same(const struct held *before, const struct held *now, int st
                  before->vulkan_blocks, (unsigned long long)before->gpu_bytes);
 }
 
-// What the driver keeps is not counted exactly: it has caches.
+// Memory of the driver is not counted exactly: it has caches.
 static void check_process(const struct held *before, const struct held *now)
 {
     const double grown = (double)now->process_bytes - (double)before->process_bytes;

@@ -100,7 +100,7 @@ TEST(a_cache_is_used_by_the_next_device)
     ag_context_destroy(s.context);
 }
 
-// Of the bytes, the one at `at`, if there is one, is changed. They are ignored for this reason.
+// Changes the byte at `at`, if there is one: the cache is ignored for this reason.
 static void check_ignored(struct session *s, const unsigned char *cache, size_t bytes, size_t at,
                           const char *why)
 {

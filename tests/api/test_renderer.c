@@ -392,7 +392,7 @@ TEST(a_frame_is_recorded_into_the_programs_command_buffer)
         assert_int_equal(ag_renderer_record(s.renderer, &s.frame, NULL, &number),
                          AG_ERROR_ARGUMENT);
         assert_int_equal(ag_renderer_record(s.renderer, &s.frame, commands, &number), AG_OK);
-        // What would wait is refused until the frame is reported done.
+        // Calls that would wait are refused until the frame is reported done.
         struct ag_image *image = NULL;
         assert_int_equal(ag_renderer_read(s.renderer, "color", &image), AG_ERROR_ARGUMENT);
         assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_ERROR_ARGUMENT);

@@ -120,7 +120,7 @@ TEST(a_scene_of_another_thread_is_transferred_to_the_renderer)
     fixture_close(&f);
 }
 
-// What an engine does that has assets of its own.
+// Builds a scene by calls, as an engine with assets of its own.
 static void *build(void *user)
 {
     struct loader *l = user;

@@ -63,7 +63,7 @@ static void check_layers(struct renderer_fixture *s, const char *what, struct ag
     }
 }
 
-// What a view keeps that shares its other layers: color, display, and `asked`.
+// A view that shares its other layers keeps color, display, and `asked`.
 static void check_kept(struct renderer_fixture *s, const char *what, struct ag_view *view,
                        const char *asked, struct ag_renderer *alone, double tolerance)
 {
@@ -159,7 +159,7 @@ static bool is_of_view(const char *pass)
     return dot && strcmp(dot, ".apply") == 0;
 }
 
-// Of the newest frame: those whose name says that they are of a view.
+// Passes of the newest frame whose names are those of a view.
 static int passes_of_view(struct ag_renderer *renderer)
 {
     struct ag_timing timings[128];
@@ -285,7 +285,7 @@ TEST(a_second_view_costs_less_than_two_fifths_of_a_renderer_where_images_dominat
     fixture_close(&s);
 }
 
-// What both sizes of a renderer and its view need after frames of these sizes.
+// Compares memory with that of new renderers and views of both sizes, after frames of these sizes.
 TEST(memory_follows_the_sizes_of_a_renderer_and_its_view)
 {
     static const int sizes[][2] = { { 512, 288 }, { 128, 72 }, { 512, 288 } };

@@ -61,7 +61,7 @@ TEST(a_device_created_with_the_requirements_is_adopted)
     CHECK(ag_vulkan_layout(&layer) == VK_IMAGE_LAYOUT_GENERAL);
     fixture_close(&s);
 
-    // What a program forgot, as far as it tells.
+    // Omissions of a program, as far as the library can tell.
     adopt.queue_family = 1000;
     CHECK(refused(&adopt, "queue family 1000"));
     adopt.queue_family = own.family;

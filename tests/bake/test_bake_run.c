@@ -434,7 +434,7 @@ TEST(bake_estimate_adds_up_the_plan)
     CHECK_NEAR(estimate.rays, 7 * 100 + 5 * 50, 0.0);
     CHECK_NEAR(estimate.texels, 70, 0.0);
     CHECK(isnan(estimate.seconds));
-    // Of wave 0: F, mask, the parts and the sum, scratch of two threads; and the job.
+    // Memory of wave 0: F, mask, the parts and the sum, scratch of two threads; and the job.
     CHECK_NEAR(estimate.peak_memory_bytes, 23 * 24 + 23 + 6 * 16 + 2 * 1000 + 10000, 0.0);
     const char *path = test_path("estimated.safetensors");
     CHECK(bake_run(bake, &(struct bake_run_options){ 0 }) && bake_save(bake, path, false));

@@ -9,7 +9,7 @@ for command in render reference compare bake info list diff cache; do
     grep -q "^\.SS afterglow $command$" "$page"
     "$program" "$command" --help | sed -n 's/^  \(--*[a-z-]*\).*/\1/p' | sort -u >"$work/options"
     [ -s "$work/options" ]
-    # Of the page: the section of the command alone.
+    # The section of the command alone.
     sed -n "/^\.SS afterglow $command$/,/^\.S[SH] /p" "$page" | sed '1!{/^\.SH/q}' | sed -n 's/^\\fB\(\\-.*\)\\fR.*\\fI.*/\1/p' |
         sed 's/\\-/-/g' | sort -u >"$work/described"
     diff "$work/options" "$work/described"

@@ -118,7 +118,7 @@ TEST(bake_report_has_stages_times_and_bytes)
     CHECK(json_is_false(json_object_get(report, "full")));
     CHECK(json_is_false(json_object_get(report, "cached")));
     json_decref(printed);
-    // Of the cached file: the figures of the run that made it.
+    // The report of a cached file has the figures of the run that made it.
     printed = run_json(
         run_expect(0, "bake @cornell --gi sample:wait_ms=20 --json --quiet --report", path, NULL));
     CHECK(json_is_true(json_object_get(printed, "cached")));

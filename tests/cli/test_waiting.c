@@ -9,7 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
-// What is on standard error after a frame of that many milliseconds.
+// Standard error after a frame of `ms` milliseconds.
 static const char *said_after(int frame, double ms)
 {
     static char text[512];

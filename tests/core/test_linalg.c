@@ -316,7 +316,7 @@ TEST(linalg_refuses_a_matrix_that_cannot_exist)
 
 // ---- truncation
 
-// Of rank 5, with noise of 1e-6 beyond.
+// A matrix of rank 5, with noise of 1e-6 beyond.
 static struct matrix_f64 nearly_of_rank_5(size_t rows, size_t columns)
 {
     struct matrix_f64 a = random_matrix(rows, 5, 11), b = random_matrix(5, columns, 12);

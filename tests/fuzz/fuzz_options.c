@@ -1,5 +1,5 @@
 // An option string, for the options of each technique, of each built-in scene and of the frame.
-// What was accepted is printed and read again: the values are the same.
+// Accepted options are printed and read again: the values are the same.
 #include "fuzz/fuzz.h"
 
 #include "core/option.h"

@@ -178,7 +178,7 @@ static void close_files(struct files *f)
     scene_destroy(f->scene);
 }
 
-// What the path tracer says at a point of a chart's triangle; false: it is inside of something.
+// Irradiance by the path tracer at a point of a chart's triangle; false: it is inside geometry.
 static bool traced_at(const struct gather_scene *scene, uint32_t triangle, vec2s uv, uint32_t seed,
                       vec3s *out)
 {

@@ -65,7 +65,7 @@ static void check_rectangles_are_apart(const struct charts *charts)
     host_free(test_host(), taken);
 }
 
-// Of a triangle on its chart, relative to its area and edges in the scene.
+// Stretch of triangles on their charts, relative to their areas and edges in the scene.
 static void check_stretch_is_bounded(const struct charts *charts)
 {
     for (uint32_t i = 0; i < charts->triangle_count; i++) {

@@ -192,7 +192,7 @@ TEST(materials_have_the_values_of_the_file_and_glTF_defaults)
     CHECK_NEAR(m->emissive.y, 100.0, 1e-4);
     CHECK(m->metallic == 0.5f && m->roughness == 0.25f && m->normal_scale == 2.0f);
     CHECK(m->alpha_mode == ALPHA_MASK && m->double_sided && !m->unlit);
-    // What is unlit does not emit.
+    // Unlit materials do not emit.
     CHECK(scene->materials[2].unlit && luminance(scene->materials[2].emissive) == 0.0f);
     CHECK_NEAR(m->alpha_cutoff, 0.7, 1e-6);
     const struct texture_use *use = &m->base_color_map;

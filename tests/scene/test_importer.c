@@ -1,5 +1,5 @@
-// What the importer program hands over is untrusted, and it may be missing. Shell scripts stand in
-// for it.
+// Output of the importer program is untrusted, and the program may be missing. Shell scripts stand
+// in for it.
 #include "scene/gltf_maker.h"
 
 #include "scene/import/import_stream.h"

@@ -19,7 +19,8 @@ static double cpu_s(void)
     return (double)clock() / CLOCKS_PER_SEC;
 }
 
-// Of this process: the importer has limits of its own, and the machine may be busy.
+// Processor time of this process counts: the importer has limits of its own, and the machine may be
+// busy.
 static void check_file(const char *path)
 {
     double start = cpu_s();

@@ -21,7 +21,7 @@ static int emitter(struct frame_fixture *s, float albedo)
     return fixture_material(s, &m);
 }
 
-// Of the scene: a position inside a room.
+// A camera of the scene, at a position inside a room.
 static void add_camera(struct frame_fixture *s, vec3s at)
 {
     const struct camera camera = { .name = "camera",

@@ -1,4 +1,4 @@
-// What holds for each entry of the registry.
+// Rules for each entry of the registry.
 #pragma once
 
 #include "techniques/registry.h"

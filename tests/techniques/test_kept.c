@@ -3,7 +3,7 @@
 
 #include "techniques/common/kept.h"
 
-// What happens to a frame, and the answers.
+// Events of a frame, and the expected answers.
 struct event {
     bool moved, forget, unlit; // forget: everything; unlit: the light
     uint64_t index, light, since;

@@ -53,7 +53,7 @@ static double reference_of(struct gpu *gpu, int arm, float x, float z)
     return luminance_of(e.mean);
 }
 
-// Of the arm towards +x, in metres: before the end wall, and in the niche beside it.
+// Places in the arm towards +x, in metres: before the end wall, and in the niche beside it.
 static const struct {
     const char *name;
     float x, z;

@@ -32,7 +32,7 @@ static float *view_of(struct baked_fixture *run, struct frame_fixture *s, const 
     return rgb;
 }
 
-// Of the brightest channel, so that the shading does not count.
+// Colour over its brightest channel, so that the shading does not count.
 static vec3s hue_of(const float *rgb)
 {
     const vec3s c = vec3_of(rgb[0], rgb[1], rgb[2]);

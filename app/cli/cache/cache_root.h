@@ -1,4 +1,4 @@
-// Where references and bakes are cached: $AFTERGLOW_CACHE, $XDG_CACHE_HOME/afterglow or
+// The folder of cached references and bakes: $AFTERGLOW_CACHE, $XDG_CACHE_HOME/afterglow or
 // ~/.cache/afterglow.
 #pragma once
 

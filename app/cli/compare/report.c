@@ -148,7 +148,7 @@ static json_t *date_json(void)
     return json_string(text);
 }
 
-// What is needed to make the report again.
+// Adds the command that makes the report again.
 static void add_origin(json_t *report, const struct comparison *c)
 {
     char command[COMMAND_SIZE];

@@ -5,7 +5,7 @@
 #include "frame/frame.glsl"
 #include "image/tonemap.glsl"
 
-// Of scaled radiance; linear, 0…1.
+// Tone-mapped colour of scaled radiance; linear, 0…1.
 vec3 display_tone_mapped(vec3 radiance, float ev)
 {
     vec3 display = tonemap_pbr_neutral(radiance * (exposure_scale(ev) / frame.radiance_scale));

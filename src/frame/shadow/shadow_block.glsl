@@ -1,4 +1,4 @@
-// What the blocks of a sun's shadow map tell about the test of shadow_resolved.glsl, with the
+// Results of the test of shadow_resolved.glsl that the blocks of a sun's shadow map prove, with the
 // conditions of its code for all receivers in a block. Include after it.
 #ifndef AG_FRAME_SHADOW_BLOCK_GLSL
 #define AG_FRAME_SHADOW_BLOCK_GLSL

@@ -187,8 +187,8 @@ static vec3s change_of(const struct ball_volume *v, vec3s position, vec3s normal
     return change;
 }
 
-// What the second ball adds to the light at the first, π times coefficients over normals: a change
-// of irradiance V (n·n_o)₊.
+// Adds the change of the light at the first ball by the second one, π times coefficients over
+// normals: irradiance V (n·n_o)₊.
 static void add_bounce(const struct ball_volume *from, struct ball_volume *to)
 {
     const vec3s n_o = glms_vec3_normalize(glms_vec3_sub(from->centre, to->centre));
@@ -233,7 +233,7 @@ static bool is_ground(const struct pixels *p, size_t pixel)
     return p->id[2 * pixel] == 0 || p->id[2 * pixel] == 1;
 }
 
-// Of a ball's own pixels the other one's; here the balls are far enough from each other.
+// Own pixels of a ball have the change by the other one; here the balls are far enough apart.
 static vec3s sum_of_changes(const struct ball_volume volumes[BALLS], unsigned balls,
                             const struct pixels *p, size_t i)
 {
@@ -298,8 +298,8 @@ TEST_GPU(pixels_change_by_volumes_of_several_normals)
     check_change(gpu, ",normals=6,coefficients=9,bits=8", 3);
 }
 
-// What a second bounce changes against what it should: the least-squares factor, since the change
-// of a pixel is of the size of the image's rounding.
+// Compares the change by a second bounce with the expected one by a least-squares factor, since the
+// change of a pixel is of the size of the image's rounding.
 static void check_bounce(struct gpu *gpu, const char *options)
 {
     char gi[192];
@@ -336,7 +336,7 @@ TEST_GPU(objects_get_the_light_that_others_change)
     check_bounce(gpu, "direct=true,normals=3,coefficients=9,bits=8,grid=quadratic");
 }
 
-// Of two balls, which reflect light onto each other.
+// Two balls reflect light onto each other.
 TEST_GPU(further_bounces_converge)
 {
     enum { MOST = 3 };

@@ -59,7 +59,7 @@ static vec3s at(const float *image, int pixel)
     return vec3_of(image[3 * pixel], image[3 * pixel + 1], image[3 * pixel + 2]);
 }
 
-// Of the same scene: without dnrt, with it, and with intrusion=shadow.
+// Runs of the same scene: without dnrt, with it, and with intrusion=shadow.
 enum { BEFORE, OFF, SHADOW, RUNS };
 struct runs {
     float *irradiance[RUNS], *position;

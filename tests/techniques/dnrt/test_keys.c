@@ -162,7 +162,8 @@ TEST_GPU(a_key_has_the_light_of_the_mesh_in_its_pose_to_the_bit)
     free(other);
 }
 
-// Of the volumes that bakes of the keys' poses have at this moment; half floats round the images.
+// The mean of the volumes that bakes of the keys' poses have at this moment; half floats round the
+// images.
 TEST_GPU(between_two_keys_the_light_is_their_mean)
 {
     float *first = render(gpu, "", 0, 0.5f), *next = render(gpu, "", 1, 0.5f);

@@ -94,13 +94,13 @@ static vec3s at(const struct pixels *p, int i)
     return vec3_of(p->irradiance[3 * i], p->irradiance[3 * i + 1], p->irradiance[3 * i + 2]);
 }
 
-// Of the floor or the wall, the first two instances.
+// Whether a pixel is of the floor or the wall, the first two instances.
 static bool is_ground(const struct pixels *p, int i)
 {
     return p->id[2 * i] == 0 || p->id[2 * i] == 1;
 }
 
-// Of pixels that show the ground in both.
+// Changes of pixels that show the ground in both frames.
 struct step {
     double most, mean;
 };
@@ -147,9 +147,9 @@ static struct step largest_step(struct moving_scene *m, int frames)
     return largest;
 }
 
-// Where an effect began or ended with a step, that would be the largest for any length of a frame's
-// way. A smooth one has half the change over half the way, but for its curvature within a frame and
-// the rounding of two half floats.
+// An effect that began or ended with a step would have the same largest change for any length of a
+// frame's way. A smooth one has half the change over half the way, but for its curvature within a
+// frame and the rounding of two half floats.
 static void check_path(struct gpu *gpu, const char *gi)
 {
     struct moving_scene m;
@@ -228,8 +228,8 @@ static bool is_dark(const struct pixels *p, int i)
 
 static const double DIM = 1; // lux: half floats of less have fewer digits
 
-// Of the changes, each of which is rounded with its irradiance to half floats. Where there is less
-// light than they take away, it ends at 0.
+// The sum is that of the changes, each of which is rounded with its irradiance to half floats. If
+// they remove more light than there is, it ends at 0.
 TEST_GPU(two_objects_are_the_sum_of_each_alone)
 {
     static const char *const gi = SOURCE "+dnrt:size=16,rays=64";

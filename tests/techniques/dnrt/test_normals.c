@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-// What the sphere hides of an irradiance of π: ∫ (ω·n)₊ dω.
+// The part of an irradiance of π that the sphere occludes: ∫ (ω·n)₊ dω.
 static double hidden_exactly(vec3s point, vec3s n)
 {
     enum { DIRECTIONS = 4096 };
@@ -61,7 +61,8 @@ struct errors {
     double of[3]; // by 1, 3 and 6 volumes: mean absolute, over the mean irradiance
 };
 
-// Of receivers at a distance in all directions whose normals have this angle to the nearest axis.
+// Errors at receivers at a distance in all directions, with normals at this angle to the nearest
+// axis.
 static struct errors errors_at(const struct traced_shape *ball, float degrees, float distance)
 {
     enum { RECEIVERS = 400 };

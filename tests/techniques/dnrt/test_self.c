@@ -85,7 +85,7 @@ static float change_by(const struct crate *crate, uint32_t point, int colour)
     return sum;
 }
 
-// Of all points of the patch the three around, by their hat functions.
+// Interpolates between the three points of the patch around, by their hat functions.
 static float change_of(const struct crate *crate, uint32_t triangle, vec3s position, int colour)
 {
     const mat3s world = glms_quat_mat3(turn());

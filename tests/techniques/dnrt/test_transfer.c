@@ -22,7 +22,7 @@ struct ball {
     struct dnrt_sampling how;
 };
 
-// Of `add`'s mesh.
+// Opens an object with the mesh that `add` makes.
 static void object_open(struct ball *ball, float albedo, int (*add)(struct scene *, int material))
 {
     struct material material = material_default();

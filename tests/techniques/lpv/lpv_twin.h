@@ -8,7 +8,7 @@
 
 struct geometry_twin;
 
-// Of one of nine coefficients.
+// Weight of one of nine coefficients.
 double lpv_lobe_weight(const struct lpv_lobe_weights *weights, int coefficient);
 
 struct twin {

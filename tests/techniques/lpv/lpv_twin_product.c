@@ -70,7 +70,7 @@ static struct axis axis_of(double mean, double square)
     return a;
 }
 
-// Of light of unit flux that moves by `offset`: flux, ∫ ω, ∫ ω².
+// Moments of light of unit flux that moves by `offset`: flux, ∫ ω, ∫ ω².
 struct moved {
     double flux, mean, square;
 };

@@ -1,4 +1,4 @@
-// What is kept from earlier frames changes no bit of the light, whatever moves or changes.
+// Data kept from earlier frames change no bit of the light, whatever moves or changes.
 #include "frame/frame_fixture.h"
 #include "techniques/lpv/lpv_fixture.h"
 
@@ -51,7 +51,7 @@ static void move(struct run *run, int instance, float x)
     *m = glms_translate(*m, vec3_of(x, 0, 0));
 }
 
-// What changes in a frame, and whether the light of the frame before stays.
+// Changes in a frame, and whether the light of the frame before stays.
 struct event {
     float sun, sky;           // intensity
     float slab, door, camera; // moved along x, m

@@ -162,7 +162,7 @@ TEST(tubes_have_no_seam_around_them_nor_where_they_meet)
     }
 }
 
-// What the border is for: without it, each side repeats its own texels.
+// The reason for the border: without it, each side repeats its own texels.
 TEST(without_the_border_the_sides_of_a_seam_differ)
 {
     struct light_map m = make(mrt_random_grid(4, 3, 0.8f, true, 1));

@@ -141,7 +141,7 @@ TEST(objects_are_clutter_and_walls_are_not)
     room_finish(&room);
 }
 
-// Where walls and clutter have the same radiosity, clutter changes nothing.
+// If walls and clutter have the same radiosity, clutter changes nothing.
 TEST(a_room_of_one_radiosity_stays_so)
 {
     struct room room;
@@ -401,8 +401,8 @@ TEST(blocks_open_where_clutter_alone_is_between_them)
     room_finish(&pair);
 }
 
-// Of rays through an opening each ends on a wall or on clutter: where both have radiosity 1, all of
-// them count.
+// Each ray through an opening ends on a wall or on clutter: if both have radiosity 1, all of them
+// count.
 TEST(light_through_an_opening_is_of_walls_or_of_clutter)
 {
     enum { ENTRY_RAYS = 256 };

@@ -71,8 +71,7 @@ static float *point_lit(struct gpu *gpu, vec3s position, const char *options, in
     return room_end(&room, frames);
 }
 
-// Where all walls emit the radiance L and reflect ρ of what they receive, irradiance is
-// π L / (1 − ρ).
+// If all walls emit the radiance L and have the reflectance ρ, irradiance is π L / (1 − ρ).
 TEST_GPU(mrt_furnace_has_the_radiance_of_the_series)
 {
     struct room room;

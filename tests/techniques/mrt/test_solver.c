@@ -202,7 +202,7 @@ static double best_ms(struct level_of_maze *m, int runs)
     return best;
 }
 
-// Of the least-squares line.
+// Coefficient of determination of the least-squares line.
 static double r_squared(const double *x, const double *y, int n)
 {
     double sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
