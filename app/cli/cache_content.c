@@ -90,7 +90,7 @@ static void describe_bake(const char *path, struct cache_content *out)
 
 // ---- defaults
 
-// Of "key=value": whether it is the technique's default.
+// Whether "key=value" is the technique's default.
 static bool is_default(int technique, const char *pair, int length)
 {
     struct ag_option_info option;

@@ -1,4 +1,4 @@
-// What a cached file is of, from its own header.
+// Scene, technique and options of a cached file, from its own header.
 #pragma once
 
 #include "cli/cache/cache.h"

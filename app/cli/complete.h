@@ -1,4 +1,4 @@
-// What a shell offers at a tab.
+// Completions that a shell offers at a tab.
 #pragma once
 
 // Prints the words that may stand in place of the last of `words`, one a line, each with a tab and

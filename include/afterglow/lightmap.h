@@ -30,8 +30,8 @@ AG_API void ag_lightmap_desc_default(struct ag_lightmap_desc *desc);
 AG_API enum ag_result ag_lightmap_technique(struct ag_context *context, const char *gi,
                                             const char **name);
 
-/// The light map of a complete bake with lightmap_samples; bake and scene may be destroyed before the light map.
-/// desc NULL: the defaults.
+/// The light map of a complete bake with lightmap_samples; bake and scene may be destroyed before
+/// the light map. desc NULL: the defaults.
 AG_API enum ag_result ag_lightmap_from_bake(const struct ag_bake *bake,
                                             const struct ag_lightmap_desc *desc,
                                             struct ag_lightmap **out);

@@ -32,7 +32,7 @@
 #define AG_END
 #endif
 
-/// Of functions that the next minor version is without.
+/// Marks functions that the next minor version is without.
 #if defined(AG_BUILD)
 #define AG_DEPRECATED
 #else
@@ -50,7 +50,7 @@
 #define AG_VERSION_MAJOR 0
 #define AG_VERSION_MINOR 1
 #define AG_VERSION_PATCH 0
-/// Of the same form as ag_version().
+/// As a number, in the form of ag_version().
 #define AG_VERSION         (AG_VERSION_MAJOR * 10000 + AG_VERSION_MINOR * 100 + AG_VERSION_PATCH)
 #define AG_STRING_OF(text) #text
 #define AG_STRING(text)    AG_STRING_OF(text)

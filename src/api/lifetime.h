@@ -20,7 +20,7 @@ static inline bool lifetime_release(struct lifetime *life)
     return --life->users == 0 && life->destroyed;
 }
 
-// Of the public function that destroys the object; a second call has no effect. True: as above.
+// For the public function that destroys the object; a second call has no effect. True: as above.
 static inline bool lifetime_destroy(struct lifetime *life)
 {
     const bool first = !life->destroyed;

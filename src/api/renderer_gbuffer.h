@@ -19,7 +19,7 @@ bool renderer_gbuffer_open(const struct ag_view *view, const struct ag_gbuffer *
 // Whether the view can read the depth of these matrices.
 enum ag_result renderer_depth_check(const char *function, const struct ag_view *view,
                                     const struct api_view *matrices);
-// Of a description; NULL: none.
+// For the layout of a description; NULL: none.
 enum ag_result renderer_layout_check(const char *function, struct ag_context *context,
                                      bool host_gbuffer, const struct ag_gbuffer_layout *layout);
 void renderer_gbuffer_finish(const struct ag_view *view, struct frame_gbuffer *gbuffer);

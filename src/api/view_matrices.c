@@ -110,7 +110,7 @@ static bool find_planes(const struct projection *p, double along_z, struct api_v
     return isfinite(near_m) && near_m < far_m;
 }
 
-// The eye of an orthographic view may be anywhere on its axis. In front of the near plane, all
+// The position of an orthographic view may be anywhere on its axis. In front of the near plane, all
 // distances are positive.
 static void move_before_near_plane(struct api_view *out)
 {

@@ -60,7 +60,7 @@ struct spirv {
     struct host *host;
 };
 
-// Of words whose header and instruction lengths have been checked. NULL, or why it failed; "": out
+// For words whose header and instruction lengths have been checked. NULL, or why it failed; "": out
 // of memory, which the host was told. Close in any case.
 const char *spirv_open(struct spirv *module, struct host *host, const uint32_t *words,
                        size_t count);

@@ -10,8 +10,7 @@ struct matrix_options {
     bool left_handed; // view space looks along +z, x right, y up
     bool opencv;      // view space looks along +z, x right, y down
     float far_m;
-    // Of a perspective: sides of the image for a height of 2 tan(fov/2), relative to its half;
-    // default −1, 1, −1, 1.
+    // Sides of a perspective image, relative to tan(fov/2); default −1, 1, −1, 1.
     float left, right, bottom, top;
     float orthographic_half_m; // half the height; 0: perspective
 };

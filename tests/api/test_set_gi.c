@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// Of techniques without a row the defaults: small volumes, and options under which more live
+// Techniques without a row have the defaults: small volumes, and options under which more live
 // options have an effect.
 static const struct {
     const char *technique, *options;

@@ -213,7 +213,7 @@ TEST(motion_of_an_orthographic_view)
     const int at = FIXTURE_WIDTH * (FIXTURE_HEIGHT / 2) + FIXTURE_WIDTH / 2;
     CHECK_NEAR(motion->pixels[3 * at], -1.0 / FIXTURE_WIDTH, 1e-5);
     CHECK_NEAR(motion->pixels[3 * at + 1], 0.0, 1e-5);
-    // The eye that the library takes lies before the near plane: only the change is known.
+    // The library moves the position to the near plane: the sign of the change is known.
     CHECK(motion->pixels[3 * at + 2] > 0.0f);
     CHECK(depth->pixels[at] > 0.0f);
     ag_image_destroy(s.context, motion);

@@ -53,7 +53,7 @@ static void set_variable(const char *name, const char *value)
         unsetenv(name);
 }
 
-// What a terminal of that width gets while half of the work is done, and after its end.
+// Output to a terminal of that width while half of the work is done, and after its end.
 static const char *shown(const char *term, const char *columns, int width)
 {
     static char text[4096];

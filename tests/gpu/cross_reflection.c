@@ -1,4 +1,4 @@
-// What SPIRV-Cross finds: the twin of gpu/reflect.c.
+// The reflection of SPIRV-Cross: the twin of gpu/reflect.c.
 #include "gpu/cross_reflection.h"
 
 #include <spirv_cross_c.h>

@@ -130,7 +130,7 @@ uint sectors_up_to(float share, float dither)
     return count >= 32 ? 0xffffffffu : (1u << count) - 1u;
 }
 
-// What samples of a side occlude.
+// Directions that samples of a side occlude.
 struct gtao_occluded {
     float highest; // horizon: its cosine,
     float open;    // and F up to it
