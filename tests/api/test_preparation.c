@@ -77,7 +77,7 @@ TEST(a_prepared_switch_compiles_nothing)
     fixture_close(&s);
 }
 
-// The picture is that without a preparation.
+// The image is that without a preparation.
 TEST(a_prepared_switch_gives_the_same_picture)
 {
     static const char gi[] = "vct:resolution=32+vo";
