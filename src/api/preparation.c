@@ -1,7 +1,6 @@
 // Preparations: pipelines of another GI spec, compiled beside frames.
 #include "api/renderer_state.h"
 
-#include "frame/frame_compile.h"
 #include "gpu/gpu.h"
 #include "techniques/gi.h"
 #include "techniques/gi_spec.h"

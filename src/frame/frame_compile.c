@@ -1,5 +1,4 @@
-#include "frame/frame_compile.h"
-
+// Pipelines of a frame for a compiler: see gpu/compiler.c.
 #include "frame/frame_state.h"
 
 // A frame that has not been prepared compiles its own pass of direct light.

@@ -2,8 +2,6 @@
 // pipelines the real device keeps until an equal one is created.
 #include "gpu/vk.h"
 
-#include <string.h>
-
 struct gpu *gpu_compiler_create(const struct gpu *gpu, struct host *host)
 {
     struct gpu *c = host_alloc(host, 1, sizeof *c);
@@ -36,11 +34,8 @@ uint32_t gpu_compiler_count(const struct gpu *compiler)
 static bool keep(struct gpu *gpu, struct pipeline *p)
 {
     struct compiled_pipelines *list = &gpu->compiled;
-    if (list->count == COMPILED_PIPELINES) {
-        pipeline_free(gpu, list->at[0]); // no recording has used it
-        list->count--;
-        memmove(list->at, list->at + 1, (size_t)list->count * sizeof *list->at);
-    }
+    if (list->count == COMPILED_PIPELINES) // no recording has used it
+        pipeline_free(gpu, compiled_remove(list, 0));
     struct pipeline **bigger =
         host_realloc(gpu->host, list->at, (size_t)list->count + 1, sizeof *list->at);
     if (!bigger) return false;
@@ -69,22 +64,9 @@ void gpu_compiler_destroy(struct gpu *c, struct gpu *gpu)
     host_free(gpu->host, c);
 }
 
-struct pipeline *compiled_take(struct gpu *gpu, const struct pipeline *like)
-{
-    struct compiled_pipelines *list = &gpu->compiled;
-    for (int i = list->count; i-- > 0;) {
-        struct pipeline *p = list->at[i];
-        if (!pipeline_is_equal(p, like)) continue;
-        list->count--;
-        memmove(list->at + i, list->at + i + 1, (size_t)(list->count - i) * sizeof *list->at);
-        return p;
-    }
-    return NULL;
-}
-
 void compiled_finish(struct gpu *gpu)
 {
-    for (int i = 0; i < gpu->compiled.count; i++) pipeline_free(gpu, gpu->compiled.at[i]);
+    while (gpu->compiled.count > 0) pipeline_free(gpu, compiled_remove(&gpu->compiled, 0));
     host_free(gpu->host, gpu->compiled.at);
-    gpu->compiled = (struct compiled_pipelines){ 0 };
+    gpu->compiled.at = NULL;
 }

@@ -270,7 +270,7 @@ static bool finish(struct gpu *gpu, struct pipeline *p, gpu_pipeline *out)
     if (!gpu->compiler) deferred_delete_collect(gpu);
     struct pipeline *equal = pipeline_find_equal(&gpu->pipelines, p);
     if (!equal) equal = pipeline_pool_take(&gpu->pipeline_pool, p);
-    if (!equal) equal = compiled_take(gpu, p);
+    if (!equal) equal = compiled_take(&gpu->compiled, p);
     if (equal) {
         pipeline_free(gpu, p);
         p = equal;

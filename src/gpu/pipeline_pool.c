@@ -74,3 +74,19 @@ struct pipeline *pipeline_pool_remove_oldest(struct pipeline_pool *pool)
 {
     return pool->count ? remove_at(pool, 0) : NULL;
 }
+
+struct pipeline *compiled_remove(struct compiled_pipelines *list, int index)
+{
+    struct pipeline *p = list->at[index];
+    list->count--;
+    memmove(list->at + index, list->at + index + 1,
+            (size_t)(list->count - index) * sizeof *list->at);
+    return p;
+}
+
+struct pipeline *compiled_take(struct compiled_pipelines *list, const struct pipeline *like)
+{
+    for (int i = list->count; i-- > 0;)
+        if (pipeline_is_equal(list->at[i], like)) return compiled_remove(list, i);
+    return NULL;
+}

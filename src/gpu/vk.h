@@ -291,15 +291,16 @@ struct pipeline *pipeline_find_equal(const struct table *pipelines, const struct
 struct pipeline *pipeline_pool_give(struct pipeline_pool *pool, struct pipeline *pipeline);
 struct pipeline *pipeline_pool_remove_oldest(struct pipeline_pool *pool); // NULL: empty
 
-// compiler.c. Pipelines of other threads, which nothing uses yet.
+// Pipelines of other threads, which nothing uses yet.
 enum { COMPILED_PIPELINES = 512 };
 struct compiled_pipelines {
     struct pipeline **at; // in the order of their compilation
     int count;
 };
-// As pipeline_pool_take.
-struct pipeline *compiled_take(struct gpu *gpu, const struct pipeline *like);
-void compiled_finish(struct gpu *gpu);
+// pipeline_pool.c. The first as pipeline_pool_take.
+struct pipeline *compiled_take(struct compiled_pipelines *list, const struct pipeline *like);
+struct pipeline *compiled_remove(struct compiled_pipelines *list, int index);
+void compiled_finish(struct gpu *gpu); // compiler.c
 
 // ---- Commands -----------------------------------------------------------------------------------
 

@@ -464,3 +464,31 @@ TEST(thousands_of_cameras_are_found_by_name)
     assert_int_equal(ag_scene_camera(scene, "c", 0, 0, &camera), AG_ERROR_ARGUMENT);
     end();
 }
+
+TEST(a_scale_multiplies_lengths_and_not_light)
+{
+    struct ag_scene_load_desc desc = { .scale = 0.01f };
+    struct ag_scene *large = NULL, *small = NULL;
+    struct ag_scene_info whole, scaled;
+    struct ag_light_info light, scaled_light;
+    begin();
+    assert_int_equal(ag_scene_load_with(context, "@cornell:light=point", NULL, &large), AG_OK);
+    assert_int_equal(ag_scene_load_with(context, "@cornell:light=point", &desc, &small), AG_OK);
+    assert_int_equal(ag_scene_get_info(large, 0, 0, &whole), AG_OK);
+    assert_int_equal(ag_scene_get_info(small, 0, 0, &scaled), AG_OK);
+    assert_int_equal(ag_scene_get_light(large, 0, 0, 0, &light), AG_OK);
+    assert_int_equal(ag_scene_get_light(small, 0, 0, 0, &scaled_light), AG_OK);
+    for (int i = 0; i < 3; i++) {
+        CHECK_NEAR(scaled.bounds_max[i], 0.01f * whole.bounds_max[i], 1e-6);
+        CHECK_NEAR(scaled_light.light.position[i], 0.01f * light.light.position[i], 1e-6);
+        CHECK(scaled_light.light.intensity[i] == light.light.intensity[i]);
+    }
+    ag_scene_destroy(large);
+    ag_scene_destroy(small);
+    desc.scale = -1;
+    assert_int_equal(ag_scene_load_with(context, "@cornell", &desc, &small), AG_ERROR_ARGUMENT);
+    desc.scale = 1;
+    desc.reserved[7] = 1;
+    assert_int_equal(ag_scene_load_with(context, "@cornell", &desc, &small), AG_ERROR_ARGUMENT);
+    end();
+}

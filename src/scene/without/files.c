@@ -11,8 +11,9 @@ static struct scene *refuse(struct host *host, const char *name)
     return NULL;
 }
 
-struct scene *import_file(struct host *host, const char *path)
+struct scene *import_file(struct host *host, const char *path, float scale)
 {
+    (void)scale;
     return refuse(host, path);
 }
 
