@@ -7,6 +7,7 @@
 #include "api/objects.h"
 #include "bake/scene_key.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -259,7 +260,55 @@ TEST(without_a_folder_no_other_file_is_read)
     ag_context_destroy(context);
 }
 
+TEST(a_scale_multiplies_what_is_loaded)
+{
+    struct ag_context *context = listening_context();
+    struct finder finder = { 0 };
+    struct ag_scene_memory_desc desc = gltf_with(&finder);
+    const struct ag_scene_load_desc load = { .scale = 2 };
+    struct ag_scene_info plain, scaled;
+    struct ag_scene *scene = NULL;
+    write_files(context);
+    for (int i = 0; i < 2; i++) { // of a file, then of memory
+        assert_int_equal(ag_scene_load(context, test_path("scene.gltf"), &scene), AG_OK);
+        assert_int_equal(ag_scene_get_info(scene, -1, 0, &plain), AG_OK);
+        ag_scene_destroy(scene);
+        desc.scale = load.scale;
+        assert_int_equal(i ? ag_scene_load_memory(context, &desc, &scene)
+                           : ag_scene_load_with(context, test_path("scene.gltf"), &load, &scene),
+                         AG_OK);
+        assert_int_equal(ag_scene_get_info(scene, -1, 0, &scaled), AG_OK);
+        for (int k = 0; k < 3; k++) {
+            CHECK_NEAR(scaled.bounds_min[k], 2 * plain.bounds_min[k], 0);
+            CHECK_NEAR(scaled.bounds_max[k], 2 * plain.bounds_max[k], 0);
+        }
+        CHECK(plain.bounds_max[0] > plain.bounds_min[0]);
+        ag_scene_destroy(scene);
+    }
+    ag_context_destroy(context);
+}
+
 // ---- What is refused
+
+TEST(wrong_scales_are_refused)
+{
+    static const float wrong[] = { -1, 1e-7f, 1e7f, (float)NAN, (float)INFINITY };
+    struct ag_context *context = open_context();
+    struct ag_scene *scene = (struct ag_scene *)1;
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        struct ag_scene_load_desc load = { .scale = wrong[i] };
+        struct ag_scene_memory_desc desc = gltf_with(NULL);
+        desc.scale = wrong[i];
+        assert_int_equal(ag_scene_load_with(context, "@cornell", &load, &scene), AG_ERROR_ARGUMENT);
+        assert_null(scene);
+        CHECK(strstr(ag_context_last_error(context), "is not within 1e-06 to 1e+06"));
+        assert_int_equal(ag_scene_load_memory(context, &desc, &scene), AG_ERROR_ARGUMENT);
+    }
+    const struct ag_scene_load_desc newer = { .reserved = { 1 } };
+    assert_int_equal(ag_scene_load_with(context, "@cornell", &newer, &scene), AG_ERROR_ARGUMENT);
+    CHECK(strstr(ag_context_last_error(context), "newer library"));
+    ag_context_destroy(context);
+}
 
 TEST(wrong_bytes_in_memory_are_refused)
 {

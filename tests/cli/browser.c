@@ -63,7 +63,8 @@ static void become_chromium(const char *path, const char *profile, int commands,
     if (dup2(commands, COMMAND_FD) < 0 || dup2(answers, ANSWER_FD) < 0) _exit(126);
     execl(path, path, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
           "--no-first-run", "--disable-background-networking", "--disable-dev-shm-usage",
-          "--remote-debugging-pipe", profile_option, "about:blank", (char *)NULL);
+          "--force-prefers-reduced-motion", "--remote-debugging-pipe", profile_option,
+          "about:blank", (char *)NULL);
     _exit(127);
 }
 

@@ -50,6 +50,29 @@ TEST(scene_with_light_map_renders_as_before)
     json_decref(errors);
 }
 
+static double width_of(const char *scene)
+{
+    json_t *info = run_json(run_expect(0, "info --json", scene, NULL));
+    const json_t *bounds = json_object_get(info, "bounds");
+    const double width = json_number_value(json_array_get(json_object_get(bounds, "max"), 0)) -
+                         json_number_value(json_array_get(json_object_get(bounds, "min"), 0));
+    json_decref(info);
+    return width;
+}
+
+// The copy of a file too, which is otherwise that of its own bytes.
+TEST(the_copy_of_a_scaled_scene_is_in_metres)
+{
+    use_cache("lightmap-scaled");
+    const char *maps = path_of("maps-s"), *again = path_of("maps-t");
+    run_expect(0, BAKE " --scene-scale 0.5 --lightmap", maps, NULL);
+    const double width = width_of(path_of("maps-s/scene.glb"));
+    CHECK_NEAR(width, 0.5 * width_of("@cornell"), 1e-5);
+    run_expect(0, "bake --gi radiosity:texels=2048 --spp 1 --quiet --scene-scale 4 --lightmap",
+               again, path_of("maps-s/scene.glb"), NULL);
+    CHECK_NEAR(width_of(path_of("maps-t/scene.glb")), 4 * width, 1e-5);
+}
+
 TEST(light_maps_that_cannot_be_are_refused_in_one_line)
 {
     use_cache("lightmap-refused");

@@ -61,7 +61,8 @@ function show(side, name, layer = shows.layer) {
 function showMethod(i) {
   shows.right = 'reference';
   show('left', `${i} picture`);
-  byId('stage').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
+  const still = matchMedia('(prefers-reduced-motion: reduce)').matches;
+  byId('stage').scrollIntoView({ block: 'nearest', behavior: still ? 'auto' : 'smooth' });
 }
 
 function flip() {
