@@ -24,7 +24,8 @@ AG_API enum ag_result ag_preparation_create(struct ag_renderer *renderer, const 
                                             struct ag_preparation **out);
 /// Compiles. Thread: any, beside frames; context: of that thread, with the `reallocate` and `user`
 /// of the renderer's, or NULL on the renderer's thread. `progress` (may be NULL) is called with the
-/// part done, 0…1; false cancels (AG_ERROR_CANCELLED), and what is done stays.
+/// part done, 0…1; false cancels (AG_ERROR_CANCELLED), and what is done stays. Vulkan calls on this
+/// thread use ag_device_adopt.vk_allocation_callbacks, too.
 AG_API enum ag_result ag_preparation_run(struct ag_preparation *preparation,
                                          struct ag_context *context,
                                          bool (*progress)(void *user, double done), void *user);
