@@ -122,7 +122,24 @@ static float enter_box(const struct box *box, const float eye[3], const float ra
     return enter > 0 && enter < leave ? enter : INFINITY;
 }
 
-static uint8_t to_srgb(float linear)
+struct box_hit boxes_hit(const struct box *boxes, const float eye[3], const float ray[3])
+{
+    struct box_hit hit;
+    memset(&hit, 0, sizeof hit);
+    hit.distance = INFINITY;
+    for (int b = 0; b < BOXES; b++) {
+        int axis = 0;
+        const float distance = enter_box(&boxes[b], eye, ray, &axis);
+        if (distance >= hit.distance) continue;
+        hit.distance = distance;
+        hit.box = b;
+        hit.axis = axis;
+        hit.negative = ray[axis] > 0;
+    }
+    return hit;
+}
+
+uint8_t srgb_byte(float linear)
 {
     const float v =
         linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
@@ -137,29 +154,24 @@ static void encode_normal(int axis, bool negative, uint16_t out[2])
     out[1] = axis == 1 ? one : axis == 2 && negative ? 0x3c00 : 0;
 }
 
-void boxes_draw(const struct box *boxes, const struct ag_camera *camera, int width, int height,
-                void *mapped)
+void boxes_draw(const struct box *boxes, const struct ag_camera *camera,
+                const struct host_gbuffer *out)
 {
-    const size_t pixels = (size_t)width * (size_t)height;
-    float *depth = (float *)mapped;
-    uint16_t *normal = (uint16_t *)(depth + pixels);
-    uint8_t *albedo = (uint8_t *)(normal + 2 * pixels);
-    const struct view view = view_of(camera, (float)width / (float)height);
-    memset(mapped, 0, SURFACE_IMAGES * 4 * pixels); // no surface
+    const size_t width = (size_t)out->width, pixels = width * (size_t)out->height;
+    float *depth = (float *)host_gbuffer_texels(out, SURFACE_DEPTH);
+    uint16_t *normal = (uint16_t *)host_gbuffer_texels(out, SURFACE_NORMAL);
+    uint8_t *albedo = (uint8_t *)host_gbuffer_texels(out, SURFACE_ALBEDO);
+    const struct view view = view_of(camera, (float)out->width / (float)out->height);
     for (size_t p = 0; p < pixels; p++) {
-        const float x = 2 * ((float)(p % (size_t)width) + 0.5f) / (float)width - 1;
-        const float y = 1 - 2 * ((float)(p / (size_t)width) + 0.5f) / (float)height;
-        float ray[3], nearest = INFINITY;
+        const float x = 2 * ((float)(p % width) + 0.5f) / (float)out->width - 1;
+        const float y = 1 - 2 * ((float)(p / width) + 0.5f) / (float)out->height;
+        float ray[3];
         for (int i = 0; i < 3; i++) ray[i] = view.forward[i] + x * view.right[i] + y * view.up[i];
-        for (int b = 0; b < BOXES; b++) {
-            int axis = 0;
-            const float distance = enter_box(&boxes[b], view.eye, ray, &axis); // along the view
-            if (distance >= nearest) continue;
-            nearest = distance;
-            depth[p] = camera->near_m / distance;
-            encode_normal(axis, ray[axis] > 0, normal + 2 * p);
-            for (int c = 0; c < 3; c++) albedo[4 * p + (size_t)c] = to_srgb(boxes[b].color[c]);
-            albedo[4 * p + 3] = 255;
-        }
+        const struct box_hit hit = boxes_hit(boxes, view.eye, ray);
+        const bool surface = hit.distance < INFINITY; // along the view axis
+        depth[p] = surface ? camera->near_m / hit.distance : 0;
+        encode_normal(hit.axis, hit.negative, normal + 2 * p);
+        for (size_t c = 0; c < 3; c++) albedo[4 * p + c] = srgb_byte(boxes[hit.box].color[c]);
+        albedo[4 * p + 3] = surface ? 255 : 0;
     }
 }

@@ -2,7 +2,7 @@
 #ifndef HOST_SURFACES_H
 #define HOST_SURFACES_H
 
-#include <afterglow/scene.h>
+#include "host_gbuffer.h"
 
 enum { BOXES = 7, BLOCK = BOXES - 1 }; // the last one moves
 
@@ -19,11 +19,18 @@ enum ag_result boxes_add(struct box *boxes, struct ag_scene *scene);
 // Tells the scene where a box is.
 enum ag_result box_move(const struct box *box, struct ag_scene *scene);
 
-// A G-buffer as struct ag_gbuffer describes it: 4 bytes a pixel in each image.
-enum surface_image { SURFACE_DEPTH, SURFACE_NORMAL, SURFACE_ALBEDO, SURFACE_IMAGES };
-// Stands for an engine's rasterisation: a ray for each pixel, on the CPU. `mapped`: the images one
-// after the other, rows from the top.
-void boxes_draw(const struct box *boxes, const struct ag_camera *camera, int width, int height,
-                void *mapped);
+// The nearest face that a ray from `eye` meets.
+struct box_hit {
+    float distance; // in lengths of the ray; INFINITY: none
+    int box, axis;
+    bool negative; // the normal points along the axis backwards
+};
+struct box_hit boxes_hit(const struct box *boxes, const float eye[3], const float ray[3]);
+
+// Stands for an engine's rasterisation, a ray for each pixel on the CPU: images as struct
+// ag_gbuffer describes them.
+void boxes_draw(const struct box *boxes, const struct ag_camera *camera,
+                const struct host_gbuffer *out);
+uint8_t srgb_byte(float linear);
 
 #endif
