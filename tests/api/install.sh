@@ -27,6 +27,7 @@ unset LD_LIBRARY_PATH AFTERGLOW_IMPORTER
         "$cc" -Wall -Werror "$doc/examples/$name.c" $flags "$rpath" -o "$work/$name"
     done
     "$cc" -Wall -Werror "$doc"/examples/host*.c $flags -lvulkan -lm "$rpath" -o "$work/host"
+    "$cc" -Wall -Werror "$doc"/examples/engine*.c "$doc"/examples/host_*.c $flags -lvulkan -lm -pthread "$rpath" -o "$work/engine"
     for name in minimal host; do
         "$cxx" -x c++ -std=c++20 -Wall -Werror "$doc/examples/$name"*.c -x none $flags -lvulkan "$rpath" -o "$work/$name-cxx"
     done
