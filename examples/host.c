@@ -193,12 +193,6 @@ static void render_all(struct host *host)
            (double)finished.exposure_ev);
 }
 
-static float linear_from_srgb(unsigned char byte)
-{
-    const float v = (float)byte / 255.0f;
-    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
-}
-
 // The image of the last frame; images of the library are linear.
 static void write_picture(const struct host *host, const char *path)
 {

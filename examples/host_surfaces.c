@@ -139,6 +139,12 @@ struct box_hit boxes_hit(const struct box *boxes, const float eye[3], const floa
     return hit;
 }
 
+float linear_from_srgb(uint8_t byte)
+{
+    const float v = (float)byte / 255.0f;
+    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
+}
+
 uint8_t srgb_byte(float linear)
 {
     const float v =

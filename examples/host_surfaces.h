@@ -32,5 +32,6 @@ struct box_hit boxes_hit(const struct box *boxes, const float eye[3], const floa
 void boxes_draw(const struct box *boxes, const struct ag_camera *camera,
                 const struct host_gbuffer *out);
 uint8_t srgb_byte(float linear);
+float linear_from_srgb(uint8_t byte);
 
 #endif

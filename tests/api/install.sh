@@ -23,11 +23,14 @@ unset LD_LIBRARY_PATH AFTERGLOW_IMPORTER
 # ---- pkg-config: C and C++, shared and static, the same picture
 # shellcheck disable=SC2086 # lists of words
 {
-    for name in minimal textured balls measure side_by_side views; do
+    for name in minimal embed_1 textured balls measure side_by_side views; do
         "$cc" -Wall -Werror "$doc/examples/$name.c" $flags "$rpath" -o "$work/$name"
     done
     "$cc" -Wall -Werror "$doc"/examples/host*.c $flags -lvulkan -lm "$rpath" -o "$work/host"
     "$cc" -Wall -Werror "$doc"/examples/engine*.c "$doc"/examples/host_*.c $flags -lvulkan -lm -pthread "$rpath" -o "$work/engine"
+    for name in embed_2 embed_3; do
+        "$cc" -Wall -Werror "$doc/examples/$name.c" "$doc"/examples/host_*.c $flags -lvulkan -lm "$rpath" -o "$work/$name"
+    done
     for name in minimal host; do
         "$cxx" -x c++ -std=c++20 -Wall -Werror "$doc/examples/$name"*.c -x none $flags -lvulkan "$rpath" -o "$work/$name-cxx"
     done

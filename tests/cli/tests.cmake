@@ -49,12 +49,20 @@ add_test(NAME examples.balls COMMAND balls @cornell:light=point lpv:probes=true,
 add_test(NAME examples.views COMMAND views @cornell:light=point lpv:dim=16 64 48 ${images}/views.png)
 add_test(NAME examples.host COMMAND host ${images}/host.png validate)
 add_test(NAME examples.engine COMMAND engine ${images}/engine_reversed.png ${images}/engine_forward.png validate)
-set_tests_properties(examples.minimal examples.textured examples.measure examples.side_by_side examples.balls examples.views examples.host examples.engine PROPERTIES TIMEOUT 300 LABELS examples)
+add_test(NAME examples.embed_1 COMMAND embed_1)
+foreach(step 2 3)
+  add_test(NAME examples.embed_${step} COMMAND embed_${step} ${images}/embed_${step}.png validate)
+endforeach()
+add_test(NAME examples.embed_page
+  COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/quoted.sh ${CMAKE_SOURCE_DIR}/docs/embed.md ${CMAKE_SOURCE_DIR}/examples)
+set_tests_properties(examples.minimal examples.textured examples.measure examples.side_by_side examples.balls examples.views examples.host examples.engine
+  examples.embed_1 examples.embed_2 examples.embed_3 examples.embed_page PROPERTIES TIMEOUT 300 LABELS examples)
 add_test(NAME bench.frame
   COMMAND bench_frame --frames 2 --size 48x27 --gi none --gi lpv --csv ${images}/frame.csv @cornell:light=point)
 set_tests_properties(bench.frame PROPERTIES TIMEOUT 300 LABELS examples PASS_REGULAR_EXPRESSION "lpv.propagate +- +- +[0-9.]+ ")
 
 # Drivers leave memory behind when they are unloaded, without a name by which to suppress it. What of ours lives on a device
 # is held to account by the tests of gpu, frame and api.
-set_tests_properties(cli.bake cli.environment cli.info cli.interrupt cli.render cli.compare examples.minimal examples.textured examples.measure examples.side_by_side examples.balls examples.views examples.host examples.engine bench.frame
+set_tests_properties(cli.bake cli.environment cli.info cli.interrupt cli.render cli.compare examples.minimal examples.textured examples.measure examples.side_by_side examples.balls examples.views examples.host examples.engine
+  examples.embed_1 examples.embed_2 examples.embed_3 bench.frame
   PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
