@@ -1,5 +1,5 @@
 // Ray casts against a pose's triangles, for the default camera and sun. Embree is not used here:
-// the result would depend on the processor's vector instructions (docs/architecture.md). Rendering
+// the result would depend on the processor's vector instructions (docs/decisions.md). Rendering
 // uses src/trace. Materials are ignored; all triangles are two-sided.
 #pragma once
 
