@@ -39,7 +39,7 @@ static const struct technique_debug_view debug_views[] = {
     { NULL, NULL, NULL },
 };
 
-// Chosen by error and time: docs/techniques/lpv.md.
+// Chosen by error and time: docs/notes/lpv.md.
 static const struct technique_preset presets[] = {
     { "low", "dim=16,steps=5,bounces=2" },
     { "medium", "" },

@@ -3,7 +3,7 @@
 // Differs from Martin 2012, eq. 3.3 in the weight: Ω/4π and a lobe of unit peak keep a quarter of
 // the flux per step. Here the flux through a face is Φ = Ω I(ω) and the re-projected lobe has the
 // flux Φ (clamped cosine: Φ/π (cosθ)₊); since the solid angles sum to 4π, a step conserves flux.
-// The width of the lobe is a parameter (docs/techniques/lpv.md).
+// The width of the lobe is a parameter (docs/notes/lpv.md).
 #include "techniques/lpv/lpv_math.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 // The geometry volume, the occluders of the light (Martin 2012, sec. 3.2.2; Hong 2015,
-// sec. 2.5.2.4). docs/techniques/lpv.md compares its sources.
+// sec. 2.5.2.4). docs/notes/lpv.md compares its sources.
 #pragma once
 
 #include <stdbool.h>
