@@ -18,7 +18,7 @@ static const struct option_row option_rows[] = {
 
 static const struct option_alias aliases[] = { { "half", "half_resolution" }, { NULL, NULL } };
 
-// Chosen by measured error and time, see docs/techniques/vo.md.
+// Chosen by measured error and time, see docs/notes/vo.md.
 static const struct technique_preset presets[] = { { "low", "half_resolution=true" },
                                                    { "medium", "" },
                                                    { "high", "samples=9,temporal=true" },
