@@ -23,26 +23,29 @@ layout(set = 0, binding = 6) uniform sampler2D dielectric;
 layout(set = 0, binding = 7) uniform sampler2D emissive;
 layout(set = 0, binding = 8) uniform sampler2D motion;
 
+// Without branches: software drivers compile a shader again for each block of uniforms that alone
+// decides one.
 vec2 converted_normal(vec4 value)
 {
     vec3 n = value.xyz * from.normal_scale + from.normal_bias;
-    bool octahedral = from.normal_octahedral != 0u;
-    if (octahedral && from.normal_in_view_space == 0u) return n.xy;
-    if (octahedral) n = octahedral_decode(n.xy);
-    if (from.normal_in_view_space != 0u) n = n * mat3(frame.view_from_world);
-    float length2 = dot(n, n);
-    return octahedral_encode(length2 > 1e-12 ? n * inversesqrt(length2) : vec3(0.0, 1.0, 0.0));
+    bool octahedral = from.normal_octahedral != 0u, in_view = from.normal_in_view_space != 0u;
+    vec3 direction = mix(n, octahedral_decode(n.xy), bvec3(octahedral));
+    direction = mix(direction, direction * mat3(frame.view_from_world), bvec3(in_view));
+    float length2 = dot(direction, direction);
+    direction = mix(vec3(0.0, 1.0, 0.0), direction * inversesqrt(length2), bvec3(length2 > 1e-12));
+    return mix(octahedral_encode(direction), n.xy, bvec2(octahedral && !in_view));
 }
 
 float channel_of(vec4 value, uint channel, float absent)
 {
-    return channel < GBUFFER_NO_CHANNEL ? value[channel] : absent;
+    return mix(value[min(channel, 3u)], absent, channel >= GBUFFER_NO_CHANNEL);
 }
 
 vec2 converted_material(vec4 value)
 {
-    if (from.has_material == 0u) return vec2(1.0, 0.0);
-    return vec2(channel_of(value, from.roughness, 1.0), channel_of(value, from.metallic, 0.0));
+    vec2 material =
+        vec2(channel_of(value, from.roughness, 1.0), channel_of(value, from.metallic, 0.0));
+    return mix(vec2(1.0, 0.0), material, bvec2(from.has_material != 0u));
 }
 
 #ifdef GBUFFER_MOTION
@@ -58,7 +61,7 @@ vec4 converted_motion(vec4 value, vec2 uv, float depth)
 {
     vec2 moved = value.xy * vec2(from.motion_scale_x, from.motion_scale_y) +
                  vec2(from.motion_offset_x, from.motion_offset_y);
-    float change = from.motion_has_distance != 0u ? value.z : distance_change(uv, depth);
+    float change = mix(distance_change(uv, depth), value.z, from.motion_has_distance != 0u);
     return vec4(clamp(vec3(moved, change), -HALF_MAX, HALF_MAX), 1.0);
 }
 #endif
@@ -71,10 +74,10 @@ void main()
     if (own_depth == from.depth_without_surface || !(converted_depth > 0.0)) discard;
     gl_FragDepth = converted_depth;
     vec4 reflectance = texelFetch(albedo, pixel, 0);
-    out_albedo = vec4(reflectance.rgb, from.albedo_alpha != 0u ? reflectance.a : 1.0);
+    out_albedo = vec4(reflectance.rgb, mix(1.0, reflectance.a, from.albedo_alpha != 0u));
     out_normal = converted_normal(texelFetch(normal, pixel, 0));
     out_material = converted_material(texelFetch(material, pixel, 0));
-    out_emissive = from.has_emissive != 0u ? texelFetch(emissive, pixel, 0) : vec4(0.0);
+    out_emissive = mix(vec4(0.0), texelFetch(emissive, pixel, 0), bvec4(from.has_emissive != 0u));
 #ifdef GBUFFER_DIELECTRIC
     out_dielectric = texelFetch(dielectric, pixel, 0);
 #endif

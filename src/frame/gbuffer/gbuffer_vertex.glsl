@@ -55,9 +55,9 @@ void main()
     vec4 previous = frame.previous_clip_from_world * before;
     vary_current = clip.xyw;
     vary_previous = previous.xyw;
-    if (frame.viewer.w == 0.0) { // orthographic
-        vary_current.z = dot(frame.axis, vec4(world, 1.0));
-        vary_previous.z = dot(frame.previous_axis, before);
-    }
+    // Orthographic: w is 1. Without a branch, as software drivers compile a shader again for each
+    // block of uniforms that alone decides one.
+    vary_current.z = mix(dot(frame.axis, vec4(world, 1.0)), clip.w, frame.viewer.w);
+    vary_previous.z = mix(dot(frame.previous_axis, before), previous.w, frame.viewer.w);
 #endif
 }
