@@ -79,10 +79,11 @@ vec3 frame_to_viewer(vec3 position)
     return frame.viewer.xyz - frame.viewer.w * position;
 }
 
-// A surface relative to the camera, along the axes of the world.
-vec3 frame_from_camera(vec2 uv, float view_distance)
+// View space: x right, y down, z forward.
+vec3 frame_view_position(ivec2 pixel, float view_distance)
 {
-    return frame_ray_origin(uv) - frame.camera_position + view_distance * frame_view_ray(uv);
+    vec2 lateral = frame.image_plane.xy + frame.image_plane.zw * vec2(pixel);
+    return vec3(lateral * mix(1.0, view_distance, frame.viewer.w), view_distance);
 }
 
 #endif

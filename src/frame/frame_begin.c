@@ -51,7 +51,7 @@ static void begin_camera(struct frame *f, const struct frame_input *input)
         input->projected ? *input->projected : frame_camera_of(&input->camera, f->width, f->height);
     f->camera_cut =
         input->camera_cut || f->index == 0 || previous.orthographic != f->camera.orthographic;
-    frame_camera_constants(&f->camera, c);
+    frame_camera_constants(&f->camera, f->width, f->height, c);
     c->previous_clip_from_world = f->camera_cut ? c->clip_from_world : previous_clip;
     c->previous_axis = f->camera_cut ? c->axis : frame_camera_axis(&previous);
 }

@@ -114,8 +114,11 @@ vec4s frame_camera_axis(const struct frame_camera *c)
     return vec4_of(c->forward, -glms_vec3_dot(c->forward, c->eye));
 }
 
-void frame_camera_constants(const struct frame_camera *c, struct frame_constants *out)
+void frame_camera_constants(const struct frame_camera *c, uint32_t width, uint32_t height,
+                            struct frame_constants *out)
 {
+    const float pixel_x = (c->right - c->left) / (float)width;
+    const float pixel_y = (c->top - c->bottom) / (float)height;
     const vec3s x = glms_vec3_scale(frame_camera_right(c), 0.5f * (c->right - c->left));
     const vec3s y = glms_vec3_scale(c->up, -0.5f * (c->top - c->bottom));
     const vec3s none = vec3_of(0, 0, 0);
@@ -127,6 +130,8 @@ void frame_camera_constants(const struct frame_camera *c, struct frame_constants
         c->orthographic ? vec4_of(glms_vec3_negate(c->forward), 0.0f) : vec4_of(c->eye, 1.0f);
     out->distance_of_depth = frame_camera_distance_of_depth(c);
     out->axis = frame_camera_axis(c);
+    out->image_plane =
+        (vec4s){ { c->left + 0.5f * pixel_x, 0.5f * pixel_y - c->top, pixel_x, pixel_y } };
     out->camera_position = c->eye;
     out->near_m = c->near_m;
     out->origin = centre.origin;

@@ -42,4 +42,5 @@ float frame_camera_pixel(const struct frame_camera *camera, uint32_t width, uint
 vec4s frame_camera_axis(const struct frame_camera *camera);
 
 // Fills in what the block has of the camera but for the previous frame.
-void frame_camera_constants(const struct frame_camera *camera, struct frame_constants *out);
+void frame_camera_constants(const struct frame_camera *camera, uint32_t width, uint32_t height,
+                            struct frame_constants *out);

@@ -25,6 +25,9 @@ struct frame_constants {
     mat4s view_from_world;
     vec4s viewer;            // homogeneous: the position, or minus the axis of an orthographic view
     vec4s distance_of_depth; // distance = (x + y · depth) / (z + w · depth)
+    // x and y (right and down) of the sight line through the centre of the first pixel, and their
+    // steps per pixel: at 1 m along the axis, or orthographic in m at any distance.
+    vec4s image_plane;
     // Distance along the view axis, and that of the previous frame: xyz · position + w.
     vec4s axis, previous_axis;
     vec3s camera_position; // world, m
@@ -94,7 +97,7 @@ struct frame_probes {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct frame_constants) == 4 * 64 + 84 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct frame_constants) == 4 * 64 + 88 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_light) == 64, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_emitter) == 9 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_probes) == 8 * 4, "layout is shared with GLSL");

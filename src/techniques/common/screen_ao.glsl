@@ -48,9 +48,10 @@ float screen_pixels_per_m(vec4 scale, float depth)
     return scale.x + scale.y * depth;
 }
 
-float screen_pixels_per_depth(vec4 scale, float depth)
+// Radii of δ per difference of D at the depth D.
+float screen_radii_per_depth(vec4 scale, float radius_px, float depth)
 {
-    return scale.z + scale.w / depth;
+    return (scale.z * depth + scale.w) / (radius_px * depth);
 }
 
 // Radius in pixels of a sphere around a point with the depth buffer value D.
@@ -76,7 +77,7 @@ screen_sphere screen_sphere_at(ivec2 pixel, float depth, float radius_m)
     p.l = sqrt(1.0 + dot(p.m, p.m));
     p.bend = p.m / (p.l + 1.0);
     p.radius_px = screen_radius_px(radius_m, depth);
-    p.z_per_depth = p.l * screen_pixels_per_depth(view.scale, depth) / p.radius_px;
+    p.z_per_depth = p.l * screen_radii_per_depth(view.scale, p.radius_px, depth);
     return p;
 }
 

@@ -52,7 +52,7 @@ vec2 mean_around(vec2 row[ROW + 2 * REACH], int i)
     float here = row[i].y;
     if (here <= 0.0) return row[i];
     float radius_px = screen_radius_px(view.radius_m, here);
-    float per_depth = EDGE * screen_pixels_per_depth(view.scale, here) / radius_px;
+    float per_depth = EDGE * screen_radii_per_depth(view.scale, radius_px, here);
     float slope = flatter(row[i + 1].y - here, here - row[i - 1].y);
     float weights = 1.0, sum = row[i].x;
     for (int k = 1; k <= REACH; k++) {

@@ -23,7 +23,7 @@ vec2 history_at(vec2 position, float depth)
 {
     float radius_px = clamp(view.radius_m * screen_pixels_per_m(view.previous_scale, depth),
                             MIN_RADIUS_PX, view.max_radius_px);
-    float per_depth = EDGE * screen_pixels_per_depth(view.previous_scale, depth) / radius_px;
+    float per_depth = EDGE * screen_radii_per_depth(view.previous_scale, radius_px, depth);
     vec2 sum = vec2(0.0);
     float weights = 0.0;
     for (int i = 0; i < 4; i++) {

@@ -20,7 +20,7 @@ float upsampled(ivec2 pixel)
     float here = texelFetch(depth, pixel, 0).r;
     if (here <= 0.0) return 1.0;
     float radius_px = screen_radius_px(view.radius_m, here);
-    float per_depth = EDGE * screen_pixels_per_depth(view.scale, here) / radius_px;
+    float per_depth = EDGE * screen_radii_per_depth(view.scale, radius_px, here);
     ivec2 last = ivec2(view.work_width, view.work_height) - 1;
     ivec2 first = pixel / SCREEN_AO_STEP;
     vec2 fraction = vec2(pixel - first * SCREEN_AO_STEP) / float(SCREEN_AO_STEP);

@@ -29,7 +29,7 @@ static void place(struct tile_fixture *f, vec3s centre, float half_m, float fov_
         .gpu_object = { .centre = centre, .half_m = half_m, .rotation = { 0, 0, 0, 1 } }
     };
     const struct frame_camera projected = frame_camera_of(&camera, PIXELS, PIXELS);
-    frame_camera_constants(&projected, &f->constants);
+    frame_camera_constants(&projected, PIXELS, PIXELS, &f->constants);
     f->state.options = (struct dnrt_options){ .fade = 2, .reach = 2 };
     f->state.objects.at = &f->object;
     f->state.objects.count = 1;

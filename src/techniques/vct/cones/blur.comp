@@ -36,7 +36,7 @@ float weight_of(ivec2 neighbour, vec3 position, vec3 n, float fraction, float pe
 {
     float z = texelFetch(depth, neighbour, 0).r;
     if (z <= 0.0) return 0.0;
-    vec3 offset = frame_from_camera(frame_uv(uvec2(neighbour)), frame_view_distance(z)) - position;
+    vec3 offset = frame_view_position(neighbour, frame_view_distance(z)) - position;
     float cosine = max(dot(n, octahedral_decode(texelFetch(normal, neighbour, 0).rg)), 0.0);
     float near = clamp(1.0 - length(offset) * per_texel_m, 0.0, 1.0);
     float c4 = cosine * cosine * cosine * cosine;
@@ -46,8 +46,8 @@ float weight_of(ivec2 neighbour, vec3 position, vec3 n, float fraction, float pe
 vec3 blurred(ivec2 pixel)
 {
     float z = texelFetch(depth, pixel, 0).r;
-    vec3 position = frame_from_camera(frame_uv(uvec2(pixel)), frame_view_distance(z));
-    vec3 world = frame.camera_position + position;
+    vec3 position = frame_view_position(pixel, frame_view_distance(z));
+    vec3 world = frame_world_position(frame_uv(uvec2(pixel)), z);
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
     float texel_m = set.texel_m * vct_texel_at((world - clips.origin_m) / set.texel_m);
     vec4 own = texelFetch(gathered, pixel, 0), sum = own.a * own.a * vec4(own.rgb, 1.0);

@@ -29,8 +29,8 @@ const float LEAST_COSINE = 0.4; // of adjacent normals on one surface: 66 degree
 
 struct point {
     bool valid;
-    vec3 position; // relative to the camera, m
-    vec3 normal;
+    vec3 position; // view space, m
+    vec3 normal;   // world space
 };
 
 point point_at(ivec2 pixel)
@@ -39,7 +39,7 @@ point point_at(ivec2 pixel)
     float z = texelFetch(depth, pixel, 0).r;
     point p;
     p.valid = z > 0.0;
-    p.position = frame_from_camera(frame_uv(uvec2(pixel)), frame_view_distance(max(z, 1e-12)));
+    p.position = frame_view_position(pixel, frame_view_distance(max(z, 1e-12)));
     p.normal = octahedral_decode(texelFetch(normal, pixel, 0).rg);
     return p;
 }
@@ -53,12 +53,17 @@ float texel_at(ivec2 pixel)
     return set.texel_m * vct_texel_at((position - clips.origin_m) / set.texel_m);
 }
 
+vec3 to_view_space(vec3 world)
+{
+    return mat3(frame.view_from_world) * world * vec3(1.0, -1.0, -1.0);
+}
+
 // A point more than half a texel of the light volume off the plane is on another surface: closer
 // ones have the same light.
-bool discontinuous(point here, point there, float texel_m)
+bool discontinuous(point here, vec3 view_normal, point there, float texel_m)
 {
     return !here.valid || !there.valid || dot(here.normal, there.normal) < LEAST_COSINE ||
-           abs(dot(here.normal, there.position - here.position)) > 0.5 * texel_m;
+           abs(dot(view_normal, there.position - here.position)) > 0.5 * texel_m;
 }
 
 // Weight of a neighbour's normal in the mean. 0 from about 96 degrees on, where the surfaces face
@@ -90,8 +95,10 @@ void main()
     if (any(greaterThanEqual(pixel, ivec2(set.width, set.height)))) return;
     point here = point_at(pixel);
     float texel_m = texel_at(pixel);
-    float bits = discontinuous(here, point_at(pixel + ivec2(1, 0)), texel_m) ? 1.0 : 0.0;
-    bits += discontinuous(here, point_at(pixel + ivec2(0, 1)), texel_m) ? 2.0 : 0.0;
+    vec3 view_normal = to_view_space(here.normal);
+    float bits =
+        discontinuous(here, view_normal, point_at(pixel + ivec2(1, 0)), texel_m) ? 1.0 : 0.0;
+    bits += discontinuous(here, view_normal, point_at(pixel + ivec2(0, 1)), texel_m) ? 2.0 : 0.0;
     imageStore(edges, pixel, vec4(bits / 255.0));
     vec2 up = here.valid ? octahedral_encode(cone_normal_at(pixel, here, texel_m)) : vec2(0.0);
     imageStore(cone_normal, pixel, vec4(up, 0.0, 0.0));
