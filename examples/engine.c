@@ -67,15 +67,10 @@ static double now_ms(void)
 
 static void create_scene(struct engine *engine)
 {
-    struct ag_light_desc lamp;
-    ag_light_desc_default(&lamp, AG_LIGHT_POINT);
-    lamp.position[0] = -0.3f;
-    lamp.position[1] = 1.6f;
-    for (int i = 0; i < 3; i++) lamp.intensity[i] = 100; // candela
     check(engine, ag_scene_create(engine->context, &engine->scene));
     boxes_begin(engine->frame.boxes);
     check(engine, boxes_add(engine->frame.boxes, engine->scene));
-    check(engine, ag_scene_add_light(engine->scene, &lamp, NULL));
+    check(engine, boxes_add_light(engine->scene));
 }
 
 static void create_renderers(struct engine *engine, const char *gi)

@@ -88,20 +88,15 @@ static void finish_slot(struct host *host, struct slot *slot)
 
 // ---- the library
 
-enum { LAMP = 0 }; // index in the scene
+enum { LIGHT = 0 }; // index in the scene
 
 // The library knows the surfaces for their light, the host draws them.
 static void create_scene(struct host *host)
 {
-    struct ag_light_desc lamp;
-    ag_light_desc_default(&lamp, AG_LIGHT_POINT);
-    lamp.position[0] = -0.3f;
-    lamp.position[1] = 1.6f;
-    for (int i = 0; i < 3; i++) lamp.intensity[i] = 100; // candela
     check(host, ag_scene_create(host->context, &host->scene));
     boxes_begin(host->boxes);
     check(host, boxes_add(host->boxes, host->scene));
-    check(host, ag_scene_add_light(host->scene, &lamp, NULL));
+    check(host, boxes_add_light(host->scene));
 }
 
 static void create_renderer(struct host *host)
@@ -115,15 +110,15 @@ static void create_renderer(struct host *host)
     check(host, ag_renderer_create(host->lent, host->scene, &desc, &host->renderer));
 }
 
-// Moves the lamp along half a circle and lifts a block.
+// Moves the light along half a circle and lifts a block.
 static void move(struct host *host, int frame)
 {
     const float turn = 3.14159265f * (float)frame / (float)FRAMES;
-    struct ag_light_info lamp;
-    check(host, ag_scene_get_light(host->scene, LAMP, 0, 0.0, &lamp));
-    lamp.light.position[0] += 0.01f * cosf(turn);
-    lamp.light.position[2] += 0.01f * sinf(turn);
-    check(host, ag_scene_set_light(host->scene, LAMP, &lamp.light));
+    struct ag_light_info info;
+    check(host, ag_scene_get_light(host->scene, LIGHT, 0, 0.0, &info));
+    info.light.position[0] += 0.01f * cosf(turn);
+    info.light.position[2] += 0.01f * sinf(turn);
+    check(host, ag_scene_set_light(host->scene, LIGHT, &info.light));
     host->boxes[BLOCK].center[1] += 0.006f * sinf(turn);
     check(host, box_move(&host->boxes[BLOCK], host->scene));
 }

@@ -11,7 +11,7 @@ static const struct box room[BOXES] = {
     { { -1.05f, 1, 0 }, { 0.1f, 2, 2.2f }, { 0.6f, 0.06f, 0.05f }, 0 },
     { { 1.05f, 1, 0 }, { 0.1f, 2, 2.2f }, { 0.1f, 0.45f, 0.08f }, 0 },
     { { -0.35f, 0.6f, -0.35f }, { 0.55f, 1.2f, 0.55f }, { 0.7f, 0.7f, 0.7f }, 0 },
-    { { 0.4f, 0.35f, 0.3f }, { 0.5f, 0.5f, 0.5f }, { 0.6f, 0.6f, 0.7f }, 0 },
+    { { 0.4f, 0.25f, 0.3f }, { 0.5f, 0.5f, 0.5f }, { 0.6f, 0.6f, 0.7f }, 0 },
 };
 
 void boxes_begin(struct box *boxes)
@@ -64,6 +64,16 @@ enum ag_result boxes_add(struct box *boxes, struct ag_scene *scene)
             result = ag_scene_add_instance(scene, index, placed, &boxes[i].instance);
     }
     return result;
+}
+
+enum ag_result boxes_add_light(struct ag_scene *scene)
+{
+    struct ag_light_desc light;
+    ag_light_desc_default(&light, AG_LIGHT_POINT);
+    light.position[0] = -0.3f;
+    light.position[1] = 1.6f;
+    for (int i = 0; i < 3; i++) light.intensity[i] = 100; // candela
+    return ag_scene_add_light(scene, &light, NULL);
 }
 
 enum ag_result box_move(const struct box *box, struct ag_scene *scene)

@@ -16,6 +16,8 @@ struct box {
 void boxes_begin(struct box *boxes);
 // Adds them to a scene, each as an instance of a mesh of its colour.
 enum ag_result boxes_add(struct box *boxes, struct ag_scene *scene);
+// Adds a point light below the ceiling.
+enum ag_result boxes_add_light(struct ag_scene *scene);
 // Tells the scene where a box is.
 enum ag_result box_move(const struct box *box, struct ag_scene *scene);
 

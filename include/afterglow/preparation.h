@@ -29,7 +29,8 @@ AG_API enum ag_result ag_preparation_create(struct ag_renderer *renderer, const 
 AG_API enum ag_result ag_preparation_run(struct ag_preparation *preparation,
                                          struct ag_context *context,
                                          bool (*progress)(void *user, double done), void *user);
-/// Pipelines compiled so far; those that the renderer has already are among them.
+/// Pipelines compiled so far; those that the renderer has already are among them. Thread: that of
+/// ag_preparation_run, or any when it has returned.
 AG_API int ag_preparation_pipelines(const struct ag_preparation *preparation);
 /// Hands them to the device, for ag_renderer_set_gi and further renderers. Thread: the renderer's,
 /// when ag_preparation_run has returned. May come after the renderer's own end.

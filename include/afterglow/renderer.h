@@ -83,7 +83,7 @@ AG_API void ag_renderer_desc_default(struct ag_renderer_desc *desc);
 AG_API enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
                                                   const struct ag_renderer_desc *desc,
                                                   int light_count, uint64_t *bytes);
-/// Renderers follow changes of the scene: each frame shows it as it is then. Device and scene may
+/// Renderers follow changes of their scene between frames. Device and scene may
 /// be destroyed before the renderer, which keeps them. desc NULL: the defaults.
 AG_API enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *scene,
                                          const struct ag_renderer_desc *desc,
@@ -119,7 +119,7 @@ struct ag_layer_handle {
 /// and Vulkan's clip space: x right, y down, depth 0…1. Reversed or forward depth, a far plane or
 /// none, sub-pixel jitter and an image off the axis follow from clip_from_view. The image is always
 /// rendered with reversed depth, and in a perspective without a far plane: geometry behind it is
-/// seen.
+/// seen. Screen-space occlusion (vo, ssao, hbao, gtao) expects square pixels.
 struct ag_view_matrices {
     float view_from_world[16]; ///< rotation and translation in m; left- or right-handed
     float clip_from_view[16];  ///< perspective or orthographic, without an oblique near plane

@@ -3,20 +3,19 @@
 /// Ownership: ag_X_destroy gives back what ag_X_create or another function returned in `out`; the
 /// program does not use it afterwards. All destroy functions accept NULL, and objects are destroyed
 /// in any order: one that others use stays, with its memory, until the last of them is destroyed. A
-/// renderer uses a device and a scene, a view its renderer, a bake, reference or light map a scene,
-/// and each of them and devices, scenes, environments, images and probes their context.
-/// Descriptions: ag_X_desc_default fills a struct ag_X_desc with the defaults. It and all pointers
-/// in it are needed only during the call.
-/// Strings: UTF-8; arguments are copied.
-/// Threads: one thread at a time per context; different contexts are independent. A scene can be
-/// transferred from the context of a loading thread to that of a renderer (ag_scene_transfer).
-/// Functions without an object of a context (ag_…_default, those of catalogue.h, ag_version,
-/// ag_printable, ag_image_auto_exposure) may be called on any thread at any time.
-/// ABI: structs with `reserved` keep their size; new members take its place, and 0 is what they
-/// were without. A description whose reserved words are not 0 is refused: the program needs a newer
-/// library. ag_X_desc_default sets them. A program links only with a library of the same minor
-/// version (ag_context_create).
-/// Errors: on failure *out is NULL, and ag_context_last_error() has one sentence.
+/// renderer uses a device and a scene, a view its renderer, a preparation a device, a bake,
+/// reference or light map a scene, and each of them and devices, scenes, environments, images and
+/// probes their context. Descriptions: ag_X_desc_default fills a struct ag_X_desc with the
+/// defaults. It and all pointers in it are needed only during the call. Strings: UTF-8; arguments
+/// are copied. Threads: one thread at a time per context; different contexts are independent. A
+/// scene can be transferred from the context of a loading thread to that of a renderer
+/// (ag_scene_transfer). Functions without an object of a context (ag_…_default, those of
+/// catalogue.h, ag_version, ag_printable, ag_image_auto_exposure) may be called on any thread at
+/// any time. ABI: structs with `reserved` keep their size; new members take its place, and 0 is
+/// what they were without. A description whose reserved words are not 0 is refused: the program
+/// needs a newer library. ag_X_desc_default sets them. A program links only with a library of the
+/// same minor version (ag_context_create). Errors: on failure *out is NULL, and
+/// ag_context_last_error() has one sentence.
 #ifndef AFTERGLOW_TYPES_H
 #define AFTERGLOW_TYPES_H
 

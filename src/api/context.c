@@ -141,6 +141,11 @@ void api_context_use(struct ag_context *context)
     lifetime_use(&context->life);
 }
 
+bool api_same_memory(const struct ag_context *a, const struct ag_context *b)
+{
+    return a->reallocate == b->reallocate && (!a->reallocate || a->user == b->user);
+}
+
 void api_context_release(struct ag_context *context)
 {
     if (lifetime_release(&context->life)) free_context(context);

@@ -188,8 +188,8 @@ void ag_device_destroy(struct ag_device *device)
     else if (device->adopted)
         host_log(
             &device->context->host, LOG_WARNING,
-            "ag_device_destroy: renderers still use the device (%d); its Vulkan handles must stay "
-            "valid until they are destroyed",
+            "ag_device_destroy: renderers or preparations still use the device (%d); its Vulkan "
+            "handles must stay valid until they are destroyed",
             device->life.users);
 }
 

@@ -68,7 +68,7 @@ enum ag_result ag_image_create(struct ag_context *context, int width, int height
 
 void ag_image_destroy(struct ag_context *context, struct ag_image *image)
 {
-    (void)context; // may be destroyed, or another one with the same allocator
+    (void)context; // may be destroyed
     if (!image) return;
     struct owned_image *own = (struct owned_image *)image;
     struct ag_context *owner = own->context;

@@ -33,7 +33,7 @@ struct ag_device {
     struct gpu *gpu;
     bool adopted;
     struct ag_memory_callbacks memory; // zero: none
-    struct lifetime life;              // its users are renderers
+    struct lifetime life;              // its users are renderers and preparations
 };
 
 struct ag_scene {
@@ -54,7 +54,9 @@ struct ag_scene {
 // Objects that a context is the owner of: it stays until they are gone.
 void api_context_use(struct ag_context *context);
 void api_context_release(struct ag_context *context);
-// A renderer of the device has gone.
+// Whether blocks of the one may be freed through the other.
+bool api_same_memory(const struct ag_context *a, const struct ag_context *b);
+// A user of the device has gone.
 void api_device_release(struct ag_device *device);
 // `users`: the member of the scene that counts users of that kind.
 void api_scene_use(struct ag_scene *scene, int *users);

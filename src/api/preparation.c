@@ -14,13 +14,16 @@ struct ag_preparation {
 
 static struct frame_input wants_of(const struct ag_renderer *r)
 {
-    static const struct frame_gbuffer some;
+    static const struct gbuffer_encoding any;
+    static const struct frame_gbuffer in_place, converted = { .encoding = &any };
     return (struct frame_input){ .want_indirect_layer = r->main.indirect_layer,
                                  .want_motion_layer = r->main.motion_layer,
                                  .want_id_layer = r->main.id_layer,
                                  .want_display = r->main.display_layer,
                                  .shown = &r->main.shown,
-                                 .gbuffer = r->main.host_gbuffer ? &some : NULL };
+                                 .gbuffer = !r->main.host_gbuffer ? NULL
+                                            : r->main.has_layout  ? &converted
+                                                                  : &in_place };
 }
 
 enum ag_result ag_preparation_create(struct ag_renderer *r, const char *gi,
@@ -57,6 +60,8 @@ enum ag_result ag_preparation_run(struct ag_preparation *p, struct ag_context *c
 {
     if (!context && p) context = p->device->context;
     AG_REQUIRE(context, p, "preparation is NULL");
+    AG_REQUIRE(context, api_same_memory(context, p->device->context),
+               "the context and the renderer's have different allocators");
     struct host *host = &context->host;
     gpu_compiler_set_host(p->compiler, host);
     bool ok = frame_pipelines_compile(&p->frame, p->compiler);
@@ -78,7 +83,6 @@ void ag_preparation_destroy(struct ag_preparation *p)
 {
     if (!p) return;
     struct ag_device *device = p->device;
-    if (p->compiler) gpu_compiler_set_host(p->compiler, &device->context->host);
     gpu_compiler_destroy(p->compiler, device->gpu);
     gi_spec_finish(&p->spec);
     host_free(&device->context->host, p);

@@ -184,12 +184,6 @@ void ag_scene_destroy(struct ag_scene *scene)
     if (scene && lifetime_destroy(&scene->life)) free_scene(scene);
 }
 
-// Blocks of the one are freed through the other.
-static bool same_memory(const struct ag_context *a, const struct ag_context *b)
-{
-    return a->reallocate == b->reallocate && (!a->reallocate || a->user == b->user);
-}
-
 enum ag_result ag_scene_transfer(struct ag_scene *scene, struct ag_context *to)
 {
     struct ag_context *from = context_of(scene);
@@ -198,7 +192,7 @@ enum ag_result ag_scene_transfer(struct ag_scene *scene, struct ag_context *to)
     AG_REQUIRE(from, scene->life.users == 0,
                "the scene is in use by %d renderers, %d references and %d bakes", scene->renderers,
                scene->references, scene->bakes);
-    AG_REQUIRE(from, same_memory(from, to), "the contexts have different allocators");
+    AG_REQUIRE(from, api_same_memory(from, to), "the contexts have different allocators");
     struct environment *environment = &scene->scene->environment;
     if (environment->map) {
         const struct environment_map *map = environment_map_move(environment->map, &to->host);

@@ -12,6 +12,7 @@
 
 #include "scene/limits.h"
 
+#include <float.h>
 #include <math.h>
 
 enum { X, Y, Z, W };
@@ -107,7 +108,8 @@ static bool find_planes(const struct projection *p, double along_z, struct api_v
     out->host_far_m = (float)far_m;
     c->near_m = (float)near_m;
     c->far_m = c->orthographic ? (float)far_m : INFINITY;
-    return isfinite(near_m) && near_m < far_m;
+    return isfinite(c->near_m) && c->near_m < out->host_far_m &&
+           (c->orthographic || c->near_m >= FLT_MIN);
 }
 
 // The position of an orthographic view may be anywhere on its axis. In front of the near plane, all
@@ -163,5 +165,8 @@ enum ag_result api_view_of_matrices(struct ag_context *context, const char *func
                        isfinite(c->top) && c->left < c->right && c->bottom < c->top,
                    "clip_from_view has an image without an area");
     if (c->orthographic) move_before_near_plane(out);
+    AG_REQUIRE_FOR(function, context, limits_position(c->eye),
+                   "the near plane of clip_from_view is not within %g m of the origin",
+                   (double)SCENE_MAX_DISTANCE_M);
     return AG_OK;
 }

@@ -184,10 +184,9 @@ struct frame_shown {
     gpu_image image; // not empty: shown instead; RGBA16F of the frame's size, scaled radiance
 };
 
-// A G-buffer in place of the frame's own: images that live
-// until the frame is recorded. Depth, normal and albedo are required, motion if a technique or the
-// caller needs it. Without the others: roughness 1, metallic 0, the default dielectric, no
-// emission.
+// A G-buffer in place of the frame's own: images that live until the frame is recorded. Depth,
+// normal and albedo are required, motion if a technique or the caller needs it. Without the others:
+// roughness 1, metallic 0, the default dielectric, no emission.
 struct frame_gbuffer {
     gpu_image layers[FRAME_LAYER_COUNT]; // others than those of the G-buffer are ignored
     float emissive_scale;                // values = cd/m² × emissive_scale
@@ -313,11 +312,12 @@ uint64_t frame_view_memory_estimate(const struct frame_input *input,
 // frame_compile.c. The pipelines that a frame will need with other techniques, for another thread
 // to compile.
 struct frame_pipelines {
-    uint32_t scene_variants; // of the scene's materials
-    uint32_t gbuffer_layers; // gbuffer_layers
-    bool own_gbuffer, rsm;
-    uint32_t composite[2];     // variants: of the image, and of the exposure meter
-    uint32_t direct, cascades; // direct: 0, the frame has not been prepared
+    uint32_t scene_variants;         // of the scene's materials
+    uint32_t gbuffer_layers;         // gbuffer_layers
+    bool own_gbuffer, converts, rsm; // converts: a caller's G-buffer
+    uint32_t convert_layers;         // gbuffer_layers, as in the last frame but for motion
+    uint32_t composite[2];           // variants: of the image, and of the exposure meter
+    uint32_t direct, cascades;       // direct: 0, the frame has not been prepared
 };
 
 // On the frame's thread. wants: as for the last frame; needs: of the techniques to come.

@@ -22,6 +22,9 @@ struct frame_pipelines frame_pipelines_of(const struct frame *f, const struct fr
         .gbuffer_layers = (motion ? GBUFFER_MOTION : 0) | (ids ? GBUFFER_ID : 0) |
                           (c->scene.has_dielectrics ? GBUFFER_DIELECTRIC : 0),
         .own_gbuffer = !wants->gbuffer,
+        .converts = wants->gbuffer && wants->gbuffer->encoding,
+        .convert_layers = (motion ? GBUFFER_MOTION : 0) |
+                          (f->layers[FRAME_DIELECTRIC].id ? GBUFFER_DIELECTRIC : 0),
         .rsm = needs & FRAME_NEEDS_RSM,
         .composite = { variant, frame_meter_variant(variant) },
         .direct = direct_of(f, needs),
@@ -32,9 +35,11 @@ struct frame_pipelines frame_pipelines_of(const struct frame *f, const struct fr
 bool frame_pipelines_compile(const struct frame_pipelines *p, struct gpu *compiler)
 {
     struct gbuffer gbuffer = { 0 };
+    struct gbuffer_convert convert = { 0 };
     struct composite composite = { .gpu = compiler };
     return (!p->own_gbuffer ||
             gbuffer_prepare(&gbuffer, compiler, p->scene_variants, p->gbuffer_layers)) &&
+           (!p->converts || gbuffer_convert_prepare(&convert, compiler, p->convert_layers)) &&
            composite_prepare(&composite, p->composite[0]) &&
            composite_prepare(&composite, p->composite[1]) &&
            (!p->rsm || rsm_compile(compiler, p->scene_variants)) &&

@@ -57,7 +57,8 @@ void gpu_compiler_destroy(struct gpu *c, struct gpu *gpu)
     if (!c) return;
     for (uint32_t i = 0; i < c->pipelines.count; i++) {
         struct pipeline *p = c->pipelines.objects[i];
-        if (!p || --p->users > 0) continue; // a later handle of it
+        if (!p || --p->users > 0) continue;                   // a later handle of it
+        pipeline_free(gpu, compiled_take(&gpu->compiled, p)); // an equal one of before
         if (is_of_files(p) || !keep(gpu, p)) pipeline_free(gpu, p);
     }
     table_finish(gpu->host, &c->pipelines);

@@ -354,10 +354,10 @@ void gpu_objects_add(struct gpu_objects *table, size_t base, const struct gpu_ob
                         sizeof(struct gpu_object))
 // Those from the row `first` on; false, too, where rows were left out. gpu_objects_destroy then
 // frees what was created; it accepts any half-built state.
-// The pipelines of the table alone, for a compiler.
-bool gpu_objects_compile(struct gpu *compiler, const struct gpu_objects *table);
 bool gpu_objects_create(struct gpu *gpu, const struct gpu_objects *table, int first, void *state);
 void gpu_objects_destroy(struct gpu *gpu, const struct gpu_objects *table, void *state);
+// The pipelines of the table alone, for a compiler.
+bool gpu_objects_compile(struct gpu *compiler, const struct gpu_objects *table);
 // Bytes of buffers and texels, without what a driver pads.
 uint64_t gpu_objects_bytes(const struct gpu_objects *table);
 

@@ -7,6 +7,7 @@ enum { HEADER = 5, MOST_IDS = 4194303 }; // limits of the specification, section
 enum {
     OP_NAME = 5,
     OP_TYPE_VOID = 19,
+    OP_TYPE_FORWARD_POINTER = 39,
     OP_DECORATE = 71,
     OP_MEMBER_DECORATE = 72,
     OP_GROUP_DECORATE = 74,
@@ -39,9 +40,10 @@ size_t spirv_find(const struct spirv *m, uint32_t id)
 
 // ---- ids
 
-// The operand that is the result of an instruction; 0: none. Of those whose results are looked up.
+// The operand with the result of an instruction, for those whose results are looked up; 0: none.
 static uint32_t result_index(uint32_t op)
 {
+    if (op == OP_TYPE_FORWARD_POINTER) return 0;
     if (op >= OP_TYPE_VOID && op <= SPIRV_TYPE_POINTER) return 1;
     if (op > SPIRV_TYPE_POINTER && op <= SPIRV_FUNCTION) return 2; // constants too
     return op == SPIRV_VARIABLE ? 2 : 0;

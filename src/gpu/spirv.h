@@ -1,6 +1,7 @@
 // A reader of SPIR-V modules, for reflection: instructions by their result, decorations, names, and
 // the variables that an entry point uses (SPIR-V specification, sections 2 and 3). Words are
-// untrusted: lengths and ids are checked here, and what is missing reads as 0.
+// untrusted: reflect.c checks the lengths of instructions, ids are checked here, and what is
+// missing reads as 0.
 #pragma once
 
 #include "core/host.h"
@@ -66,8 +67,8 @@ const char *spirv_open(struct spirv *module, struct host *host, const uint32_t *
                        size_t count);
 void spirv_close(struct spirv *module);
 
-// The instruction at a word: its opcode, and operands counted from the first word. 0 past the end,
-// and of the instruction 0, which is none.
+// The instruction at a word below `count`: its opcode, and operands counted from the first word.
+// Operands past the end are 0, and so is all of the instruction 0, which is none.
 uint32_t spirv_op_at(const struct spirv *module, size_t at);
 uint32_t spirv_operand(const struct spirv *module, size_t at, uint32_t index);
 size_t spirv_next(const struct spirv *module, size_t at);

@@ -27,7 +27,8 @@ for file in "$light" "$library"; do nm -D --defined-only "$file" | awk '$2 == "T
 diff "$work/$(basename "$(dirname "$library")").names" "$work/build.names" || { echo "< full, > light: exported functions"; exit 1; }
 
 for kind in light full; do
-    eval "file=\$$([ $kind = light ] && echo light || echo library)"
+    file=$light
+    [ $kind = light ] || file=$library
     "$cc" -Wall -I "$source/include" "$source/tests/api/light_host.c" "$file" "-Wl,-rpath,$(dirname "$file")" -o "$work/$kind"
     status=0
     "$work/$kind" $kind >"$work/$kind.out" || status=$?

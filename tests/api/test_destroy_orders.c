@@ -6,7 +6,19 @@
 #include <stdio.h>
 #include <string.h>
 
-enum kind { CONTEXT, SCENE, DEVICE, RENDERER, VIEW, ENVIRONMENT, REFERENCE, BAKE, LIGHTMAP, KINDS };
+enum kind {
+    CONTEXT,
+    SCENE,
+    DEVICE,
+    RENDERER,
+    VIEW,
+    PREPARATION,
+    ENVIRONMENT,
+    REFERENCE,
+    BAKE,
+    LIGHTMAP,
+    KINDS
+};
 
 enum { SIZE = 16, MOST = 5 };
 
@@ -16,6 +28,7 @@ struct objects {
     struct ag_device *device;
     struct ag_renderer *renderer;
     struct ag_view *view;
+    struct ag_preparation *preparation;
     struct ag_environment *environment;
     struct ag_reference *reference;
     struct ag_bake *bake;
@@ -49,6 +62,9 @@ static void destroy(struct objects *o, enum kind kind)
         break;
     case VIEW:
         ag_view_destroy(o->view);
+        break;
+    case PREPARATION:
+        ag_preparation_destroy(o->preparation);
         break;
     case ENVIRONMENT:
         ag_environment_destroy(o->environment);
@@ -257,6 +273,30 @@ static void use_on_gpu(struct objects *o)
     ag_image_destroy(NULL, image);
 }
 
+static void create_preparation(struct objects *o)
+{
+    assert_int_equal(ag_device_create(o->context, NULL, &o->device), AG_OK);
+    small_scene(o);
+    create_renderer(o, "none");
+    ag_scene_destroy(o->scene); // the renderer keeps it
+    assert_int_equal(ag_preparation_create(o->renderer, "ambient", &o->preparation), AG_OK);
+}
+
+static void use_preparation(struct objects *o)
+{
+    if (o->gone[PREPARATION]) return;
+    assert_int_equal(ag_preparation_run(o->preparation, NULL, NULL, NULL), AG_OK);
+    CHECK(ag_preparation_pipelines(o->preparation) > 0);
+}
+
+TEST(preparations_and_what_they_are_of)
+{
+    static const enum kind kinds[] = { CONTEXT, DEVICE, RENDERER, PREPARATION };
+    const struct setting setting = { kinds, 4, create_preparation, use_preparation };
+    test_gpu_require();
+    destroy_in_all_orders(&setting);
+}
+
 TEST(objects_of_the_gpu)
 {
     static const enum kind kinds[] = { CONTEXT, SCENE, DEVICE, RENDERER, VIEW };
@@ -311,7 +351,7 @@ TEST(an_adopted_device_that_is_in_use_is_a_warning)
     const struct ag_device_adopt adopt = fixture_lend(&own);
     struct renderer_fixture s = fixture_open("none", &adopt);
     ag_device_destroy(s.device);
-    CHECK(strstr(fixture_last_warning, "renderers still use the device (1)"));
+    CHECK(strstr(fixture_last_warning, "preparations still use the device (1)"));
     ag_renderer_destroy(s.renderer);
     ag_scene_destroy(s.scene);
     ag_context_destroy(s.context);

@@ -2,6 +2,7 @@
 #include "api/renderer_fixture.h"
 
 #include <pthread.h>
+#include <stdlib.h>
 #include <string.h>
 
 struct worker {
@@ -28,14 +29,15 @@ static void *run(void *user)
 }
 
 // Frames go on meanwhile.
-static void prepare(struct renderer_fixture *s, const char *gi)
+static void prepare(struct renderer_fixture *s, struct ag_renderer *renderer,
+                    const struct ag_frame_desc *frame, const char *gi)
 {
     struct worker worker = { .result = AG_ERROR_DEVICE };
     pthread_t thread;
-    if (ag_preparation_create(s->renderer, gi, &worker.preparation) != AG_OK)
+    if (ag_preparation_create(renderer, gi, &worker.preparation) != AG_OK)
         fail_msg("%s: %s", gi, ag_context_last_error(s->context));
     assert_int_equal(pthread_create(&thread, NULL, run, &worker), 0);
-    for (int i = 0; i < 5; i++) assert_int_equal(ag_renderer_render(s->renderer, &s->frame), AG_OK);
+    for (int i = 0; i < 5; i++) assert_int_equal(ag_renderer_render(renderer, frame), AG_OK);
     assert_int_equal(pthread_join(thread, NULL), 0);
     assert_int_equal(worker.result, AG_OK);
     CHECK(worker.last == 1.0);
@@ -50,16 +52,22 @@ static uint64_t compiled(const struct renderer_fixture *s)
     return counters.compiled;
 }
 
-static void check_prepared(struct renderer_fixture *s, const char *gi)
+static void check_prepared_of(struct renderer_fixture *s, struct ag_renderer *renderer,
+                              const struct ag_frame_desc *frame, const char *gi)
 {
-    prepare(s, gi);
+    prepare(s, renderer, frame, gi);
     const uint64_t before = compiled(s);
-    if (ag_renderer_set_gi(s->renderer, gi, NULL, 0) != AG_OK)
+    if (ag_renderer_set_gi(renderer, gi, NULL, 0) != AG_OK)
         fail_msg("%s: %s", gi, ag_context_last_error(s->context));
-    assert_int_equal(ag_renderer_render(s->renderer, &s->frame), AG_OK);
+    assert_int_equal(ag_renderer_render(renderer, frame), AG_OK);
     if (compiled(s) != before)
         fail_msg("%s: %d pipelines were compiled after the preparation", gi,
                  (int)(compiled(s) - before));
+}
+
+static void check_prepared(struct renderer_fixture *s, const char *gi)
+{
+    check_prepared_of(s, s->renderer, &s->frame, gi);
 }
 
 TEST(a_prepared_switch_compiles_nothing)
@@ -74,6 +82,64 @@ TEST(a_prepared_switch_compiles_nothing)
         fixture_print_base(i, &info, base);
         if (!info.needs_bake) check_prepared(&s, base);
     }
+    fixture_close(&s);
+}
+
+static struct ag_layer_handle layer(struct renderer_fixture *s, const char *name)
+{
+    struct ag_layer_handle handle;
+    assert_int_equal(ag_renderer_layer_handle(s->renderer, name, &handle), AG_OK);
+    return handle;
+}
+
+// A history needs the motion of a G-buffer that was converted without it before.
+TEST(a_prepared_switch_with_a_converted_gbuffer_compiles_nothing)
+{
+    struct renderer_fixture s = fixture_open_lit("none");
+    struct ag_renderer_desc desc = fixture_renderer_desc("lpv:dim=16");
+    struct ag_gbuffer_layout layout;
+    struct ag_renderer *hosted = NULL;
+    ag_gbuffer_layout_default(&layout);
+    desc.motion_layer = false;
+    desc.host_gbuffer = true;
+    desc.gbuffer_layout = &layout;
+    assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &hosted), AG_OK);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    const struct ag_gbuffer gbuffer = { .depth = layer(&s, "depth"),
+                                        .normal = layer(&s, "normal"),
+                                        .albedo = layer(&s, "albedo"),
+                                        .emissive = layer(&s, "emissive"),
+                                        .motion = layer(&s, "motion") };
+    struct ag_frame_desc frame = s.frame;
+    frame.gbuffer = &gbuffer;
+    assert_int_equal(ag_renderer_render(hosted, &frame), AG_OK);
+    check_prepared_of(&s, hosted, &frame, "vct:resolution=32,temporal=true");
+    ag_renderer_destroy(hosted);
+    fixture_close(&s);
+}
+
+static void *own_reallocate(void *user, void *old, size_t bytes)
+{
+    (void)user;
+    if (bytes > 0) return realloc(old, bytes);
+    free(old);
+    return NULL;
+}
+
+TEST(a_context_with_another_allocator_is_refused)
+{
+    struct renderer_fixture s = fixture_open_lit("none");
+    struct ag_preparation *preparation = NULL;
+    struct ag_context_desc desc;
+    struct ag_context *other = NULL;
+    ag_context_desc_default(&desc);
+    desc.reallocate = own_reallocate;
+    assert_int_equal(ag_context_create(&desc, &other), AG_OK);
+    assert_int_equal(ag_preparation_create(s.renderer, "ambient", &preparation), AG_OK);
+    assert_int_equal(ag_preparation_run(preparation, other, NULL, NULL), AG_ERROR_ARGUMENT);
+    CHECK(strstr(ag_context_last_error(other), "different allocators"));
+    ag_preparation_destroy(preparation);
+    ag_context_destroy(other);
     fixture_close(&s);
 }
 

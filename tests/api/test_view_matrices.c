@@ -198,6 +198,39 @@ TEST(an_orthographic_view_is_that_through_a_telephoto_lens)
     fixture_close(&s);
 }
 
+// Visibility of an orthographic view after some frames.
+static struct ag_image *flat_visibility(struct renderer_fixture *s, const char *gi, int frames)
+{
+    struct ag_renderer_desc desc = fixture_renderer_desc(gi);
+    if (ag_renderer_create(s->device, s->scene, &desc, &s->renderer) != AG_OK)
+        fail_msg("%s: %s", gi, ag_context_last_error(s->context));
+    const struct matrix_options options = flat_options(&s->frame.camera);
+    const struct ag_view_matrices m = matrices(s, &options);
+    for (int i = 1; i < frames; i++) ag_image_destroy(s->context, rendered(s, &m, "visibility"));
+    struct ag_image *image = rendered(s, &m, "visibility");
+    ag_renderer_destroy(s->renderer);
+    s->renderer = NULL;
+    return image;
+}
+
+// Depths of the history are compared: where they were another view's, it would be rejected.
+TEST(an_orthographic_view_has_a_history)
+{
+    struct renderer_fixture s = fixture_open_lit(NULL);
+    s.frame.camera = telephoto_camera(&s);
+    static const char exact_spec[] = "ambient+vo:samples=33,radius=2",
+                      spec[] = "ambient+vo:samples=5,radius=2,blur=false,temporal=true";
+    struct ag_image *exact = flat_visibility(&s, exact_spec, 1);
+    struct ag_image *one = flat_visibility(&s, spec, 1), *many = flat_visibility(&s, spec, 17);
+    const double first = fixture_difference(one, exact), last = fixture_difference(many, exact);
+    print_message("one frame %.4f, 17 frames %.4f\n", first, last);
+    CHECK(last < 0.8 * first);
+    ag_image_destroy(s.context, exact);
+    ag_image_destroy(s.context, one);
+    ag_image_destroy(s.context, many);
+    fixture_close(&s);
+}
+
 TEST(motion_of_an_orthographic_view)
 {
     struct renderer_fixture s = fixture_open_lit("ambient");
@@ -259,6 +292,13 @@ TEST(matrices_of_no_camera_are_refused_by_a_sentence)
     bad = good;
     bad.clip_from_view[14] = 0;
     check_refused(&s, &bad, "near and a far plane");
+    bad.clip_from_view[14] = 1e-45f; // a near plane that a float cannot hold
+    check_refused(&s, &bad, "near and a far plane");
+    struct matrix_options flat = options;
+    flat.orthographic_half_m = 1;
+    flat.far_m = 1e30f; // the near plane is where its 1 % is
+    bad = matrices(&s, &flat);
+    check_refused(&s, &bad, "the near plane of clip_from_view is not within");
     memset(&bad, 0, sizeof bad);
     check_refused(&s, &bad, "view_from_world");
     bad = good;

@@ -55,7 +55,8 @@ minor=$(sed -n 's/^#define AG_VERSION_MINOR //p' "$include/afterglow/types.h")
 sed -i "s/^#define AG_VERSION_MINOR .*/#define AG_VERSION_MINOR $((minor + 1))/" "$work/next/afterglow/types.h"
 for compiler in "$cc" "$cxx -x c++"; do
     # shellcheck disable=SC2086 # a list of words
-    ! $compiler -I "$work/next" -c "$work/create.c" -o "$work/next.o" || ! "$cc" "$work/next.o" "$library" -o "$work/next.out" 2>"$work/message" ||
+    $compiler -I "$work/next" -c "$work/create.c" -o "$work/next.o"
+    ! "$cc" "$work/next.o" "$library" -o "$work/next.out" 2>"$work/message" ||
         { echo "$compiler: linked with another version"; exit 1; }
     grep -q "undefined reference.*ag_context_create_[0-9]*_$((minor + 1))" "$work/message" || { cat "$work/message"; exit 1; }
 done

@@ -202,3 +202,14 @@ vec3s fixture_ray_on_plane(const struct frame_fixture *s, uint32_t x, uint32_t y
     float t = (offset - glms_vec3_dot(normal, c->eye)) / glms_vec3_dot(normal, d);
     return glms_vec3_muladds(d, t, c->eye);
 }
+
+void fixture_open_two_walls(struct frame_fixture *s)
+{
+    const int matte = fixture_matte(s, vec3_of(0.5f, 0.5f, 0.5f));
+    fixture_quad(s, vec3_of(0, -20, 0), vec3_of(20, -20, 0), vec3_of(20, 20, 0), vec3_of(0, 20, 0),
+                 matte);
+    fixture_quad(s, vec3_of(0, -20, 20), vec3_of(0, -20, 0), vec3_of(0, 20, 0), vec3_of(0, 20, 20),
+                 matte);
+    fixture_look(s, vec3_of(3, 0, 3), vec3_of(0, 0, 0));
+    fixture_open(s);
+}

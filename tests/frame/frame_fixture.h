@@ -36,6 +36,8 @@ int fixture_matte(struct frame_fixture *s, vec3s albedo);
 int fixture_material(struct frame_fixture *s, const struct material *material);
 // Corners counter-clockwise from the front; uv (0,1) (1,1) (1,0) (0,0). Returns the instance.
 int fixture_quad(struct frame_fixture *s, vec3s a, vec3s b, vec3s c, vec3s d, int material);
+// Two walls along the y axis, z = 0 and x = 0, viewed from between them; opens the scene.
+void fixture_open_two_walls(struct frame_fixture *s);
 int fixture_instance(struct frame_fixture *s, int mesh, const struct node *node);
 // y = 0, facing up, from −half to half.
 int fixture_floor(struct frame_fixture *s, float half, int material);

@@ -181,19 +181,13 @@ TEST_GPU(a_grazing_plane_stays_open_up_to_the_horizon_while_the_camera_moves)
     fixture_finish(&s);
 }
 
-// Two walls along the y axis, z = 0 and x = 0, viewed from between them. A wall at the distance a
+// A wall at the distance a
 // (radii) leaves (2 + 3a − a³)/4 of the hemisphere over the other, which the rows estimate.
 TEST_GPU(visibility_beside_a_wall_is_the_closed_form)
 {
     struct frame_fixture s;
     begin(&s, gpu);
-    const int matte = fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f));
-    fixture_quad(&s, vec3_of(0, -20, 0), vec3_of(20, -20, 0), vec3_of(20, 20, 0), vec3_of(0, 20, 0),
-                 matte);
-    fixture_quad(&s, vec3_of(0, -20, 20), vec3_of(0, -20, 0), vec3_of(0, 20, 0), vec3_of(0, 20, 20),
-                 matte);
-    fixture_look(&s, vec3_of(3, 0, 3), vec3_of(0, 0, 0));
-    fixture_open(&s);
+    fixture_open_two_walls(&s);
     const double radius_m = 0.6; // nine pixels
     for (int i = 0; i < ROWS; i++) {
         if (strstr(specs[i], "radius2") || strstr(specs[i], "quadratic"))
@@ -309,26 +303,34 @@ TEST_GPU(five_lines_change_less_than_twelve_points_while_the_camera_rotates)
     fixture_finish(&s);
 }
 
-// In a static scene each frame adds a rotation: the noise that remains without blur.
-TEST_GPU(temporal_accumulation_reduces_the_noise_of_a_static_image)
+// Mean noise that remains without blur, without and with history; exact: with many samples.
+static void check_history(struct frame_fixture *s, const char *exact_spec, const char *spec)
 {
-    struct frame_fixture s;
-    box_on_floor(&s, gpu);
-    float *exact = seen(&s, "vo:samples=33", 0.5);
+    float *exact = seen(s, exact_spec, 0.5);
+    char with_history[128];
     double noise[2];
+    snprintf(with_history, sizeof with_history, "%s,temporal=true", spec);
     for (int k = 0; k < 2; k++) {
-        struct look look = look_begin(
-            &s, k ? "vo:samples=5,blur=false,temporal=true" : "vo:samples=5,blur=false", 0.5);
-        for (int f = 0; f < 17; f++) fixture_render(&s);
-        float *v = fixture_read(&s, READ_VISIBILITY);
+        struct look look = look_begin(s, k ? with_history : spec, 0.5);
+        for (int f = 0; f < 17; f++) fixture_render(s);
+        float *v = fixture_read(s, READ_VISIBILITY);
         noise[k] = 0.0;
         for (int i = 0; i < PIXELS; i++) noise[k] += fabs((double)(v[i] - exact[i])) / PIXELS;
         free(v);
         look_end(&look);
     }
-    print_message("without history %.4f, with it %.4f\n", noise[0], noise[1]);
+    print_message("%s: without history %.4f, with it %.4f\n", spec, noise[0], noise[1]);
     CHECK(noise[1] < 0.8 * noise[0]); // the rest is bias and the blur of `exact`
     free(exact);
+}
+
+// In a static scene each frame adds a rotation.
+TEST_GPU(temporal_accumulation_reduces_the_noise_of_a_static_image)
+{
+    struct frame_fixture s;
+    box_on_floor(&s, gpu);
+    check_history(&s, "vo:samples=33", "vo:samples=5,blur=false");
+    check_history(&s, "gtao:slices=16,steps=64", "gtao:slices=1,blur=false");
     fixture_finish(&s);
 }
 

@@ -77,7 +77,8 @@ void main()
     out_albedo = vec4(reflectance.rgb, mix(1.0, reflectance.a, from.albedo_alpha != 0u));
     out_normal = converted_normal(texelFetch(normal, pixel, 0));
     out_material = converted_material(texelFetch(material, pixel, 0));
-    out_emissive = mix(vec4(0.0), texelFetch(emissive, pixel, 0), bvec4(from.has_emissive != 0u));
+    vec4 emitted = clamp(texelFetch(emissive, pixel, 0), 0.0, HALF_MAX);
+    out_emissive = mix(vec4(0.0), emitted, bvec4(from.has_emissive != 0u));
 #ifdef GBUFFER_DIELECTRIC
     out_dielectric = texelFetch(dielectric, pixel, 0);
 #endif

@@ -132,6 +132,12 @@ float screen_rotation(uint pattern)
     return fract(float(pattern) * 0.61803399 + view.rotation);
 }
 
+// Jitter of the first step in 0…1: 16 values, in another order than the rotations.
+float screen_jitter(uint pattern)
+{
+    return (float((pattern * 5u) & 15u) + 0.5) / 16.0;
+}
+
 // Reflects the disk across the direction at half the angle.
 mat2 screen_reflection(uint pattern)
 {

@@ -212,8 +212,7 @@ float screen_ao_visibility(screen_point at)
     screen_sphere sphere = screen_sphere_at(at.pixel, at.depth, view.radius_m);
     gtao_point p = point_of(at, sphere);
     float rotation = screen_rotation(at.pattern);
-    // Jitter of the first step: 16 values, in another order than the rotations.
-    float jitter = (float((at.pattern * 5u) & 15u) + 0.5) / 16.0;
+    float jitter = screen_jitter(at.pattern);
     float occluded = 0.0, whole = 0.0;
     for (int i = 0; i < 2 * table.slices; i++) {
         float angle = PI * (float(i) + rotation) / float(table.slices);

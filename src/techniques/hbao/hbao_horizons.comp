@@ -52,8 +52,7 @@ float screen_ao_visibility(screen_point point)
     screen_sphere sphere = screen_sphere_at(point.pixel, point.depth, view.radius_m);
     screen_plane plane = screen_plane_of(sphere, point.n);
     float rotation = screen_rotation(point.pattern);
-    // Jitter of the first step: 16 values, in another order than the rotations.
-    float jitter = (float((point.pattern * 5u) & 15u) + 0.5) / 16.0;
+    float jitter = screen_jitter(point.pattern);
     float sum = 0.0;
     for (int i = 0; i < table.directions; i++) {
         float angle = 6.28318531 * (float(i) + rotation) / float(table.directions);

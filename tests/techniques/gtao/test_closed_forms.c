@@ -84,19 +84,13 @@ static void check_wall(struct frame_fixture *s, const char *options, double radi
     free(at);
 }
 
-// Two walls along the y axis, z = 0 and x = 0, viewed from between them. The closed form falls from
+// The closed form falls from
 // 1 to ½; its mean is 0.82. Steps of a pixel are a tenth of the radius.
 TEST_GPU(visibility_beside_a_wall_is_the_closed_form)
 {
     struct frame_fixture s;
     begin(&s, gpu);
-    const int matte = fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f));
-    fixture_quad(&s, vec3_of(0, -20, 0), vec3_of(20, -20, 0), vec3_of(20, 20, 0), vec3_of(0, 20, 0),
-                 matte);
-    fixture_quad(&s, vec3_of(0, -20, 20), vec3_of(0, -20, 0), vec3_of(0, 20, 0), vec3_of(0, 20, 20),
-                 matte);
-    fixture_look(&s, vec3_of(3, 0, 3), vec3_of(0, 0, 0));
-    fixture_open(&s);
+    fixture_open_two_walls(&s);
     check_wall(&s, "radius=0.9,reach=1,falloff=0,slices=16,steps=32", 0.9, 0.0, 0.012, 0.03);
     check_wall(&s, "radius=0.9,reach=1,falloff=1,slices=16,steps=32", 0.9, 1.0, 0.012, 0.03);
     check_wall(&s, "radius=0.9,reach=1,falloff=0.6,slices=16,steps=32", 0.9, 0.6, 0.012, 0.03);
