@@ -27,8 +27,8 @@ static enum ag_result render(struct ag_device *device, struct ag_scene *scene,
     struct ag_renderer *renderer = NULL;
     const float eye[3] = { 0, 1, 4 }, target[3] = { 0, 1, 0 };
     ag_renderer_desc_default(&desc);
-    desc.width = 320;
-    desc.height = 180;
+    desc.width = 480;
+    desc.height = 270;
     desc.gi = "lpv";
     ag_frame_desc_default(&frame);
     enum ag_result result = ag_scene_look_at(scene, eye, target, 0.7f, &frame.camera);

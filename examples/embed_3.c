@@ -11,9 +11,9 @@
 #include <stdlib.h>
 
 enum {
-    WIDTH = 160,
-    HEIGHT = 90,
-    BORDER = 10,
+    WIDTH = 480,
+    HEIGHT = 270,
+    BORDER = 30,
     ROW = WIDTH + 2 * BORDER,
     ROWS = HEIGHT + 2 * BORDER
 };
@@ -83,7 +83,7 @@ static void run(const struct host_device *host, struct ag_context *context, cons
     ag_renderer_desc_default(&desc);
     desc.width = WIDTH;
     desc.height = HEIGHT;
-    desc.gi = "lpv:dim=16+vo";
+    desc.gi = "lpv+vo";
     mapped_buffer_create(host, 4 * ROW * ROWS, VK_BUFFER_USAGE_TRANSFER_DST_BIT, &picture);
     check(context, host_device_lend(host, context, &device));
     check(context, ag_scene_load(context, "@cornell:light=point", &scene));
