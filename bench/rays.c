@@ -6,7 +6,7 @@
 #include "command_line.h"
 #include "core/parallel.h"
 #include "scene/dark.h"
-#include "scene/defaults.h"
+#include "scene/view/defaults.h"
 #include "trace/trace_scene.h"
 
 #if AG_EMBREE == 4

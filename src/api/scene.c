@@ -2,7 +2,7 @@
 #include "api/objects.h"
 
 #include "scene/dark.h"
-#include "scene/defaults.h"
+#include "scene/view/defaults.h"
 #include "scene/environment_map.h"
 #include "scene/import/import.h"
 #include "scene/limits.h"

@@ -3,7 +3,7 @@
 
 #include "scene/builtin/builtin.h"
 #include "scene/pose.h"
-#include "scene/raycast.h"
+#include "scene/view/raycast.h"
 
 #include "core/rng.h"
 

@@ -4,9 +4,9 @@
 #include "scene/builtin/shapes.h"
 #include "scene/builtin/builtin.h"
 #include "scene/dark.h"
-#include "scene/defaults.h"
+#include "scene/view/defaults.h"
 #include "scene/scene_edit.h"
-#include "scene/raycast.h"
+#include "scene/view/raycast.h"
 
 #include <math.h>
 #include <string.h>

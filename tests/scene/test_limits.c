@@ -2,7 +2,7 @@
 // justifies.
 #include "scene/gltf_maker.h"
 
-#include "scene/defaults.h"
+#include "scene/view/defaults.h"
 #include "scene/limits.h"
 #include "scene/pose.h"
 

@@ -1,7 +1,7 @@
 // Every file below the folder odd of the test scenes gives a scene or one error.
 #include "framework/test.h"
 
-#include "scene/defaults.h"
+#include "scene/view/defaults.h"
 #include "scene/pose.h"
 #include "scene/scene.h"
 

@@ -4,7 +4,7 @@
 #include "core/rng.h"
 #include "core/sampling.h"
 #include "core/sh.h"
-#include "scene/raycast.h"
+#include "scene/view/raycast.h"
 
 #include "techniques/mrt/dictionary/cube_operators.h"
 #include "techniques/mrt/dictionary/gather.h"

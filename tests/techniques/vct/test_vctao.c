@@ -4,7 +4,7 @@
 
 #include "core/sampling.h"
 #include "frame/scene_gpu.h"
-#include "scene/raycast.h"
+#include "scene/view/raycast.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 
 #include "map_cells.h"
 
-#include "scene/defaults.h"
+#include "scene/view/defaults.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 // merges into boxes.
 #pragma once
 
-#include "scene/raycast.h"
+#include "scene/view/raycast.h"
 
 #include "techniques/mrt/dictionary/cube.h"
 

@@ -4,9 +4,9 @@
 // the points) gets a camera inside, or in front of its only open side; an object a camera in front
 // of it. Lengths are relative to the bounds, because files may use other units than metres. Without
 // memory for the rays the scene counts as an object.
-#include "scene/defaults.h"
+#include "scene/view/defaults.h"
 
-#include "scene/direct_light.h"
+#include "scene/view/direct_light.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"

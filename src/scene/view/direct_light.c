@@ -1,5 +1,5 @@
 // Direct light of punctual lights at ray hits.
-#include "scene/direct_light.h"
+#include "scene/view/direct_light.h"
 
 #include <math.h>
 

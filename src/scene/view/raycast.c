@@ -1,7 +1,7 @@
 // A bounding volume hierarchy by binned surface area heuristic (Wald 2007, "On fast Construction of
 // SAH-based Bounding Volume Hierarchies"), the triangle test of Möller & Trumbore 1997 and ordered
 // traversal. Built by one thread, deterministically: 0.1 s for a quarter of a million triangles.
-#include "scene/raycast.h"
+#include "scene/view/raycast.h"
 
 #include "core/hash.h"
 #include "core/saturate.h"

@@ -1,7 +1,7 @@
 // Which surfaces the scene's punctual lights light directly, by shadow rays.
 #pragma once
 
-#include "scene/raycast.h"
+#include "scene/view/raycast.h"
 
 enum { DIRECT_LIGHTS_MAX = 16 };
 
