@@ -1,7 +1,7 @@
 // Images of scenes that are built by calls, and the textures of their materials.
 #include "api/scene_parts.h"
 
-#include "scene/image_source.h"
+#include "scene/images/image_source.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 // An encoded texture in memory: JPEG, PNG, BMP, TGA.
 #include "fuzz/fuzz.h"
 
-#include "scene/image_decode.h"
+#include "scene/images/image_decode.h"
 
 enum { MAX_TEXELS = 1 << 22 };
 

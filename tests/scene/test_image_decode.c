@@ -3,7 +3,7 @@
 #include "framework/test.h"
 
 #include "core/file.h"
-#include "scene/image_decode.h"
+#include "scene/images/image_decode.h"
 
 #include <png.h>
 #include <stdio.h>

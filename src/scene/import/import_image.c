@@ -1,6 +1,6 @@
 #include "scene/import/import_image.h"
 
-#include "scene/image_decode.h"
+#include "scene/images/image_decode.h"
 #include "core/parallel.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // In place of the readers of scene files and encoded images, in a library without them.
-#include "scene/image_source.h"
+#include "scene/images/image_source.h"
 #include "scene/import/import.h"
 
 static struct scene *refuse(struct host *host, const char *name)

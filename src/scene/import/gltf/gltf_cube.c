@@ -4,7 +4,7 @@
 
 #include "scene/cube_map.h"
 #include "scene/environment_map.h"
-#include "scene/image_decode.h"
+#include "scene/images/image_decode.h"
 #include "scene/import/import_files.h"
 #include "scene/import/import_image.h"
 

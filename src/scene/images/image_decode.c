@@ -1,5 +1,5 @@
 // The one file that contains stb_image, which decodes BMP and TGA.
-#include "scene/image_decode.h"
+#include "scene/images/image_decode.h"
 
 #include "image/jpeg_decode.h"
 #include "image/png_decode.h"

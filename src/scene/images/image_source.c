@@ -1,4 +1,4 @@
-#include "scene/image_source.h"
+#include "scene/images/image_source.h"
 
 #include "scene/scene_check.h"
 

@@ -1,6 +1,6 @@
 // Images of a scene from encoded files.
-#include "scene/image_decode.h"
-#include "scene/image_source.h"
+#include "scene/images/image_decode.h"
+#include "scene/images/image_source.h"
 
 // NULL, or the reason of failure.
 static const char *find_size(const void *data, size_t size, struct scene_image *image,
