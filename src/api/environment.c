@@ -1,7 +1,7 @@
 // Environments: checks arguments and forwards to scene/.
 #include "api/objects.h"
 
-#include "scene/environment_map.h"
+#include "scene/environment/environment_map.h"
 #include "scene/limits.h"
 #include "scene/scene_edit.h"
 

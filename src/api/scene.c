@@ -3,7 +3,7 @@
 
 #include "scene/dark.h"
 #include "scene/view/defaults.h"
-#include "scene/environment_map.h"
+#include "scene/environment/environment_map.h"
 #include "scene/import/import.h"
 #include "scene/limits.h"
 #include "scene/rescale.h"

@@ -3,8 +3,8 @@
 #include "core/half.h"
 #include "core/parallel.h"
 #include "frame/frame_shared.h"
-#include "scene/environment_map.h"
-#include "scene/equirect.h"
+#include "scene/environment/environment_map.h"
+#include "scene/environment/equirect.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "scene/environment.h"
 
 #include "core/hash.h"
-#include "scene/environment_map.h"
+#include "scene/environment/environment_map.h"
 #include "scene/pose.h"
 
 static const float Y0 = 0.282094792f; // √(1/4π)

@@ -1,7 +1,7 @@
 // Refuses scenes that 32-bit floats cannot trace.
 #include "scene/limits.h"
 
-#include "scene/environment_map.h"
+#include "scene/environment/environment_map.h"
 #include "scene/scene_check.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 // Each function checks its argument before it changes the scene: a failure leaves it unchanged.
 #include "scene/scene.h"
 
-#include "scene/environment_map.h"
+#include "scene/environment/environment_map.h"
 #include "scene/limits.h"
 #include "scene/scene_check.h"
 

@@ -1,6 +1,6 @@
 #include "scene/scene_edit.h"
 
-#include "scene/environment_map.h"
+#include "scene/environment/environment_map.h"
 #include "scene/mesh_geometry.h"
 #include "scene/scene_check.h"
 

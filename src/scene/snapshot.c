@@ -1,6 +1,6 @@
 #include "scene/snapshot.h"
 
-#include "scene/environment_map.h"
+#include "scene/environment/environment_map.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 #include "trace/environment_sample.h"
 
-#include "scene/environment_map.h"
-#include "scene/equirect.h"
+#include "scene/environment/environment_map.h"
+#include "scene/environment/equirect.h"
 
 #include <math.h>
 

@@ -6,7 +6,7 @@
 #include "trace/surface.h"
 
 #include "core/sampling.h"
-#include "scene/environment_map.h"
+#include "scene/environment/environment_map.h"
 #include "scene/unlit.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "framework/test.h"
 
 #include "core/file.h"
-#include "scene/environment_map.h"
+#include "scene/environment/environment_map.h"
 #include "scene/export/gltf_doc.h"
 #include "scene/pose.h"
 #include "scene/scene_edit.h"

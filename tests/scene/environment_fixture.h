@@ -4,7 +4,7 @@
 #include "framework/test.h"
 
 #include "scene/environment.h"
-#include "scene/environment_map.h"
+#include "scene/environment/environment_map.h"
 
 #include <math.h>
 #include <string.h>

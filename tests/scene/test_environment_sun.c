@@ -2,7 +2,7 @@
 #include "framework/test.h"
 
 #include "scene/environment/find_sun.h"
-#include "scene/equirect.h"
+#include "scene/environment/equirect.h"
 #include "scene/environment/sun_sky.h"
 
 #include <math.h>

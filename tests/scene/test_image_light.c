@@ -2,7 +2,7 @@
 // that is not usable is one warning or one failure.
 #include "scene/image_light_maker.h"
 
-#include "scene/environment_map.h"
+#include "scene/environment/environment_map.h"
 
 // Directions of a face in the scene: of its centre, and of columns and rows of its image.
 static const struct {

@@ -1,6 +1,6 @@
 #include "scene/environment/find_sun.h"
 
-#include "scene/equirect.h"
+#include "scene/environment/equirect.h"
 
 #include <math.h>
 

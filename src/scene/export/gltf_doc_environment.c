@@ -3,7 +3,7 @@
 #include "scene/export/gltf_scene.h"
 
 #include "image/exr.h"
-#include "scene/environment_map.h"
+#include "scene/environment/environment_map.h"
 #include "scene/import/gltf/gltf.h"
 #include "scene/pose.h"
 #include "scene/scene_check.h"

@@ -2,8 +2,8 @@
 // cannot be decoded is noted, like textures.
 #include "scene/import/gltf/gltf.h"
 
-#include "scene/cube_map.h"
-#include "scene/environment_map.h"
+#include "scene/environment/cube_map.h"
+#include "scene/environment/environment_map.h"
 #include "scene/images/image_decode.h"
 #include "scene/import/import_files.h"
 #include "scene/import/import_image.h"

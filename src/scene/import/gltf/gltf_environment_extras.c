@@ -4,7 +4,7 @@
 #include "scene/import/gltf/gltf.h"
 
 #include "image/exr.h"
-#include "scene/environment_map.h"
+#include "scene/environment/environment_map.h"
 
 #include <float.h>
 #include <math.h>

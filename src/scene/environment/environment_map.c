@@ -1,10 +1,10 @@
-#include "scene/environment_map.h"
+#include "scene/environment/environment_map.h"
 
 #include "core/file.h"
 #include "core/hash.h"
 #include "image/exr.h"
 #include "image/hdr.h"
-#include "scene/equirect.h"
+#include "scene/environment/equirect.h"
 #include "scene/limits.h"
 
 #include <math.h>

@@ -1,9 +1,9 @@
-#include "scene/cube_map.h"
+#include "scene/environment/cube_map.h"
 
 #include "core/parallel.h"
 #include "image/png_file.h"
-#include "scene/environment_map.h"
-#include "scene/equirect.h"
+#include "scene/environment/environment_map.h"
+#include "scene/environment/equirect.h"
 
 #include <math.h>
 #include <string.h>
