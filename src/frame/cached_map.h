@@ -3,7 +3,7 @@
 #pragma once
 
 #include "frame/frame_shared.h"
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 
 struct cached_map { // zero: invalid
     struct frame_light light;

@@ -89,7 +89,7 @@ struct frame_view {
     vec3s emitted_irradiance; // scaled lux: mean over the scene, unoccluded (emitters_irradiance)
     const struct scene_pose *pose;
     const struct environment *environment; // physical units
-    const struct scene_gpu *scene;         // triangles and materials on the GPU (frame/scene_gpu.h)
+    const struct scene_gpu *scene; // triangles and materials on the GPU (frame/scene/scene_gpu.h)
     struct frame_camera camera;
     struct box3 bounds; // of the scene, world space; empty for an empty scene
     bool camera_cut, geometry_moved, lights_changed; // since the previous frame

@@ -12,7 +12,7 @@
 #include "frame/gbuffer/convert.h"
 #include "frame/gbuffer/gbuffer.h"
 #include "frame/rsm/rsm.h"
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 #include "frame/shadow/shadow.h"
 
 struct frame_reports {
@@ -102,7 +102,9 @@ void frame_forget_gbuffer(struct frame *frame);
 void frame_destroy_layers(struct frame *frame);
 void frame_clear_unwritten(struct frame *frame, struct gpu_cmd *cmd);
 
-// frame.c. The second: of the same radiance, without images.
+// frame_prepare.c. Whether the display image is of another layer than the colour.
+bool frame_shows_layer(const struct frame_input *input);
+// Variants of composite; the second: of the same radiance, without images.
 uint32_t frame_composite_variant(const struct frame_input *input, uint32_t needs);
 uint32_t frame_meter_variant(uint32_t variant);
 

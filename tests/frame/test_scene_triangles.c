@@ -1,7 +1,7 @@
 // Compute dispatches over the scene's triangles; static and dynamic draws.
 #include "frame/frame_fixture.h"
 
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 #include "frame_test_shaders.h"
 
 #include <stdlib.h>

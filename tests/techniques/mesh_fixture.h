@@ -2,7 +2,7 @@
 // scene's triangles.
 #pragma once
 
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 #include "techniques/lpv/lpv_fixture.h"
 
 struct mesh_fixture {

@@ -2,5 +2,5 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-#include "frame/scene_gpu_shared.h"
+#include "frame/scene/scene_gpu_shared.h"
 #include "frame/gbuffer/gbuffer_fragment.glsl"

@@ -1,7 +1,7 @@
 // The G-buffer pass: rasterises the scene from the camera into FRAME_DEPTH … FRAME_MOTION.
 #pragma once
 
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 
 // The optional layers.
 enum gbuffer_layers {

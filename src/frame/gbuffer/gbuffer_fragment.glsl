@@ -8,7 +8,7 @@
 #include "frame/gbuffer/gbuffer_targets.glsl"
 #include "frame/gbuffer/gbuffer_varyings.glsl"
 #include "frame/octahedral.glsl"
-#include "frame/scene.glsl"
+#include "frame/scene/scene.glsl"
 
 layout(set = 0, binding = 10) uniform sampler2D normal_map;
 layout(set = 0, binding = 11) uniform sampler2D emissive_map;

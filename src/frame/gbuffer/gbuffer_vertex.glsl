@@ -6,7 +6,7 @@
 #define SCENE_VERTEX_FRAME
 #include "frame/frame.glsl"
 #include "frame/gbuffer/gbuffer_varyings.glsl"
-#include "frame/scene.glsl"
+#include "frame/scene/scene.glsl"
 
 #ifdef GBUFFER_ID
 layout(set = 0, binding = 7, scalar) readonly buffer scene_indices

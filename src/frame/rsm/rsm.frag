@@ -10,8 +10,8 @@
 #include "frame/light.glsl"
 #include "frame/octahedral.glsl"
 #include "frame/rsm/rsm_varyings.glsl"
-#include "frame/scene.glsl"
-#include "frame/scene_reflectance.glsl"
+#include "frame/scene/scene.glsl"
+#include "frame/scene/scene_reflectance.glsl"
 
 layout(set = 0, binding = 13, scalar) readonly buffer frame_lights
 {

@@ -4,7 +4,7 @@
 
 #include "frame/frame_shared.h"
 #include "frame/cached_map.h"
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 
 struct rsm {
     struct host *host;

@@ -8,7 +8,7 @@
 #define SCENE_VERTEX_FRAME
 #include "frame/frame.glsl"
 #include "frame/rsm/rsm_varyings.glsl"
-#include "frame/scene.glsl"
+#include "frame/scene/scene.glsl"
 
 void main()
 {

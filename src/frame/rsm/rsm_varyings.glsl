@@ -1,5 +1,5 @@
 // Interpolants and bindings of the reflective shadow map shaders. VARY: `in` or `out`.
-#include "frame/scene_gpu_shared.h"
+#include "frame/scene/scene_gpu_shared.h"
 
 #ifdef RSM_FRAGMENT
 #define VARY in

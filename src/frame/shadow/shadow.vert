@@ -4,7 +4,7 @@
 
 // Depth of opaque shadow casters: positions only.
 #define SCENE_VERTEX
-#include "frame/scene_gpu_shared.h"
+#include "frame/scene/scene_gpu_shared.h"
 
 layout(push_constant, scalar) uniform push_block
 {
@@ -13,7 +13,7 @@ layout(push_constant, scalar) uniform push_block
 }
 push;
 
-#include "frame/scene.glsl"
+#include "frame/scene/scene.glsl"
 
 void main()
 {

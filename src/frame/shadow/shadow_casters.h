@@ -2,7 +2,7 @@
 // masked materials.
 #pragma once
 
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 
 struct shadow_casters {
     struct gpu *gpu;

@@ -4,7 +4,7 @@
 
 // Alpha test of masked shadow casters.
 #define SCENE_FRAGMENT
-#include "frame/scene_gpu_shared.h"
+#include "frame/scene/scene_gpu_shared.h"
 
 layout(push_constant, scalar) uniform push_block
 {
@@ -13,7 +13,7 @@ layout(push_constant, scalar) uniform push_block
 }
 push;
 
-#include "frame/scene.glsl"
+#include "frame/scene/scene.glsl"
 
 layout(location = 0) in vec2 vary_base_color_uv;
 layout(location = 1) in vec4 vary_color;

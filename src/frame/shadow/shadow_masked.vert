@@ -5,7 +5,7 @@
 // Depth of alpha-masked shadow casters.
 #define SCENE_VERTEX
 #define SCENE_VERTEX_SURFACE
-#include "frame/scene_gpu_shared.h"
+#include "frame/scene/scene_gpu_shared.h"
 
 layout(push_constant, scalar) uniform push_block
 {
@@ -14,7 +14,7 @@ layout(push_constant, scalar) uniform push_block
 }
 push;
 
-#include "frame/scene.glsl"
+#include "frame/scene/scene.glsl"
 
 layout(location = 0) out vec2 vary_base_color_uv;
 layout(location = 1) out vec4 vary_color;

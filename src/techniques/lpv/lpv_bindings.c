@@ -2,7 +2,7 @@
 
 #include "techniques/lpv/lpv_state.h"
 
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 
 struct gpu_binding lpv_grid_binding(const struct lpv *lpv, struct gpu_cmd *cmd)
 {

@@ -3,7 +3,7 @@
 #include "techniques/lpv/lpv_state.h"
 
 #include "core/hash.h"
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 
 bool lpv_is_static(const struct scene_draw *draw)
 {

@@ -3,7 +3,7 @@
 
 #include "techniques/lpv/lpv_state.h"
 
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 #include "technique_shaders.h"
 
 // Specialization constants by bit.

@@ -5,7 +5,7 @@
 #include "techniques/lpv/lpv_bindings.h"
 #include "techniques/lpv/lpv_volumes.h"
 
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 
 #include <assert.h>
 

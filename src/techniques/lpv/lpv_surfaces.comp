@@ -9,8 +9,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "frame/scene_triangles.glsl"
-#include "frame/scene_reflectance.glsl"
+#include "frame/scene/scene_triangles.glsl"
+#include "frame/scene/scene_reflectance.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
 
 layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;

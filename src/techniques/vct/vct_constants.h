@@ -1,4 +1,5 @@
-// Specialization constants of the shaders, for C and GLSL. 0 to 4 are those of frame/scene.glsl.
+// Specialization constants of the shaders, for C and GLSL. 0 to 4 are those of
+// frame/scene/scene.glsl.
 #ifndef AG_VCT_CONSTANTS_H
 #define AG_VCT_CONSTANTS_H
 

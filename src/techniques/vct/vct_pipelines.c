@@ -4,13 +4,13 @@
 #include "techniques/vct/vct_constants.h"
 #include "techniques/vct/vct_state.h"
 
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 #include "technique_shaders.h"
 
 #include <string.h>
 
 // Specialization constants that differ from the defaults of the shaders, as bit sets. The first
-// ones are those of frame/scene.glsl, in the same order.
+// ones are those of frame/scene/scene.glsl, in the same order.
 enum {
     TEXTURED = 1 << 0,
     MASKED = 1 << 1,
@@ -29,7 +29,7 @@ enum {
 };
 // Constants of variants for light that most scenes lack.
 enum { MORE_LIGHT = SMALL_EMITTERS | MAP };
-enum { SCENE_BASE_COLOR_MAP = 0, SCENE_MASKED = 4 }; // constant_id's of frame/scene.glsl
+enum { SCENE_BASE_COLOR_MAP = 0, SCENE_MASKED = 4 }; // constant_id's of frame/scene/scene.glsl
 
 static void fill_constants(const struct vct_options *options, struct gpu_constant *out)
 {

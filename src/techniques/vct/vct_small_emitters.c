@@ -2,7 +2,7 @@
 #include "techniques/vct/vct_small_emitters.h"
 
 #include "core/rng.h"
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 
 #include <math.h>
 

@@ -4,7 +4,7 @@
 
 // Totals of a draw's triangles: count, count of solid centroids, and area in 1/1024 m². Integer
 // sums do not depend on the order.
-#include "frame/scene_triangles.glsl"
+#include "frame/scene/scene_triangles.glsl"
 
 layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
 

@@ -3,7 +3,7 @@
 #include "techniques/vct/vct_twin.h"
 
 #include "core/sampling.h"
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 #include "scene/view/raycast.h"
 
 #include <math.h>

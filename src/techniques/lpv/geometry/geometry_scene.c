@@ -6,7 +6,7 @@
 #include "techniques/lpv/lpv_state.h"
 #include "techniques/lpv/lpv_volumes.h"
 
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 
 static void record_coverage(struct lpv *lpv, struct gpu_cmd *cmd, const struct scene_gpu *scene,
                             bool (*wanted)(const struct scene_draw *draw), gpu_buffer coverage)

@@ -3,7 +3,7 @@
 #include "techniques/vct/vct_bindings.h"
 #include "techniques/vct/vct_state.h"
 
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 
 #include <string.h>
 

@@ -3,7 +3,7 @@
 #ifndef AG_VCT_MATERIAL_GLSL
 #define AG_VCT_MATERIAL_GLSL
 
-#include "frame/scene_reflectance.glsl"
+#include "frame/scene/scene_reflectance.glsl"
 
 layout(set = 0, binding = 9) uniform sampler2D metallic_roughness_map;
 layout(set = 0, binding = 11) uniform sampler2D emissive_map;

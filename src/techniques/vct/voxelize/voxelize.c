@@ -7,7 +7,7 @@
 #include "techniques/vct/vct_bindings.h"
 #include "techniques/vct/vct_state.h"
 
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 
 static enum vct_draw_kind kind_of(const struct vct *vct, const struct scene_gpu *scene, int index)
 {

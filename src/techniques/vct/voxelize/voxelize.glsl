@@ -7,7 +7,7 @@
 // VCT_RASTER takes the columns from the rasterizer (voxelize/raster.glsl), in its fragment stage
 // with VCT_FRAGMENT; VCT_DEFERS leaves some voxels of large triangles to a second visit. The
 // includer defines vct_begin_triangle(), vct_visit() and vct_visit_deferred() after the inclusion.
-#include "frame/scene_triangles.glsl"
+#include "frame/scene/scene_triangles.glsl"
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/voxelize/overlap.glsl"
 #include "techniques/vct/voxelize/voxelize_shared.h"

@@ -1,7 +1,7 @@
 // Parts of the scene on the GPU, shared by scene_gpu*.c.
 #pragma once
 
-#include "frame/scene_gpu.h"
+#include "frame/scene/scene_gpu.h"
 
 // Positions and tangent frames of one mesh in the format of the GPU.
 struct packed_vertices {

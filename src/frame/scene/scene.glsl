@@ -4,7 +4,7 @@
 #ifndef AG_FRAME_SCENE_GLSL
 #define AG_FRAME_SCENE_GLSL
 
-#include "frame/scene_gpu_shared.h"
+#include "frame/scene/scene_gpu_shared.h"
 
 // Pipeline variants: one per set of maps that a material has.
 layout(constant_id = SCENE_CONSTANT_BASE_COLOR_MAP) const bool HAS_BASE_COLOR_MAP = false;

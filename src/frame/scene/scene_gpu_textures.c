@@ -4,7 +4,7 @@
 //
 // Normals have 16-bit floats: filters of 8-bit textures may round every product down, as lavapipe's
 // do, which turns normals by half a degree to one side.
-#include "frame/scene_gpu_build.h"
+#include "frame/scene/scene_gpu_build.h"
 
 #include <math.h>
 

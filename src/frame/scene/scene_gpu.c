@@ -1,5 +1,5 @@
 // Vertex streams, materials and draws of a new scene.
-#include "frame/scene_gpu_build.h"
+#include "frame/scene/scene_gpu_build.h"
 
 #include "frame/octahedral.h"
 #include "scene/statics.h"

@@ -5,7 +5,7 @@
 #include "gpu/gpu.h"
 #include "scene/pose.h"
 
-#include "frame/scene_gpu_shared.h"
+#include "frame/scene/scene_gpu_shared.h"
 
 // Pipeline variants: bit SCENE_CONSTANT_… per map that a material has.
 enum scene_variant {

@@ -1,6 +1,6 @@
 // The scene on the GPU follows changes of the scene: what was added, removed or made movable. Parts
 // are built beside the present ones and take their place when they are complete.
-#include "frame/scene_gpu_build.h"
+#include "frame/scene/scene_gpu_build.h"
 
 #include <string.h>
 

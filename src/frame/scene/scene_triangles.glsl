@@ -4,7 +4,7 @@
 #ifndef AG_FRAME_SCENE_TRIANGLES_GLSL
 #define AG_FRAME_SCENE_TRIANGLES_GLSL
 
-#include "frame/scene_gpu_shared.h"
+#include "frame/scene/scene_gpu_shared.h"
 
 layout(push_constant, scalar) uniform push_block
 {
@@ -16,7 +16,7 @@ push;
 
 #define SCENE_VERTEX
 #define SCENE_VERTEX_SURFACE
-#include "frame/scene.glsl"
+#include "frame/scene/scene.glsl"
 
 layout(set = 0, binding = 7, scalar) readonly buffer scene_indices
 {

@@ -1,5 +1,5 @@
 // Per-frame update of the scene on the GPU, and recording of its draws and dispatches.
-#include "frame/scene_gpu_build.h"
+#include "frame/scene/scene_gpu_build.h"
 
 #include "frame/octahedral.h"
 #include "frame/projection.h"
