@@ -1,4 +1,4 @@
-// Whole-file reads and atomic writes (temporary file, then rename).
+// Reads into memory and atomic writes (temporary file, then rename).
 #include "core/file.h"
 
 #include <errno.h>
@@ -52,13 +52,11 @@ static bool open_regular(struct host *host, const char *path, uint64_t max_bytes
     return false;
 }
 
-bool file_read(struct host *host, const char *path, size_t max_bytes, struct file_bytes *out)
+// Reads the first bytes and closes the file.
+static bool read_first(struct host *host, const char *path, int fd, size_t size,
+                       struct file_bytes *out)
 {
-    *out = (struct file_bytes){ 0 };
-    int fd = -1;
-    size_t size = 0, padded = 0;
-    if (!open_regular(host, path, max_bytes ? max_bytes : MAX_BYTES_DEFAULT, &fd, &size))
-        return false;
+    size_t padded = 0;
     if (!size_add(size, 1, &padded)) padded = SIZE_MAX; // host_alloc fails
     out->data = host_alloc(host, padded, 1);
     if (!out->data) goto fail;
@@ -78,6 +76,24 @@ fail:
     close(fd);
     file_bytes_finish(host, out);
     return false;
+}
+
+bool file_read(struct host *host, const char *path, size_t max_bytes, struct file_bytes *out)
+{
+    int fd = -1;
+    size_t size = 0;
+    *out = (struct file_bytes){ 0 };
+    return open_regular(host, path, max_bytes ? max_bytes : MAX_BYTES_DEFAULT, &fd, &size) &&
+           read_first(host, path, fd, size, out);
+}
+
+bool file_read_start(struct host *host, const char *path, size_t bytes, struct file_bytes *out)
+{
+    int fd = -1;
+    size_t size = 0;
+    *out = (struct file_bytes){ 0 };
+    return open_regular(host, path, UINT64_MAX, &fd, &size) &&
+           read_first(host, path, fd, size < bytes ? size : bytes, out);
 }
 
 bool file_bytes_copy(struct host *host, const void *data, size_t size, struct file_bytes *out)

@@ -1,4 +1,4 @@
-// Files: whole-file reads and atomic writes (temporary file in the same folder, then rename).
+// Files: reads into memory and atomic writes (temporary file in the same folder, then rename).
 // Symbolic links are followed, except in the folder host->no_links_in: there a link is not read,
 // and a write replaces the link.
 #pragma once
@@ -17,6 +17,8 @@ struct file_bytes {
 // Reads a regular file of at most max_bytes (0: 4 GiB). Failure names the path. Free with
 // file_bytes_finish.
 bool file_read(struct host *host, const char *path, size_t max_bytes, struct file_bytes *out);
+// Its first bytes, or all of a shorter one; the file may have any size.
+bool file_read_start(struct host *host, const char *path, size_t bytes, struct file_bytes *out);
 // A copy of bytes in memory, of at most 4 GiB.
 bool file_bytes_copy(struct host *host, const void *data, size_t size, struct file_bytes *out);
 void file_bytes_finish(struct host *host, struct file_bytes *bytes);

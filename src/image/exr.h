@@ -35,6 +35,6 @@ bool exr_read(struct host *host, const char *path, const char *layer, struct ima
 bool exr_read_size(struct host *host, const char *path, int *width, int *height);
 // Names of all layers, '\n'-separated, owned by the caller; NULL on failure.
 char *exr_layer_names(struct host *host, const char *path);
-// The text attribute `name`, owned by the caller; NULL when it is absent (not a failure) or the
-// file is invalid.
+// The text attribute `name`, from the header, owned by the caller; NULL when it is absent (not a
+// failure) or the header is invalid.
 char *exr_attribute_value(struct host *host, const char *path, const char *name);

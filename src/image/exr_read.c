@@ -1,5 +1,5 @@
-// Reading OpenEXR through its C core. The whole file is read into memory first, which bounds every
-// read of the library.
+// Reading OpenEXR through its C core. The whole file, or its start where the header alone counts,
+// is read into memory first, which bounds every read of the library.
 #include "image/exr_file.h"
 
 #include <stdio.h>
@@ -151,23 +151,26 @@ static bool check_kind(struct exr_file *file)
     return true;
 }
 
-// The file has its bytes.
+// The file has its bytes. On failure it has no context.
+static exr_result_t create_context(struct exr_file *file)
+{
+    exr_context_initializer_t init = exr_initializer(file);
+    init.read_fn = read_bytes;
+    init.size_fn = count_bytes;
+    init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION; // a truncated file is an error
+    const exr_result_t code = exr_start_read(&file->context, file->path, &init);
+    if (code != EXR_ERR_SUCCESS) file->context = NULL; // already released by the library
+    return code;
+}
+
 static bool start_reading(struct exr_file *file)
 {
     static const uint8_t magic[4] = { 0x76, 0x2f, 0x31, 0x01 };
     if (file->bytes.size < sizeof magic || memcmp(file->bytes.data, magic, sizeof magic) != 0)
         return host_fail(file->host, FAIL_FORMAT, "cannot read %s: not an OpenEXR file",
                          file->path);
-    exr_context_initializer_t init = exr_initializer(file);
-    init.read_fn = read_bytes;
-    init.size_fn = count_bytes;
-    init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION; // a truncated file is an error
-    exr_result_t code = exr_start_read(&file->context, file->path, &init);
-    if (code != EXR_ERR_SUCCESS) {
-        file->context = NULL; // already released by the library
-        return exr_fail_reading(file, code);
-    }
-    return check_kind(file);
+    const exr_result_t code = create_context(file);
+    return code == EXR_ERR_SUCCESS ? check_kind(file) : exr_fail_reading(file, code);
 }
 
 // On failure the caller still calls exr_file_finish.
@@ -175,6 +178,18 @@ static bool exr_file_open(struct exr_file *file, struct host *host, const char *
 {
     *file = (struct exr_file){ .host = host, .path = path };
     return file_read(host, path, 0, &file->bytes) && start_reading(file);
+}
+
+// Reads no more than a header usually needs. The pixels are absent then.
+static bool exr_file_open_header(struct exr_file *file, struct host *host, const char *path)
+{
+    enum { HEADER_BYTES = 1 << 20 };
+    *file = (struct exr_file){ .host = host, .path = path };
+    if (!file_read_start(host, path, HEADER_BYTES, &file->bytes)) return false;
+    if (file->bytes.size < HEADER_BYTES) return start_reading(file);
+    if (create_context(file) == EXR_ERR_SUCCESS) return check_kind(file);
+    exr_file_finish(file);
+    return exr_file_open(file, host, path);
 }
 
 static bool get_channels(struct exr_file *file, const exr_attr_chlist_t **out)
@@ -361,7 +376,7 @@ static bool read_size(struct exr_file *file, int *width, int *height)
 bool exr_read_size(struct host *host, const char *path, int *width, int *height)
 {
     struct exr_file file;
-    const bool ok = exr_file_open(&file, host, path) && read_size(&file, width, height);
+    const bool ok = exr_file_open_header(&file, host, path) && read_size(&file, width, height);
     exr_file_finish(&file);
     return ok;
 }
@@ -387,7 +402,7 @@ char *exr_layer_names(struct host *host, const char *path)
     struct exr_file file;
     const exr_attr_chlist_t *list;
     char *names = NULL;
-    if (exr_file_open(&file, host, path) && get_channels(&file, &list))
+    if (exr_file_open_header(&file, host, path) && get_channels(&file, &list))
         names = join_layer_names(host, list);
     exr_file_finish(&file);
     return names;
@@ -399,7 +414,7 @@ char *exr_attribute_value(struct host *host, const char *path, const char *name)
     int32_t length = 0;
     const char *text = NULL;
     char *value = NULL;
-    if (exr_file_open(&file, host, path) &&
+    if (exr_file_open_header(&file, host, path) &&
         exr_attr_get_string(file.context, 0, name, &length, &text) == EXR_ERR_SUCCESS)
         value = host_sprintf(host, "%.*s", length, text ? text : "");
     exr_file_finish(&file);

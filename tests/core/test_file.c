@@ -106,6 +106,22 @@ TEST(empty_file_is_zero_bytes)
     file_bytes_finish(test_host(), &bytes);
 }
 
+TEST(start_of_a_file_is_read_whatever_its_size)
+{
+    const char *path = test_path("start");
+    struct file_bytes bytes;
+    write_text(path, "12345");
+    CHECK(file_read_start(test_host(), path, 6, &bytes) && bytes.size == 5);
+    CHECK_STRING((const char *)bytes.data, "12345");
+    file_bytes_finish(test_host(), &bytes);
+    assert_int_equal(truncate(path, (off_t)5 << 30), 0); // sparse
+    CHECK(file_read_start(test_host(), path, 3, &bytes) && bytes.size == 3);
+    CHECK_STRING((const char *)bytes.data, "123");
+    file_bytes_finish(test_host(), &bytes);
+    CHECK(!file_read_start(test_host(), test_path("no-start"), 3, &bytes) && !bytes.data);
+    CHECK(strstr(test_last_message(), "No such file or directory"));
+}
+
 TEST(unreadable_files_fail_with_a_message)
 {
     check_unreadable(test_path("missing"), 0, "No such file or directory");

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static bool same_image(const struct image *a, const struct image *b)
 {
@@ -182,6 +183,56 @@ TEST(text_attributes_come_back_and_absent_ones_are_no_failure)
     CHECK(!exr_attribute_value(test_host(), "/nowhere/at.exr", "technique"));
     CHECK(strstr(test_last_message(), "/nowhere/at.exr"));
     for (int i = 0; i < 5; i++) image_finish(&images[i], test_host());
+}
+
+static void check_attribute(const char *path, const char *expected)
+{
+    char *value = exr_attribute_value(test_host(), path, "scene");
+    CHECK(value);
+    CHECK_STRING(value, expected);
+    host_free(test_host(), value);
+}
+
+static void write_attribute(const char *path, const char *value)
+{
+    struct image image;
+    noise_image(&image, 64, 64, 3);
+    CHECK(exr_write(test_host(), path, &(struct exr_layer){ "color", &image }, 1,
+                    &(struct exr_attribute){ "scene", value }, 1));
+    image_finish(&image, test_host());
+}
+
+// A file of 5 GiB would not be read whole.
+TEST(an_attribute_is_read_from_the_header_alone)
+{
+    struct image image;
+    int width, height;
+    const char *path = test_path("header.exr");
+    write_attribute(path, "@maze");
+    CHECK(truncate(path, (off_t)5 << 30) == 0);
+    check_attribute(path, "@maze");
+    CHECK(exr_read_size(test_host(), path, &width, &height) && width == 64 && height == 64);
+    CHECK(!exr_read(test_host(), path, NULL, &image));
+    CHECK(strstr(test_last_message(), "more than the 4294967296 allowed"));
+    CHECK(truncate(path, 2000) == 0); // without most pixels
+    check_attribute(path, "@maze");
+    CHECK(truncate(path, 100) == 0);
+    CHECK(!exr_attribute_value(test_host(), path, "scene"));
+    CHECK(strstr(test_last_message(), path));
+}
+
+TEST(a_header_of_any_length_is_read)
+{
+    static char longest[(3 << 20) + 1];
+    const char *path = test_path("long-header.exr");
+    memset(longest, 'x', sizeof longest - 1);
+    write_attribute(path, longest);
+    test_forget_messages();
+    check_attribute(path, longest);
+    CHECK_STRING(test_last_message(), "");
+    CHECK(truncate(path, 2 << 20) == 0);
+    CHECK(!exr_attribute_value(test_host(), path, "scene"));
+    CHECK(strstr(test_last_message(), path));
 }
 
 TEST(the_same_layers_give_the_same_bytes)
