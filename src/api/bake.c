@@ -1,6 +1,7 @@
 // Bakes: checks arguments and forwards to bake/ and the techniques.
 #include "api/bake_state.h"
 
+#include "core/c_locale.h"
 #include "lightmap/lightmap.h"
 #include "techniques/gi_bake.h"
 
@@ -397,7 +398,7 @@ static void report_options(struct report *report, const struct technique *techni
         const struct option_row *row = &technique->options.rows[i];
         option_print(row, options, value, sizeof value);
         char *end = NULL;
-        const double number = strtod(value, &end);
+        const double number = c_locale_parse(value, &end);
         if (row->type == OPTION_TYPE_bool8)
             report_bool(report, row->name, strcmp(value, "true") == 0);
         else if (row->type != OPTION_TYPE_choice && row->type != OPTION_TYPE_text && *end == 0)

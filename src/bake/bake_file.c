@@ -1,5 +1,8 @@
-// Bake files: identity in the metadata, and a hash of the whole content.
+// Bake files: identity in the metadata, and a hash of the whole content. Numbers are those of the C
+// locale, so that a file serves in every one.
 #include "bake/bake_state.h"
+
+#include "core/c_locale.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -27,7 +30,7 @@ static void add_scene(struct identity_text *text, const struct bake_identity *id
 {
     if (id->scene_name) add_metadata(text, SCENE_NAME, id->scene_name);
     if (!(id->scene_scale > 0.0f) || id->scene_scale == 1.0f) return;
-    snprintf(text->scale, sizeof text->scale, "%.9g", (double)id->scene_scale);
+    c_locale_print(text->scale, sizeof text->scale, "%.9g", (double)id->scene_scale);
     add_metadata(text, SCENE_SCALE, text->scale);
 }
 
@@ -50,7 +53,7 @@ void identity_print(const struct bake *bake, const char *kind, double seconds,
     if (strcmp(kind, PARTIAL) == 0 && id->gi) add_metadata(out, GI, id->gi);
     if (strcmp(kind, PARTIAL) == 0) add_scene(out, id);
     if (isnan(seconds)) return;
-    snprintf(out->seconds, sizeof out->seconds, "%.3f", seconds);
+    c_locale_print(out->seconds, sizeof out->seconds, "%.3f", seconds);
     add_metadata(out, SECONDS, out->seconds);
 }
 
@@ -174,7 +177,7 @@ double identity_seconds(const struct tensors *set)
 {
     const char *text = tensors_metadata(set, SECONDS);
     char *end = NULL;
-    const double seconds = text ? strtod(text, &end) : (double)NAN;
+    const double seconds = text ? c_locale_parse(text, &end) : (double)NAN;
     return text && *end == 0 && seconds >= 0.0 && isfinite(seconds) ? seconds : (double)NAN;
 }
 
@@ -189,8 +192,8 @@ static const char *print_stage_seconds(struct bake *bake)
     for (int s = 0; s < plan->stage_count; s++) size += strlen(plan->stages[s].what.name) + NUMBER;
     char *text = arena_alloc(&bake->plan.arena, size, 1);
     for (int s = 0; text && s < plan->stage_count; s++)
-        used += (size_t)snprintf(text + used, size - used, "%s%s=%.4g", s > 0 ? ";" : "",
-                                 plan->stages[s].what.name, plan->stages[s].seconds);
+        used += (size_t)c_locale_print(text + used, size - used, "%s%s=%.4g", s > 0 ? ";" : "",
+                                       plan->stages[s].what.name, plan->stages[s].seconds);
     return text;
 }
 
@@ -200,7 +203,7 @@ static double parse_stage_seconds(const char *text, const char *name)
     const size_t length = strlen(name);
     for (const char *at = text; at; at = strchr(at, ';'), at = at ? at + 1 : NULL) {
         if (strncmp(at, name, length) != 0 || at[length] != '=') continue;
-        const double seconds = strtod(at + length + 1, NULL);
+        const double seconds = c_locale_parse(at + length + 1, NULL);
         return seconds >= 0.0 && isfinite(seconds) ? seconds : (double)NAN;
     }
     return (double)NAN;
@@ -293,8 +296,10 @@ bool bake_file_technique(struct host *host, const char *path, char *out, size_t 
 static float scale_of(const struct tensors *set)
 {
     const char *text = tensors_metadata(set, SCENE_SCALE);
-    const float scale = text ? strtof(text, NULL) : 1.0f;
-    return isfinite(scale) && scale > 0.0f ? scale : 0.0f;
+    char *end = NULL;
+    if (!text) return 1.0f;
+    const float scale = (float)c_locale_parse(text, &end);
+    return *end == 0 && isfinite(scale) && scale > 0.0f ? scale : 0.0f;
 }
 
 static bool read_origin(struct host *host, const char *path, const struct tensors *set,

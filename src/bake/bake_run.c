@@ -1,6 +1,8 @@
 // A run from the outside: the memory it may take, the checkpoint it resumes, the tasks.
 #include "bake/bake_state.h"
 
+#include "core/c_locale.h"
+
 #include <stdio.h>
 
 static void print_advice(const struct bake *bake, uint64_t needed,
@@ -9,7 +11,7 @@ static void print_advice(const struct bake *bake, uint64_t needed,
     const double density =
         advised_density(bake, needed, options->max_memory_bytes, options->threads);
     if (density > 0.0)
-        snprintf(out, BAKE_TEXT, "density=%.3g fits", density);
+        c_locale_print(out, BAKE_TEXT, "density=%.3g fits", density);
     else
         snprintf(out, BAKE_TEXT, "choose smaller options or fewer threads");
 }

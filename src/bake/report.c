@@ -1,6 +1,8 @@
 // JSON, written from front to back.
 #include "bake/report.h"
 
+#include "core/c_locale.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -119,7 +121,7 @@ void report_end(struct report *report)
 void report_number(struct report *report, const char *name, double value)
 {
     char text[NUMBER_TEXT];
-    snprintf(text, sizeof text, "%.9g", value);
+    c_locale_print(text, sizeof text, "%.9g", value);
     begin_value(report, name);
     append_text(report, isfinite(value) ? text : "null");
 }

@@ -1,33 +1,15 @@
 // Option tables: defaults, parsing, printing, JSON, and the effect of changes.
 #include "core/option.h"
 
+#include "core/c_locale.h"
+
 #include <errno.h>
-#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { VALUE_SIZE = 64, LIST_SIZE = 512, NAME_MAX_LENGTH = 63, MAX_KNOWN = 128 };
-
-// Switches this thread to the C locale, so that numbers have a decimal point.
-struct c_locale {
-    locale_t c, before;
-};
-
-static struct c_locale c_locale_enter(void)
-{
-    struct c_locale scope = { .c = newlocale(LC_ALL_MASK, "C", (locale_t)0) };
-    if (scope.c) scope.before = uselocale(scope.c);
-    return scope;
-}
-
-static void c_locale_leave(struct c_locale scope)
-{
-    if (!scope.c) return;
-    uselocale(scope.before);
-    freelocale(scope.c);
-}
 
 static void *field_of(const struct option_row *row, void *options)
 {

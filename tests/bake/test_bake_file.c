@@ -4,6 +4,7 @@
 #include "core/file.h"
 #include "framework/test.h"
 
+#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -138,6 +139,53 @@ TEST(bake_part_says_what_it_is_a_part_of)
     bake_origin_finish(test_host(), &origin);
     bake_destroy(bake);
     CHECK(!bake_partial_origin(test_host(), write_sample(false), &origin) && !origin.gi);
+}
+
+static void write_part(const char *path, float scale)
+{
+    struct bake_sample sample = bake_sample_default();
+    struct bake_identity identity = bake_sample_identity();
+    identity.scene_scale = scale;
+    struct bake *bake = bake_sample_create(&sample, &identity);
+    CHECK(bake_run(bake, &(struct bake_run_options){ .shard = 0, .shard_count = 2 }));
+    CHECK(bake_save_partial(bake, path));
+    bake_destroy(bake);
+}
+
+static float scale_of_part(const char *path)
+{
+    struct bake_origin origin;
+    CHECK(bake_partial_origin(test_host(), path, &origin));
+    const float scale = origin.scene_scale;
+    bake_origin_finish(test_host(), &origin);
+    return scale;
+}
+
+TEST(bake_part_states_its_scale)
+{
+    const char *path = test_path("scaled");
+    write_part(path, 0.7f);
+    CHECK(scale_of_part(path) == 0.7f);
+    write_part(path, 1.0f);
+    CHECK(scale_of_part(path) == 1.0f);
+}
+
+TEST(bake_files_have_decimal_points_in_every_locale)
+{
+    const char *point = test_path("point"), *comma = test_path("comma");
+    struct bake_sample sample = bake_sample_default();
+    struct bake *bake = bake_sample_create(&sample, NULL);
+    write_part(point, 0.7f);
+    test_use_decimal_comma();
+    write_part(comma, 0.7f);
+    const float of_point = scale_of_part(point);
+    const bool loaded = bake_load(bake, write_sample(true));
+    const double in_comma = bake_seconds(bake), stage_in_comma = bake_stage_info(bake, 0).seconds;
+    setlocale(LC_ALL, "C");
+    CHECK(of_point == 0.7f && scale_of_part(comma) == 0.7f);
+    CHECK(loaded && bake_load(bake, test_path("file.safetensors")));
+    CHECK(bake_seconds(bake) == in_comma && bake_stage_info(bake, 0).seconds == stage_in_comma);
+    bake_destroy(bake);
 }
 
 TEST(bake_file_names_its_technique)

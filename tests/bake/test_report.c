@@ -3,6 +3,7 @@
 
 #include "framework/test.h"
 
+#include <locale.h>
 #include <math.h>
 
 TEST(report_is_json_of_its_members)
@@ -38,5 +39,15 @@ TEST(report_with_an_open_or_unopened_object_has_no_text)
     report_end(report);
     report_end(report);
     CHECK(!report_text(report));
+    report_destroy(report);
+}
+
+TEST(report_has_a_decimal_point_in_every_locale)
+{
+    struct report *report = report_create(test_host());
+    test_use_decimal_comma();
+    report_number(report, "seconds", 1.5);
+    setlocale(LC_ALL, "C");
+    CHECK_STRING(report_text(report), "{\"seconds\": 1.5}");
     report_destroy(report);
 }

@@ -1,5 +1,6 @@
 #include "framework/test.h"
 
+#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -59,6 +60,14 @@ void test_skip(const char *reason)
     current->reason = reason;
     _skip(__FILE__, __LINE__);
     abort();
+}
+
+void test_use_decimal_comma(void)
+{
+    static const char *const names[] = { "de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE" };
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (setlocale(LC_ALL, names[i])) return;
+    test_skip("no locale with a decimal comma");
 }
 
 double test_time_factor(void)

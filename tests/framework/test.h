@@ -49,6 +49,10 @@ void test_check(bool condition, const char *text, const char *file, int line);
 // for all tests that lack the same thing.
 __attribute__((noreturn)) void test_skip(const char *reason);
 
+// A locale with a decimal comma until setlocale(LC_ALL, "C"). Reports the running test as skipped
+// where there is none.
+void test_use_decimal_comma(void);
+
 // Factor of time limits on a loaded machine, from AFTERGLOW_TEST_TIME_FACTOR: at least 1.
 double test_time_factor(void);
 void test_pause_ms(double ms);
