@@ -3,6 +3,7 @@
 
 #include "core/c_locale.h"
 #include "lightmap/lightmap.h"
+#include "scene/rescale.h"
 #include "techniques/gi_bake.h"
 
 #include <stdio.h>
@@ -339,6 +340,8 @@ static bool take_origin(struct host *host, const char *path, const struct bake_o
         strlen(origin->scene_name) >= sizeof out->scene_name)
         return host_fail(host, FAIL_FORMAT, "cannot use %s: its GI spec or scene is too long",
                          path);
+    if (!(origin->scene_scale >= SCENE_SCALE_MIN && origin->scene_scale <= SCENE_SCALE_MAX))
+        return host_fail(host, FAIL_FORMAT, "cannot use %s: its scale of the scene is wrong", path);
     snprintf(out->gi, sizeof out->gi, "%s", origin->gi);
     snprintf(out->scene_name, sizeof out->scene_name, "%s", origin->scene_name);
     out->seed = origin->seed;

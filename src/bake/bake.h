@@ -81,7 +81,7 @@ const char *bake_split_stage(const struct bake *bake);
 // The bake that a partial file is a part of: new texts owned by the caller, and the seed.
 struct bake_origin {
     char *technique, *options, *gi, *scene_name;
-    float scene_scale;
+    float scene_scale; // NaN: the file's is no number
     uint64_t seed;
 };
 void bake_origin_finish(struct host *host, struct bake_origin *origin);

@@ -145,6 +145,7 @@ static bool fail_options(struct host *host, const char *path, const struct tenso
     const char *value = tensors_metadata(set, OPTIONS);
     if (!value) return fail_use(host, path, "it does not state its options");
     option_differences(value, wanted, differences, sizeof differences);
+    if (!differences[0]) return fail_use(host, path, "its list of options is wrong");
     return host_fail(host, FAIL_FORMAT, "cannot use %s: it has other options: %s", path,
                      differences);
 }
@@ -292,14 +293,14 @@ bool bake_file_technique(struct host *host, const char *path, char *out, size_t 
     return name || fail_use(host, path, "it is not a bake of this program");
 }
 
-// 1 in a file without the entry, 0 for a wrong one.
+// 1 in a file without the entry, NaN for a text that is no number.
 static float scale_of(const struct tensors *set)
 {
     const char *text = tensors_metadata(set, SCENE_SCALE);
     char *end = NULL;
     if (!text) return 1.0f;
     const float scale = (float)c_locale_parse(text, &end);
-    return *end == 0 && isfinite(scale) && scale > 0.0f ? scale : 0.0f;
+    return end != text && *end == 0 ? scale : NAN;
 }
 
 static bool read_origin(struct host *host, const char *path, const struct tensors *set,
@@ -316,7 +317,6 @@ static bool read_origin(struct host *host, const char *path, const struct tensor
     out->scene_name = host_strdup(host, name);
     out->seed = strtoull(seed, NULL, 10);
     out->scene_scale = scale_of(set);
-    if (!(out->scene_scale > 0.0f)) return fail_use(host, path, "its scale of the scene is wrong");
     return out->technique && out->options && out->gi && out->scene_name;
 }
 

@@ -83,6 +83,9 @@ TEST(bake_file_of_another_identity_is_refused_with_the_difference)
     other.options = "rows=24,modes=3";
     CHECK(!loads(path, &other, NULL));
     CHECK(strstr(test_last_message(), "it has other options: rows is 23, not 24"));
+    other.options = "modes=3,rows=23";
+    CHECK(!loads(path, &other, NULL));
+    CHECK(strstr(test_last_message(), "its list of options is wrong"));
     CHECK(!loads(path, NULL, "another scene"));
     CHECK(strstr(test_last_message(), "it is of another scene"));
 }

@@ -177,6 +177,38 @@ TEST(bake_refuses_parts_of_another_bake_and_complete_files)
     CHECK(strstr(r->err, "its kind is bake, not partial") && !file_exists(out));
 }
 
+// Replaces a text of the file by one of the same length.
+static void replace_text(const char *path, const char *from, const char *to)
+{
+    static char bytes[65536];
+    FILE *file = fopen(path, "rb");
+    CHECK(file);
+    const size_t size = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    char *at = size < sizeof bytes ? memmem(bytes, size, from, strlen(from)) : NULL;
+    CHECK(at && strlen(from) == strlen(to));
+    memcpy(at, to, strlen(to));
+    write_file(path, bytes, size);
+}
+
+// A damaged file is a failure, not wrong usage.
+TEST(bake_refuses_a_part_whose_scale_is_damaged)
+{
+    static const char *const wrong[] = { "\"1e30\"", "\"1e-9\"", "\"-0.5\"", "\"0,25\"",
+                                         "\"nan \"" };
+    use_cache("bake-wrong-scale");
+    const char *part = path_of("scaled-part.safetensors"),
+               *out = path_of("wrong-scale.safetensors");
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        run_expect(0, "bake @cornell --gi sample --scene-scale 0.25 --shard 0/2 -o", part, NULL);
+        replace_text(part, "\"0.25\"", wrong[i]);
+        const struct run *r = run_expect(1, "bake --merge", part, "-o", out, NULL);
+        check_one_error_line(r);
+        CHECK(strstr(r->err, part) && strstr(r->err, "its scale of the scene is wrong"));
+        CHECK(!file_exists(out));
+    }
+}
+
 // ---- Ctrl-C
 
 static double now_s(void)
@@ -295,7 +327,6 @@ static void check_refused_bake(const char *words, const char *bake, const char *
     CHECK(strstr(r->err, bake) && !file_exists(image));
 }
 
-// Before the scene is loaded: there is none of that name.
 TEST(render_with_a_file_that_is_no_bake_says_what_it_is)
 {
     char image[300];
@@ -313,6 +344,7 @@ TEST(render_with_a_file_that_is_no_bake_says_what_it_is)
     CHECK(strstr(r->err, "it is not a safetensors file"));
 }
 
+// Before the scene is loaded: there is none of that name.
 TEST(bake_file_that_no_technique_of_the_run_uses_is_refused)
 {
     use_cache("bake-unused");
