@@ -18,7 +18,7 @@ _afterglow()
     [[ ${#COMPREPLY[@]} == 1 && ${COMPREPLY[0]} == *[:=] ]] && compopt -o nospace
     [[ $files ]] || return 0
     [[ $word == -*=* ]] && word=${word#*=}
-    compopt -o filenames
+    [[ ${#COMPREPLY[@]} == 0 ]] && compopt -o filenames # it quotes ':' and '=' of words
     while IFS= read -r line; do COMPREPLY+=("$line"); done < <(compgen -f -- "$word")
     return 0
 }

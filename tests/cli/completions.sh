@@ -12,14 +12,15 @@ cd "$work"
 PATH=$(dirname "$program"):$PATH
 export PATH
 
-# Each prints the words that the shell offers at the end of a line, one a line.
+# Each prints the words that the shell offers at the end of a line, one a line. bash inserts them, and quotes special
+# characters of names of files.
 offer_bash() {
     bash -c '
         . "$1/afterglow.bash"
-        COMP_LINE=$2 COMP_POINT=${#2}
-        compopt() { :; }
+        COMP_LINE=$2 COMP_POINT=${#2} quoted=
+        compopt() { [[ "$*" != "-o filenames" ]] || quoted=1; }
         _afterglow
-        printf "%s\n" "${COMPREPLY[@]}"' bash "$scripts" "$1"
+        printf "%s\n" "${COMPREPLY[@]}" | if [[ $quoted ]]; then sed "s/[ @:=]/\\\\&/g"; else cat; fi' bash "$scripts" "$1"
 }
 # A zsh in a terminal of its own, whose completion system reports the words instead of listing them.
 offer_zsh() {
@@ -50,6 +51,11 @@ expect() {
     offer_$shell "$1" >"$work/.offered"
     grep -qxF -e "$word" "$work/.offered" || { echo "'$1' offers no '$word' but:"; cat "$work/.offered"; failed=1; }
 }
+# The name of a file, which fish quotes later.
+expect_file() {
+    [ "$shell" = fish ] || set -- "$1" "$(printf %s "$2" | sed 's/ /\\&/g')"
+    expect "$@"
+}
 refuse() {
     offer_$shell "$1" >"$work/.offered"
     ! grep -qxF -e "$2" "$work/.offered" || { echo "'$1' offers '$2'"; failed=1; }
@@ -73,5 +79,8 @@ expect 'afterglow list dnr' dnrt
 expect 'afterglow list @maz' @maze
 expect 'afterglow help cac' cache
 expect 'afterglow diff --metric flip_' flip_hdr
-expect 'afterglow info sce' scene.glb
+expect 'afterglow render --environment sun-sky:el' sun-sky:elevation=
+expect 'afterglow render --environment=sun-sky:el' --environment=sun-sky:elevation=
+expect_file 'afterglow info sce' scene.glb
+expect_file 'afterglow info my' 'my image.exr'
 exit $failed
