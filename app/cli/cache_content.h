@@ -9,7 +9,7 @@ enum { CACHE_TEXT = 512 };
 #define CACHE_PATH_TRACING "path tracing"
 
 struct cache_content {
-    char scene[CACHE_TEXT];     // as it was given; "": the file does not state it
+    char scene[CACHE_TEXT];     // as typed; "": the file does not state it
     char technique[CACHE_TEXT]; // of a bake; CACHE_PATH_TRACING of a reference; "" likewise
     char options[CACHE_TEXT];   // of the technique, or the view of a reference
 };

@@ -8,13 +8,13 @@
 
 // ---- one word
 
-static const char *behind = "";
-static int behind_length;
+static const char *prefix = "";
+static int prefix_length;
 
-void candidates_behind(const char *text, int length)
+void candidates_prefix(const char *text, int length)
 {
-    behind = text;
-    behind_length = length;
+    prefix = text;
+    prefix_length = length;
 }
 
 void candidate(const struct candidate_word *word, const char *name, const char *suffix,
@@ -23,7 +23,7 @@ void candidate(const struct candidate_word *word, const char *name, const char *
     char text[256];
     snprintf(text, sizeof text, "%s%s", name, suffix);
     if (strncmp(text, word->typed, strlen(word->typed)) != 0) return;
-    printf("%.*s%.*s%s\t%.*s\n", behind_length, behind, word->kept_length, word->kept, text,
+    printf("%.*s%.*s%s\t%.*s\n", prefix_length, prefix, word->kept_length, word->kept, text,
            (int)strcspn(help, "\n\t"), help);
 }
 
@@ -32,7 +32,7 @@ static struct candidate_word after(const char *typed, const char *rest)
     return (struct candidate_word){ typed, (int)(rest - typed), rest };
 }
 
-static const char *behind_last(const char *text, char separator)
+static const char *after_last(const char *text, char separator)
 {
     const char *last = strrchr(text, separator);
     return last ? last + 1 : text;
@@ -78,7 +78,7 @@ static void values(const char *typed, const char *item, option_getter *get, int 
 // typed: the whole word; list: the options in it.
 static void options(const char *typed, const char *list, option_getter *get, int owner)
 {
-    const char *item = behind_last(list, ',');
+    const char *item = after_last(list, ',');
     const struct candidate_word word = after(typed, item);
     struct ag_option_info option;
     if (strchr(item, '=')) {
@@ -105,7 +105,7 @@ void candidates_frame_options(const char *typed)
 static void presets(const char *typed, const char *list, int technique)
 {
     static const char QUALITY[] = "quality";
-    const char *item = behind_last(list, ','), *name, *set;
+    const char *item = after_last(list, ','), *name, *set;
     struct candidate_word word = after(typed, item);
     const bool has_value = strncmp(item, "quality=", sizeof QUALITY) == 0;
     if (!ag_technique_preset_get(technique, 0, &name, &set)) return;
@@ -141,7 +141,7 @@ static void technique_names(const struct candidate_word *word, bool in_spec)
 
 void candidates_gi(const char *typed)
 {
-    const char *term = behind_last(typed, '+'), *colon = strchr(term, ':');
+    const char *term = after_last(typed, '+'), *colon = strchr(term, ':');
     const struct candidate_word word = after(typed, term);
     struct ag_technique_info technique;
     if (!colon) {
@@ -200,7 +200,7 @@ void candidates_names(const char *typed)
 
 void candidates_layers(const char *typed, const char *(*layer_name)(int index))
 {
-    const char *item = behind_last(typed, ','), *name;
+    const char *item = after_last(typed, ','), *name;
     const struct candidate_word word = after(typed, item);
     for (int i = 0; (name = layer_name(i)); i++)
         if (!is_used(typed, item, name)) candidate(&word, name, "", "");

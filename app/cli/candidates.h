@@ -3,14 +3,13 @@
 
 #include <stdbool.h>
 
-// Words are printed behind the first characters of this text, "--gi=" of "--gi=lpv"; the others are
-// typed.
-void candidates_behind(const char *text, int length);
+// Candidates are printed after the first characters of this text: "--gi=" of "--gi=lpv".
+void candidates_prefix(const char *text, int length);
 
 struct candidate_word {
-    const char *kept; // what is typed and stays
+    const char *kept; // text before the name
     int kept_length;
-    const char *typed; // what the name begins with
+    const char *typed; // beginning of the name
 };
 // Prints kept + name + suffix, with the first line of `help`, if it begins with kept + typed.
 void candidate(const struct candidate_word *word, const char *name, const char *suffix,

@@ -36,7 +36,7 @@ static void print_age(long long used_s, char out[32])
     static const struct {
         long long seconds;
         const char *name;
-    } units[] = { { 86400, "days" }, { 3600, "h" }, { 60, "min" }, { 1, "s" } };
+    } units[] = { { 86400, "d" }, { 3600, "h" }, { 60, "min" }, { 1, "s" } };
     const long long age = (long long)time(NULL) - used_s;
     snprintf(out, 32, "now");
     for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
@@ -73,7 +73,7 @@ static json_t *listing_json(const struct listing *l)
 }
 
 // "radiosity:texels=2048", or the view of a reference.
-static void print_what(const struct cache_content *content)
+static void print_technique(const struct cache_content *content)
 {
     char options[CACHE_TEXT];
     if (strcmp(content->technique, CACHE_PATH_TRACING) == 0) {
@@ -93,7 +93,7 @@ static void print_entry(const struct listing *l, const struct cache_entry *entry
     print_age(entry->used_s, age);
     printf("%-10s %9.1f MB %8s  %-24s  ", cache_entry_kind(entry), (double)entry->bytes * 1e-6, age,
            content.scene[0] ? printable(content.scene).s : "?");
-    print_what(&content);
+    print_technique(&content);
     printf("\n");
     if (!l->verbose) return;
     print_time(entry->used_s, false, used);

@@ -169,7 +169,7 @@ static void complete_command(const struct command *command, int count, char *con
     if (find_option(command, before, strlen(before), &option)) {
         offer_values(command, &option, typed);
     } else if (equals && find_option(command, typed, (size_t)(equals - typed), &option)) {
-        candidates_behind(typed, (int)(equals + 1 - typed));
+        candidates_prefix(typed, (int)(equals + 1 - typed));
         offer_values(command, &option, equals + 1);
     } else if (typed[0] == '-') {
         offer_options(command, typed);

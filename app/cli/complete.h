@@ -2,7 +2,7 @@
 #pragma once
 
 // Prints the words that may stand in place of the last of `words`, one a line, each with a tab and
-// a description: words after the program's name and before the cursor, the last one as far as it is
-// typed, at least "". A last line ":files" says that files are offered too. The scripts in
+// a description. `words` are those after the program's name and before the cursor; the last one may
+// be incomplete or "". A last line ":files" says that files are offered too. The scripts in
 // app/completions call it.
 void complete(int count, char *const *words);

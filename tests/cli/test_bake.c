@@ -442,7 +442,7 @@ TEST(cache_shows_scene_technique_options_size_and_age)
     set_age(list, 1, 2 * 86400 + 5);
     const struct run *r = run_expect(0, "cache", NULL);
     CHECK(strstr(r->out, "3 h  @cornell                  sample:rows=9\n"));
-    CHECK(strstr(r->out, "2 days  @cornell --scene-scale 0.5  sample\n"));
+    CHECK(strstr(r->out, "2 d  @cornell --scene-scale 0.5  sample\n"));
     CHECK(!strstr(r->out, ".safetensors"));
     CHECK(strstr(run_expect(0, "cache --verbose", NULL)->out, ".safetensors\n"));
     json_decref(list);

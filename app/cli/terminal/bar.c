@@ -24,14 +24,14 @@ int bar_columns(void)
     return DEFAULT_COLUMNS;
 }
 
-// As long as there is room for; 0: too short to show anything.
+// Characters between the brackets; 0: there is no room for a bar.
 static int bar_length(int room, const char *what, const char *count, const char *left)
 {
     const int length = room - (int)(strlen(what) + strlen(" [] ") + strlen(count) + strlen(left));
     return length > LONGEST ? LONGEST : length < SHORTEST ? 0 : length;
 }
 
-// As much of `what` as fits before the count; the time if all fits.
+// The beginning of `what` that fits before the count; the time too if there is room for all.
 static void print_short(int room, const char *what, const char *count, const char *left, char *out,
                         size_t size)
 {

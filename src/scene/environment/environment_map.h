@@ -32,8 +32,8 @@ struct environment_map *environment_map_load(struct host *host, const char *path
 // with a warning.
 struct environment_map *environment_map_create(struct host *host, const char *name,
                                                const struct image *equirectangular);
-// The same from the image and the sun of another map, which are kept as they are. The image is at
-// most ENVIRONMENT_MAX_WIDTH wide.
+// The same from the image and the sun of another map, unchanged. The image is at most
+// ENVIRONMENT_MAX_WIDTH wide.
 struct environment_map *environment_map_restore(struct host *host, const char *name,
                                                 const struct image *radiance,
                                                 const struct environment_sun *sun);

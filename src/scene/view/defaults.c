@@ -375,7 +375,7 @@ static bool is_open_side(const struct survey *survey, int axis, bool positive)
 }
 
 // A level view of the whole interior through its only open side, if that shows most of its middle.
-static bool stage_camera(struct survey *survey)
+static bool open_side_camera(struct survey *survey)
 {
     vec3s towards = vec3_of(0, 0, 0);
     int open = 0;
@@ -401,7 +401,7 @@ static void survey_scene(struct survey *survey, const struct scene_pose *pose)
     survey->has_rays = raycast_init(&survey->raycast, pose->scene->host, pose);
     if (!survey->has_rays) return;
     direct_light_init(&survey->direct, pose, &survey->raycast, 1e-4f * survey->diagonal);
-    survey->inside = is_interior(survey) && (stage_camera(survey) || inside_camera(survey));
+    survey->inside = is_interior(survey) && (open_side_camera(survey) || inside_camera(survey));
     if (!survey->inside && survey->direct.count > 0) survey->camera = lit_outside_camera(survey);
 }
 
