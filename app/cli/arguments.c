@@ -444,16 +444,25 @@ static bool set_map(struct arguments *a, const char *value, const char **why)
     return has_extension(value, "png");
 }
 
+// The position in a list "first second …"; -1: it is not in the list.
+static int index_in(const char *list, const char *word)
+{
+    const size_t length = strlen(word);
+    for (int i = 0; list[0]; i++) {
+        const size_t next = strcspn(list, " ");
+        if (next == length && memcmp(list, word, length) == 0) return i;
+        list += next + (list[next] == ' ');
+    }
+    return -1;
+}
+
 static bool set_metric(struct arguments *a, const char *value, const char **why)
 {
-    static const char *const names[] = { "mae", "mse", "relmse", "ssim", "flip", "flip_hdr" };
-    *why = "it must be mae, mse, relmse, ssim, flip or flip_hdr";
-    for (int i = 0; i < (int)(sizeof names / sizeof names[0]); i++) {
-        if (strcmp(value, names[i]) != 0) continue;
-        a->metric = (enum ag_difference)(AG_DIFFERENCE_ABSOLUTE + i);
-        return true;
-    }
-    return false;
+    const int metric = index_in(METRIC_NAMES, value);
+    *why = "it must be one of: " METRIC_NAMES;
+    if (metric < 0) return false;
+    a->metric = (enum ag_difference)metric;
+    return true;
 }
 
 static bool set_mask(struct arguments *a, const char *value, const char **why)

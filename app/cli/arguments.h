@@ -18,6 +18,8 @@ enum command_bit {
     BAKE = 64,
     CACHE = 128
 };
+// In the order of ag_difference.
+#define METRIC_NAMES "mae mse relmse ssim flip flip_hdr"
 enum { COMMAND_SIZE = 16384 };
 enum { MAX_LIGHTS = 64, MAX_POSITIONAL = 64, MAX_METHODS = 16, MAX_BAKE_FILES = 8 };
 

@@ -4,6 +4,7 @@
 #include <afterglow/catalogue.h>
 
 #include <stddef.h>
+#include <string.h>
 
 static const struct command *const commands[] = { &command_render,  &command_reference,
                                                   &command_compare, &command_bake,
@@ -26,5 +27,13 @@ const struct command *command_get(int index)
 {
     for (int i = 0; i < COMMAND_COUNT; i++)
         if (is_offered(commands[i]) && index-- == 0) return commands[i];
+    return NULL;
+}
+
+const struct command *command_find(const char *name)
+{
+    const struct command *command;
+    for (int i = 0; (command = command_get(i)); i++)
+        if (strcmp(command->name, name) == 0) return command;
     return NULL;
 }

@@ -10,3 +10,5 @@ extern const struct command command_render, command_reference, command_compare, 
 
 // The commands in the order of --help; NULL past the end.
 const struct command *command_get(int index);
+// NULL: none of that name.
+const struct command *command_find(const char *name);

@@ -47,7 +47,7 @@ static void offer_debug_views(const struct value *v)
 
 static void offer_metrics(const struct value *v)
 {
-    offer_list(v, "mae mse relmse ssim flip flip_hdr");
+    offer_list(v, METRIC_NAMES);
 }
 
 static void offer_lights(const struct value *v)
@@ -180,18 +180,10 @@ static void complete_command(const struct command *command, int count, char *con
     }
 }
 
-static const struct command *find_command(const char *name)
-{
-    const struct command *command;
-    for (int i = 0; (command = command_get(i)); i++)
-        if (strcmp(command->name, name) == 0) return command;
-    return NULL;
-}
-
 void complete(int count, char *const *words)
 {
     if (count < 1) return;
-    const struct command *command = find_command(words[0]);
+    const struct command *command = command_find(words[0]);
     if (count == 1)
         offer_commands(words[0], true);
     else if (count == 2 && strcmp(words[0], "help") == 0)

@@ -30,14 +30,6 @@ static void print_usage(void)
            "\nExit status: 0 success, 1 failure, 2 wrong usage.\n");
 }
 
-static const struct command *command_find(const char *name)
-{
-    const struct command *command;
-    for (int i = 0; (command = command_get(i)); i++)
-        if (strcmp(command->name, name) == 0) return command;
-    return NULL;
-}
-
 static enum status unknown_command(const char *name)
 {
     const char *known[MAX_COMMANDS];
