@@ -1,4 +1,4 @@
-// The parsed command line. One table (options.def) holds names, setters and help.
+// The parsed command line.
 #pragma once
 
 #include "cli/terminal/messages.h"
@@ -96,19 +96,9 @@ struct command {
     enum status (*run)(const struct arguments *arguments);
 };
 
-struct command_option {
-    const char *name, *value; // value NULL: a switch
-    const char *heading;      // of its group
-    const char *help;         // '\n' begins a line
-};
-
 // Parses the words after the command name; reports wrong usage on standard error.
 enum status arguments_parse(const struct command *command, int count, char **words,
                             struct arguments *out);
 // The command line, quoted for a POSIX shell and cut where it is longer.
 void arguments_command(const char *command, const struct arguments *arguments, char *out,
                        size_t size);
-// Prints --help of one command.
-void arguments_help(const struct command *command);
-// Option `index` of a command, in the order of --help; false past the end.
-bool arguments_option(const struct command *command, int index, struct command_option *out);

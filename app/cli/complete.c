@@ -1,6 +1,7 @@
 #include "complete.h"
 #include "candidates.h"
 #include "commands.h"
+#include "option_table.h"
 
 #include <afterglow/afterglow.h>
 
@@ -99,21 +100,18 @@ static void offer_values(const struct command *command, const struct command_opt
 
 // ---- options
 
-// The option named by the first `length` characters; one with a value.
+// The option with a value that the first `length` characters name.
 static bool find_option(const struct command *command, const char *name, size_t length,
                         struct command_option *out)
 {
-    for (int i = 0; arguments_option(command, i, out); i++)
-        if (out->value && strlen(out->name) == length && memcmp(out->name, name, length) == 0)
-            return true;
-    return false;
+    return command_option_find(command, name, length, out) && out->value;
 }
 
 static void offer_options(const struct command *command, const char *typed)
 {
     const struct candidate_word word = { typed, 0, typed };
     struct command_option option;
-    for (int i = 0; arguments_option(command, i, &option); i++)
+    for (int i = 0; command_option_get(command, i, &option); i++)
         candidate(&word, option.name, "", option.help);
 }
 

@@ -1,6 +1,7 @@
 // afterglow: finds and runs the command. Exit status: 0 success, 1 failure, 2 wrong usage.
 #include "commands.h"
 #include "complete.h"
+#include "help.h"
 #include "cli/files/interrupt.h"
 
 #include <afterglow/catalogue.h>
@@ -11,24 +12,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-
-static void print_usage(void)
-{
-    printf("Afterglow: real-time global illumination, measured against a path-traced reference\n\n"
-           "Usage: afterglow COMMAND ARGUMENTS [options]\n\n"
-           "Commands:\n");
-    const struct command *command;
-    for (int i = 0; (command = command_get(i)); i++)
-        printf("  %-11s%s\n", command->name, command->summary);
-    printf("\nSCENE is a file (.gltf, .glb, .obj, .ply, .fbx, .x) or a built-in scene (@cornell).\n"
-           "\nFirst steps:\n"
-           "  afterglow render @cornell --gi lpv -o cornell.png\n"
-           "  afterglow compare @cornell --size 320x180\n"
-           "  afterglow list\n"
-           "  afterglow list lpv\n"
-           "  afterglow help render\n"
-           "\nExit status: 0 success, 1 failure, 2 wrong usage.\n");
-}
 
 static enum status unknown_command(const char *name)
 {
@@ -54,9 +37,9 @@ static enum status help(int count, char **words)
     const struct command *command = count > 0 ? command_find(words[0]) : NULL;
     if (count > 0 && !command) return unknown_command(words[0]);
     if (command)
-        arguments_help(command);
+        help_command(command);
     else
-        print_usage();
+        help_program();
     return DONE;
 }
 
@@ -80,7 +63,7 @@ static enum status run(int count, char **words)
     enum status status = arguments_parse(command, count - 2, words + 2, &arguments);
     if (status != DONE) return status;
     if (arguments.help) {
-        arguments_help(command);
+        help_command(command);
         return DONE;
     }
     messages_init(arguments.quiet, arguments.verbose);

@@ -2,6 +2,7 @@
 #include "manual_page.h"
 
 #include "cli/commands.h"
+#include "cli/option_table.h"
 #include "cli/option_text.h"
 
 #include <afterglow/afterglow.h>
@@ -83,7 +84,7 @@ static void print_command(const struct command *command)
     struct command_option option;
     printf(".SS afterglow %s\n", command->name);
     print_text(command->text, "\n");
-    for (int i = 0; arguments_option(command, i, &option); i++) {
+    for (int i = 0; command_option_get(command, i, &option); i++) {
         if (option.heading != heading) printf(".PP\n%s:\n", option.heading);
         heading = option.heading;
         print_tag(option.name, option.value ? " " : "", option.value ? option.value : "");

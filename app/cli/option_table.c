@@ -1,0 +1,375 @@
+// Setters of the options, and the table of options.def.
+#include "option_table.h"
+#include "values.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_FRAMES = 1000000, MAX_SPP = 1000000, MAX_BOUNCES = 1000000 };
+enum { MAX_THREADS = 1024, MAX_SHARDS = 10000 };
+
+// ---- switches and texts
+
+#define SWITCH(member)                                                                             \
+    static bool set_##member(struct arguments *a, const char *value, const char **why)             \
+    {                                                                                              \
+        (void)value, (void)why;                                                                    \
+        a->member = true;                                                                          \
+        return true;                                                                               \
+    }
+SWITCH(follow_links)
+SWITCH(no_scene_lights)
+SWITCH(direct_only)
+SWITCH(indirect_only)
+SWITCH(no_guiding)
+SWITCH(antialias)
+SWITCH(obscurance_sphere)
+SWITCH(resume)
+SWITCH(no_cache)
+SWITCH(denoise)
+SWITCH(no_bake)
+SWITCH(force)
+SWITCH(merge)
+SWITCH(report_full)
+SWITCH(clear)
+SWITCH(all)
+SWITCH(ignore_nan)
+SWITCH(json)
+SWITCH(quiet)
+SWITCH(verbose)
+SWITCH(help)
+
+// The option `name` stores its value in the member.
+#define TEXT(name, member)                                                                         \
+    static bool set_##name(struct arguments *a, const char *value, const char **why)               \
+    {                                                                                              \
+        (void)why;                                                                                 \
+        a->member = value;                                                                         \
+        return true;                                                                               \
+    }
+TEXT(folder, output)
+TEXT(camera, camera)
+TEXT(animation, animation)
+TEXT(aov, aov)
+TEXT(debug_view, debug_view)
+TEXT(frame_options, frame_options)
+TEXT(stats, stats)
+TEXT(device, device)
+TEXT(report, report)
+TEXT(layer, layer)
+
+// ---- checked values
+
+static bool set_int(const char *value, long low, long high, int *out)
+{
+    long number = 0;
+    const bool ok = value_int(value, low, high, &number);
+    *out = (int)number;
+    return ok;
+}
+
+static bool set_gi(struct arguments *a, const char *value, const char **why)
+{
+    (void)why;
+    a->gi = value;
+    a->has_gi = true;
+    return true;
+}
+
+static bool add_method(struct arguments *a, const char *value, const char **why)
+{
+    *why = "at most 16 methods";
+    if (a->method_count == MAX_METHODS) return false;
+    a->methods[a->method_count++] = value;
+    return true;
+}
+
+static bool set_output(struct arguments *a, const char *value, const char **why)
+{
+    *why = "the file name must end in .png or .exr";
+    a->output = value;
+    return has_extension(value, "png") || has_extension(value, "exr");
+}
+
+static bool set_size(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be WxH, each 1 to 16384";
+    return value_size(value, &a->width, &a->height);
+}
+
+static bool set_eye(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be three numbers, x,y,z";
+    a->has_eye = true;
+    return value_floats(value, 3, a->eye);
+}
+
+static bool set_target(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be three numbers, x,y,z";
+    a->has_target = true;
+    return value_floats(value, 3, a->target);
+}
+
+static bool set_fov(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be 0.001 to 179.999 degrees";
+    a->has_fov = true;
+    return value_number(value, &a->fov_deg) && a->fov_deg >= 0.001 && a->fov_deg <= 179.999;
+}
+
+static bool set_time(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be a number of seconds";
+    return value_number(value, &a->time_s);
+}
+
+static bool set_time_step(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be a number of seconds";
+    return value_number(value, &a->time_step_s);
+}
+
+static bool set_frames(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be 1 to 1000000";
+    return set_int(value, 1, MAX_FRAMES, &a->frames);
+}
+
+static bool add_light(struct arguments *a, const char *value, const char **why)
+{
+    *why = "at most 64 lights";
+    if (a->light_count == MAX_LIGHTS) return false;
+    a->light_texts[a->light_count] = value;
+    return value_light(value, &a->lights[a->light_count++], why);
+}
+
+static bool set_scene_scale(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be 0.000001 to 1000000 metres per unit of the file";
+    a->has_scene_scale = true;
+    return value_floats(value, 1, &a->scene_scale) && a->scene_scale >= 1e-6f &&
+           a->scene_scale <= 1e6f;
+}
+
+static bool set_sky(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be three numbers of at least 0, r,g,b";
+    a->has_sky = true;
+    return value_floats(value, 3, a->sky) && a->sky[0] >= 0 && a->sky[1] >= 0 && a->sky[2] >= 0;
+}
+
+static bool set_environment(struct arguments *a, const char *value, const char **why)
+{
+    a->environment = value;
+    return value_environment(value, &a->environment_value, why);
+}
+
+static bool set_exposure(struct arguments *a, const char *value, const char **why)
+{
+    double ev = 0.0;
+    *why = "it must be an EV from -100 to 100";
+    bool ok = value_number(value, &ev) && ev >= -100.0 && ev <= 100.0;
+    a->has_exposure = true;
+    a->exposure_ev = (float)ev;
+    return ok;
+}
+
+static bool set_seed(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be a whole number of at most 64 bits";
+    return value_seed(value, &a->seed);
+}
+
+static bool set_spp(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be 1 to 1000000";
+    a->has_spp = true;
+    return set_int(value, 1, MAX_SPP, &a->spp);
+}
+
+static bool set_bounces(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be 0 to 1000000";
+    return set_int(value, 0, MAX_BOUNCES, &a->bounces);
+}
+
+static bool set_obscurance_radius(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be more than 0 and at most 1000000 m";
+    return value_floats(value, 1, &a->obscurance_radius_m) && a->obscurance_radius_m > 0.0f &&
+           a->obscurance_radius_m <= 1e6f;
+}
+
+static bool set_occlusion_decay(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be 0 to 1000000 1/m";
+    return value_floats(value, 1, &a->occlusion_decay_per_m) && a->occlusion_decay_per_m >= 0.0f &&
+           a->occlusion_decay_per_m <= 1e6f;
+}
+
+static bool set_reference(struct arguments *a, const char *value, const char **why)
+{
+    *why = "the file name must end in .exr";
+    a->reference = value;
+    return has_extension(value, "exr");
+}
+
+static bool set_bound(const char *value, double *out, const char **why)
+{
+    *why = "it must be a number of at least 0";
+    return value_number(value, out) && *out >= 0.0;
+}
+
+static bool set_max_flip(struct arguments *a, const char *value, const char **why)
+{
+    return set_bound(value, &a->max_flip, why);
+}
+
+static bool set_max_relmse(struct arguments *a, const char *value, const char **why)
+{
+    return set_bound(value, &a->max_relmse, why);
+}
+
+static bool set_max_ms(struct arguments *a, const char *value, const char **why)
+{
+    return set_bound(value, &a->max_ms, why);
+}
+
+static bool set_bake_output(struct arguments *a, const char *value, const char **why)
+{
+    *why = "the file name must end in .safetensors";
+    a->output = value;
+    return has_extension(value, "safetensors");
+}
+
+static bool set_lightmap(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be the name of a folder";
+    a->lightmap = value;
+    return value[0] != 0;
+}
+
+static bool set_export(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be the name of a folder";
+    a->exported = value;
+    return value[0] != 0;
+}
+
+static bool add_bake_file(struct arguments *a, const char *value, const char **why)
+{
+    *why = "at most 8 files";
+    if (a->bake_file_count == MAX_BAKE_FILES) return false;
+    a->bake_files[a->bake_file_count++] = value;
+    return true;
+}
+
+static bool set_threads(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be 1 to 1024";
+    return set_int(value, 1, MAX_THREADS, &a->threads);
+}
+
+// "I/N", 0 ≤ I < N.
+static bool set_shard(struct arguments *a, const char *value, const char **why)
+{
+    char index[16];
+    long shard = 0, count = 0;
+    const char *slash = strchr(value, '/');
+    *why = "it must be I/N with 0 <= I < N, N at most 10000";
+    if (!slash || (size_t)(slash - value) >= sizeof index) return false;
+    snprintf(index, sizeof index, "%.*s", (int)(slash - value), value);
+    if (!value_int(slash + 1, 1, MAX_SHARDS, &count)) return false;
+    if (!value_int(index, 0, count - 1, &shard)) return false;
+    a->shard = (int)shard;
+    a->shard_count = (int)count;
+    return true;
+}
+
+static bool set_max_memory(struct arguments *a, const char *value, const char **why)
+{
+    long mib = 0;
+    *why = "it must be a whole number of MiB, at least 1";
+    bool ok = value_int(value, 1, INT32_MAX, &mib);
+    a->max_memory_mib = mib;
+    return ok;
+}
+
+static bool set_map(struct arguments *a, const char *value, const char **why)
+{
+    *why = "the file name must end in .png";
+    a->map = value;
+    return has_extension(value, "png");
+}
+
+// The position in a list "first second …"; -1: it is not in the list.
+static int index_in(const char *list, const char *word)
+{
+    const size_t length = strlen(word);
+    for (int i = 0; list[0]; i++) {
+        const size_t next = strcspn(list, " ");
+        if (next == length && memcmp(list, word, length) == 0) return i;
+        list += next + (list[next] == ' ');
+    }
+    return -1;
+}
+
+static bool set_metric(struct arguments *a, const char *value, const char **why)
+{
+    const int metric = index_in(METRIC_NAMES, value);
+    *why = "it must be one of: " METRIC_NAMES;
+    if (metric < 0) return false;
+    a->metric = (enum ag_difference)metric;
+    return true;
+}
+
+static bool set_mask(struct arguments *a, const char *value, const char **why)
+{
+    size_t length = strcspn(value, "=");
+    *why = "it must be the name of a layer, or LAYER=THRESHOLD";
+    if (length == 0 || length >= sizeof a->mask_layer) return false;
+    snprintf(a->mask_layer, sizeof a->mask_layer, "%.*s", (int)length, value);
+    a->mask_threshold = 0.0;
+    return !value[length] || value_number(value + length + 1, &a->mask_threshold);
+}
+
+// ---- the table
+
+struct row {
+    const char *name, *value; // name NULL: a heading, `help`
+    unsigned commands;        // command_bit
+    option_setter *set;
+    const char *help;
+};
+
+static const struct row rows[] = {
+#define OPTION(name, value, commands, set, help) { name, value, commands, set, help },
+#define GROUP(title)                             { NULL, NULL, 0, NULL, title },
+#include "options.def"
+#undef OPTION
+#undef GROUP
+};
+enum { ROW_COUNT = sizeof rows / sizeof rows[0] };
+_Static_assert(sizeof rows / sizeof rows[0] <= (size_t)MAX_OPTIONS, "callers list fewer");
+
+bool command_option_get(const struct command *command, int index, struct command_option *out)
+{
+    const char *heading = NULL;
+    for (int i = 0; i < ROW_COUNT; i++) {
+        const struct row *row = &rows[i];
+        if (!row->name) heading = row->help;
+        if (!(row->commands & command->bit) || index-- > 0) continue;
+        *out = (struct command_option){ row->name, row->value, heading, row->help, row->set };
+        return true;
+    }
+    return false;
+}
+
+bool command_option_find(const struct command *command, const char *name, size_t length,
+                         struct command_option *out)
+{
+    for (int i = 0; command_option_get(command, i, out); i++)
+        if (strlen(out->name) == length && memcmp(out->name, name, length) == 0) return true;
+    return false;
+}
