@@ -1,8 +1,8 @@
 // afterglow bake: what a technique precomputes, to a file or to the cache.
-#include "bake_export.h"
-#include "baking.h"
+#include "cli/bake/bake_export.h"
+#include "cli/bake/baking.h"
 #include "commands.h"
-#include "light_map.h"
+#include "cli/bake/light_map.h"
 #include "cli/files/json.h"
 
 #include <stdio.h>

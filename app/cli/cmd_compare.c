@@ -1,5 +1,5 @@
 // afterglow compare: measures methods against the reference.
-#include "baking.h"
+#include "cli/bake/baking.h"
 #include "commands.h"
 #include "cli/compare/compare.h"
 #include "cli/files/json.h"

@@ -1,5 +1,5 @@
 // afterglow render: frames of a scene, without a window.
-#include "baking.h"
+#include "cli/bake/baking.h"
 #include "commands.h"
 #include "memory.h"
 #include "output.h"

@@ -1,6 +1,6 @@
 // afterglow: finds and runs the command. Exit status: 0 success, 1 failure, 2 wrong usage.
 #include "commands.h"
-#include "complete.h"
+#include "cli/complete/complete.h"
 #include "help.h"
 #include "cli/files/interrupt.h"
 

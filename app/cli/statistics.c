@@ -1,6 +1,6 @@
 // Medians and percentiles of pass times, as JSON.
 #include "statistics.h"
-#include "baking.h"
+#include "cli/bake/baking.h"
 
 #include <stdio.h>
 #include <stdlib.h>

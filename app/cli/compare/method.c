@@ -1,6 +1,6 @@
 // Renders and times one method and reads its layers.
 #include "compare.h"
-#include "cli/baking.h"
+#include "cli/bake/baking.h"
 #include "cli/files/json.h"
 #include "cli/statistics.h"
 

@@ -1,7 +1,7 @@
 // Light maps as files: by the path tracer, through a bake, or by a renderer of a technique.
 #include "light_map.h"
 #include "baking.h"
-#include "technique_names.h"
+#include "cli/technique_names.h"
 #include "cli/files/folder.h"
 #include "cli/files/interrupt.h"
 #include "cli/files/json.h"

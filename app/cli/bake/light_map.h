@@ -1,7 +1,7 @@
 // afterglow bake --lightmap: the light map of a scene, as files.
 #pragma once
 
-#include "session.h"
+#include "cli/session.h"
 
 // Checks options, loads the scene, gathers the light and writes the folder.
 enum status light_map_bake(const struct arguments *arguments);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/cache/cache.h"
-#include "output.h"
+#include "cli/output.h"
 
 enum { MAX_BAKES = 3 };
 

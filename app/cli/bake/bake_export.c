@@ -1,5 +1,5 @@
 #include "bake_export.h"
-#include "technique_names.h"
+#include "cli/technique_names.h"
 #include "cli/files/interrupt.h"
 #include "cli/files/json.h"
 
