@@ -101,6 +101,16 @@ bool instance_create(struct host *host, bool validation, VkInstance *out)
                      vk_result_name(result), GPU_DRIVER_HINT);
 }
 
+// About installed drivers and layers, or functions that the loader itself asks for: some loaders
+// ask each device for an instance's function of video encoding. Not about our calls.
+static bool is_of_the_loader(const VkDebugUtilsMessengerCallbackDataEXT *data)
+{
+    if (!data->pMessageIdName) return false;
+    return strcmp(data->pMessageIdName, "Loader Message") == 0 ||
+           (strstr(data->pMessageIdName, "vkGetDeviceProcAddr") &&
+            strstr(data->pMessage, "VideoEncode"));
+}
+
 static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                  VkDebugUtilsMessageTypeFlagsEXT type,
                                                  const VkDebugUtilsMessengerCallbackDataEXT *data,
@@ -108,8 +118,7 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlag
 {
     struct gpu *gpu = user;
     (void)type;
-    // Loader messages about installed drivers and layers are not about our calls.
-    if (data->pMessageIdName && strcmp(data->pMessageIdName, "Loader Message") == 0) {
+    if (is_of_the_loader(data)) {
         host_log(gpu->host, LOG_DEBUG, "gpu loader: %s", data->pMessage);
         return VK_FALSE;
     }

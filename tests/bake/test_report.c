@@ -44,8 +44,8 @@ TEST(report_with_an_open_or_unopened_object_has_no_text)
 
 TEST(report_has_a_decimal_point_in_every_locale)
 {
+    test_use_decimal_comma(); // may skip the test: before anything to free
     struct report *report = report_create(test_host());
-    test_use_decimal_comma();
     report_number(report, "seconds", 1.5);
     setlocale(LC_ALL, "C");
     CHECK_STRING(report_text(report), "{\"seconds\": 1.5}");

@@ -62,6 +62,11 @@ struct gpu *test_gpu(void)
     return device;
 }
 
+bool test_gpu_is_software(const struct gpu *gpu)
+{
+    return gpu_info(gpu)->type == GPU_CPU;
+}
+
 void test_gpu_finish(struct gpu *gpu)
 {
     CHECK(gpu_wait(gpu));

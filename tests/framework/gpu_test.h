@@ -27,6 +27,10 @@ struct gpu *test_gpu(void);
 void test_gpu_finish(struct gpu *gpu);
 // Reports the running test as skipped where there is no Vulkan device.
 void test_gpu_require(void);
+// Whether the device runs on the CPU. Its time is proportional to the work, and its images have no
+// padding but of rows; a small frame on hardware takes the time between passes, and images are
+// padded to tiles.
+bool test_gpu_is_software(const struct gpu *gpu);
 
 // Create objects, or fail the test. mips and depth as in gpu_image_desc.
 gpu_image test_gpu_image(struct gpu *gpu, enum gpu_dimension dimension, enum gpu_format format,

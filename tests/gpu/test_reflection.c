@@ -4,6 +4,7 @@
 #include "gpu/cross_reflection.h"
 
 #include "core/file.h"
+#include "gpu/spirv.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -87,6 +88,61 @@ TEST(all_shaders_are_reflected_as_by_spirv_cross)
     print_message("%d shaders, %d bindings, %d constants, %d with push constants\n", PATHS,
                   bindings, constants, pushes);
     assert_true(bindings > PATHS && constants > 0 && pushes > 0);
+}
+
+// Whether a type or a part of it has offsets or strides.
+static bool has_layout(const struct spirv *module, uint32_t type)
+{
+    uint32_t stride;
+    const size_t at = spirv_find(module, type);
+    switch (spirv_op_at(module, at)) {
+    case SPIRV_TYPE_ARRAY:
+        return spirv_decoration(module, type, SPIRV_WHOLE, SPIRV_ARRAY_STRIDE, &stride) ||
+               has_layout(module, spirv_operand(module, at, 2));
+    case SPIRV_TYPE_STRUCT:
+        for (uint32_t i = 2; i < module->words[at] >> 16; i++)
+            if (spirv_decoration(module, type, (int)i - 2, SPIRV_OFFSET, NULL) ||
+                has_layout(module, spirv_operand(module, at, i)))
+                return true;
+        return false;
+    default:
+        return false;
+    }
+}
+
+// The first variable outside of buffers whose type has the layout of a buffer, NULL without one:
+// SPIR-V for Vulkan forbids it, and glslang writes it where a shader copies a struct with an array
+// from a buffer into a variable.
+static const char *laid_out_variable(const struct spirv *module)
+{
+    enum { WORKGROUP = 4, PRIVATE = 6, FUNCTION = 7 };
+    for (size_t at = module->types; at < module->count; at = spirv_next(module, at)) {
+        if (spirv_op_at(module, at) != SPIRV_VARIABLE) continue;
+        const uint32_t class = spirv_operand(module, at, 3);
+        if (class != WORKGROUP && class != PRIVATE && class != FUNCTION) continue;
+        const size_t pointer = spirv_find(module, spirv_operand(module, at, 1));
+        if (has_layout(module, spirv_operand(module, pointer, 3)))
+            return spirv_name(module, spirv_operand(module, at, 2));
+    }
+    return NULL;
+}
+
+TEST(variables_outside_of_buffers_have_no_layout_of_one)
+{
+    struct host host = host_default();
+    int wrong = 0;
+    for (int i = 0; i < PATHS; i++) {
+        struct file_bytes bytes = read_words(&host, paths[i]);
+        struct spirv module;
+        assert_null(
+            spirv_open(&module, &host, (const uint32_t *)(const void *)bytes.data, bytes.size / 4));
+        const char *name = laid_out_variable(&module);
+        if (name) print_message("%s: variable %s\n", paths[i], name);
+        wrong += name != NULL;
+        spirv_close(&module);
+        file_bytes_finish(&host, &bytes);
+    }
+    CHECK(wrong == 0);
 }
 
 // The address sanitizer sees reads beyond the words.

@@ -69,13 +69,13 @@ void main()
     out_id = uvec2(push.draw.instance, vary_triangle) + 1u;
 #endif
 #ifdef GBUFFER_MOTION
-    vec2 current = vary_current.xy / mix(1.0, vary_current.z, frame.viewer.w);
+    // Precise, so that equal positions have a difference of exactly 0.
+    precise vec2 current = vary_current.xy / mix(1.0, vary_current.z, frame.viewer.w);
+    precise vec2 previous = vary_previous.xy / mix(1.0, vary_previous.z, frame.viewer.w);
     // A point behind the previous camera has no previous position: the largest motion marks it.
-    vec2 previous = vary_previous.z > 0.0
-                        ? vary_previous.xy / mix(1.0, vary_previous.z, frame.viewer.w)
-                        : vec2(-HALF_MAX);
-    float depth_change = max(vary_previous.z, 0.0) / vary_current.z - 1.0;
-    out_motion =
-        vec4(clamp(vec3((current - previous) * 0.5, depth_change), -HALF_MAX, HALF_MAX), 1.0);
+    if (vary_previous.z <= 0.0) previous = vec2(-HALF_MAX);
+    precise vec3 moved = vec3((current - previous) * 0.5,
+                              (max(vary_previous.z, 0.0) - vary_current.z) / vary_current.z);
+    out_motion = vec4(clamp(moved, -HALF_MAX, HALF_MAX), 1.0);
 #endif
 }

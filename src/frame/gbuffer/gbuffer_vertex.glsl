@@ -30,8 +30,8 @@ void main()
 {
     uint vertex = pulled_vertex();
     mat4 world_from_instance = scene_world_from_instance();
-    vec3 world = (world_from_instance * vec4(scene_position(vertex), 1.0)).xyz;
-    vec4 clip = frame.clip_from_world * vec4(world, 1.0);
+    precise vec4 world = vec4((world_from_instance * vec4(scene_position(vertex), 1.0)).xyz, 1.0);
+    precise vec4 clip = frame.clip_from_world * world;
     gl_Position = clip;
 
     scene_frame f = scene_frame_of(vertex, world_from_instance);
@@ -51,13 +51,16 @@ void main()
 #endif
     vary_color = unpackUnorm4x8(surface.color);
 #ifdef GBUFFER_MOTION
-    vec4 before = vec4(scene_previous_world_position(vertex), 1.0);
-    vec4 previous = frame.previous_clip_from_world * before;
-    vary_current = clip.xyw;
-    vary_previous = previous.xyw;
+    // Precise, so that both positions of a static surface are rounded alike.
+    precise vec4 before = vec4(
+        (scene_previous_world_from_instance() * vec4(scene_previous_position(vertex), 1.0)).xyz,
+        1.0);
+    precise vec4 previous = frame.previous_clip_from_world * before;
     // Orthographic: w is 1. Without a branch, as software drivers compile a shader again for each
     // block of uniforms that alone decides one.
-    vary_current.z = mix(dot(frame.axis, vec4(world, 1.0)), clip.w, frame.viewer.w);
-    vary_previous.z = mix(dot(frame.previous_axis, before), previous.w, frame.viewer.w);
+    precise float current_z = mix(dot(frame.axis, world), clip.w, frame.viewer.w);
+    precise float previous_z = mix(dot(frame.previous_axis, before), previous.w, frame.viewer.w);
+    vary_current = vec3(clip.xy, current_z);
+    vary_previous = vec3(previous.xy, previous_z);
 #endif
 }

@@ -101,11 +101,14 @@ layout(set = 0, binding = 5, scalar) readonly buffer scene_previous_positions
     vec3 scene_previous_table[];
 };
 
-vec3 scene_previous_world_position(uint vertex)
+vec3 scene_previous_position(uint vertex)
 {
-    vec3 p = scene_previous_table[push.draw.vertex_base + vertex];
-    return (scene_instance_table[push.draw.instance].previous_world_from_instance * vec4(p, 1.0))
-        .xyz;
+    return scene_previous_table[push.draw.vertex_base + vertex];
+}
+
+mat4 scene_previous_world_from_instance()
+{
+    return scene_instance_table[push.draw.instance].previous_world_from_instance;
 }
 #endif
 

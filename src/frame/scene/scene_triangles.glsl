@@ -51,9 +51,9 @@ bool scene_triangle_solid(uvec3 vertices, vec3 barycentric)
         uv += barycentric[k] * scene_map_uv(SCENE_MAP_BASE_COLOR, surface);
         alpha += barycentric[k] * unpackUnorm4x8(surface.color).a;
     }
-    scene_material material = scene_material_table[push.draw.material];
-    return alpha * material.base_color.a * textureLod(base_color_map, uv, 0.0).a >=
-           material.alpha_cutoff;
+    float base_alpha = scene_material_table[push.draw.material].base_color.a;
+    return alpha * base_alpha * textureLod(base_color_map, uv, 0.0).a >=
+           scene_material_table[push.draw.material].alpha_cutoff;
 }
 
 #endif

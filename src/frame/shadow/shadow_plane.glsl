@@ -3,6 +3,8 @@
 #ifndef AG_FRAME_SHADOW_PLANE_GLSL
 #define AG_FRAME_SHADOW_PLANE_GLSL
 
+#include "core/half.glsl"
+
 struct shadow_plane {
     float height; // at the block's first texel, texels
     vec2 slope;
@@ -28,19 +30,14 @@ shadow_plane shadow_plane_of(vec4 texel)
     return shadow_plane(texel.x + abs(texel.y), texel.zw, texel.y >= 0.0);
 }
 
-float shadow_half(float value)
-{
-    return unpackHalf2x16(packHalf2x16(vec2(value, 0.0))).x;
-}
-
 // Values that halves represent, so that stores do not round. The height is at most 1e-4 above the
 // plane's.
 vec4 shadow_plane_texel(shadow_plane p)
 {
-    float high = shadow_half(p.height);
-    if (high > p.height) high = shadow_half(high - max(abs(high), 1.0) / 512.0);
-    float low = shadow_half(max(p.height - high, 1e-4));
-    return vec4(high, p.is_exact ? low : -low, shadow_half(p.slope.x), shadow_half(p.slope.y));
+    float high = half_rounded(p.height);
+    if (high > p.height) high = half_rounded(high - max(abs(high), 1.0) / 512.0);
+    float low = half_rounded(max(p.height - high, 1e-4));
+    return vec4(high, p.is_exact ? low : -low, half_rounded(p.slope.x), half_rounded(p.slope.y));
 }
 
 #endif

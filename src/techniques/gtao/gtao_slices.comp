@@ -108,7 +108,8 @@ bool surface_at(gtao_point p, gtao_side side, float reach, out vec2 front)
     float there = texelFetch(depth, pixel, 0).r;
     bool perspective = view.perspective != 0.0;
     float ratio = perspective ? p.depth / there : 1.0;
-    float nearer = perspective ? p.distance * (1.0 - ratio) : p.per_depth * (there - p.depth);
+    // Exactly 0 at P itself, where 1 - ratio would be the rounding error of a division.
+    float nearer = (there - p.depth) * (perspective ? p.distance / there : p.per_depth);
     if (there > 0.0) front = vec2(nearer, 0.0) + ratio * (side.moved * vec2(offset));
     return true;
 }

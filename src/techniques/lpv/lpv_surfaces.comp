@@ -93,7 +93,7 @@ bool triangle_of(uint i, out triangle t)
 // Diffuse reflectance as in reflective shadow maps.
 vec3 reflectance_at(triangle t, vec3 weight)
 {
-    scene_material material = scene_material_table[push.draw.material];
+    uint m = push.draw.material;
     vec2 uv = vec2(0.0), metallic_uv = vec2(0.0);
     vec3 colour = vec3(0.0);
     for (int k = 0; k < 3; k++) {
@@ -101,10 +101,11 @@ vec3 reflectance_at(triangle t, vec3 weight)
         metallic_uv += weight[k] * map_uv(SCENE_MAP_METALLIC_ROUGHNESS, t.vertices[k]);
         colour += weight[k] * unpackUnorm4x8(scene_surface_of(t.vertices[k]).color).rgb;
     }
-    colour *= material.base_color.rgb * textureLod(base_color_map, uv, t.lod).rgb;
-    vec2 roughness_metallic = vec2(material.roughness, material.metallic) *
-                              textureLod(metallic_roughness_map, metallic_uv, t.lod).gb;
-    return scene_reflectance(push.draw.material, colour, roughness_metallic);
+    colour *= scene_material_table[m].base_color.rgb * textureLod(base_color_map, uv, t.lod).rgb;
+    vec2 roughness_metallic =
+        vec2(scene_material_table[m].roughness, scene_material_table[m].metallic) *
+        textureLod(metallic_roughness_map, metallic_uv, t.lod).gb;
+    return scene_reflectance(m, colour, roughness_metallic);
 }
 
 void add_side(vec3 position, vec3 normal, vec4 amount)

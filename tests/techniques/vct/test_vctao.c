@@ -56,7 +56,8 @@ static struct span span_now(struct vct_fixture *fixture)
     return s;
 }
 
-// Cosine-weighted visibility by ray casting: 1 − mean of f(r) = 1/(1 + γ r) over the hits.
+// Cosine-weighted visibility by ray casting: 1 − mean of f(r) = 1/(1 + γ r) over the hits. Rays
+// begin farther from the surface than the rounding of a position of the G-buffer.
 static double visibility_by_rays(const struct raycast *raycast, vec3s p, vec3s n, double decay)
 {
     enum { SIDE = 40 };
@@ -71,7 +72,7 @@ static double visibility_by_rays(const struct raycast *raycast, vec3s p, vec3s n
                           glms_vec3_add(glms_vec3_scale(x, r * (float)cos(phi)),
                                         glms_vec3_scale(y, r * (float)sin(phi))));
         struct raycast_hit hit;
-        const vec3s from = glms_vec3_muladds(n, 1e-4f, p);
+        const vec3s from = glms_vec3_muladds(n, 5e-3f, p);
         if (!raycast_closest(raycast, from, direction, 1e6f, &hit)) continue;
         hidden += 1.0 / (1.0 + decay * (double)hit.distance);
     }

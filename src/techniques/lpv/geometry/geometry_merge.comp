@@ -9,6 +9,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#include "core/half.glsl"
 #include "core/sh.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
 #define LPV_SURFELS_BINDING 1
@@ -30,9 +31,8 @@ void main()
     ivec3 corner = lpv_cell_of_invocation(1);
     if (!lpv_inside(corner)) return;
     int at = 4 * lpv_index(corner);
-    vec4 source =
-        vec4(surfel_sums[at], surfel_sums[at + 1], surfel_sums[at + 2], surfel_sums[at + 3]) /
-        LPV_SURFEL_FIXED;
-    source = vec4(unpackHalf2x16(packHalf2x16(source.xy)), unpackHalf2x16(packHalf2x16(source.zw)));
+    vec4 source;
+    for (int i = 0; i < 4; i++)
+        source[i] = half_rounded(float(surfel_sums[at + i]) / LPV_SURFEL_FIXED);
     if (greater(source, imageLoad(geometry, corner))) imageStore(geometry, corner, source);
 }
