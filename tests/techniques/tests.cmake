@@ -14,17 +14,15 @@ function(ag_technique_tests)
   endforeach()
 endfunction()
 
-ag_technique_tests(emission gi_bake gi_spec paint radiosity radiosity_bake radiosity_damage radiosity_frames radiosity_seams radiosity_views technique_invariants technique_smoke visibility vo)
+ag_technique_tests(emission gi_bake gi_spec paint technique_invariants technique_smoke visibility vo)
 target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")
 ag_test(techniques/kept USES techniques)
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
 ag_test(techniques/light_trials USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)
 ag_test(techniques/environment_trials USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
 ag_test(techniques/environment_mirror USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
-ag_test(techniques/radiosity_corridor USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
 ag_test(techniques/probe_trials USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
 ag_shaders_for(test_techniques_probe_trials techniques_test_shaders.h ${CMAKE_CURRENT_LIST_DIR}/shaders)
-ag_test(techniques/radiosity_probes USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
 
 file(GLOB tests_of_techniques CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*/tests.cmake)
 foreach(file ${tests_of_techniques})
@@ -32,6 +30,6 @@ foreach(file ${tests_of_techniques})
 endforeach()
 
 # Every option of every technique, or pipelines of many grids: minutes alone, more beside others.
-set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct.clip_light techniques.light_trials techniques.environment_trials techniques.environment_mirror techniques.radiosity_corridor
+set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct.clip_light techniques.light_trials techniques.environment_trials techniques.environment_mirror
   techniques.dnrt.frame
   PROPERTIES TIMEOUT 900)
