@@ -1,5 +1,5 @@
 add_library(ag_test_techniques STATIC techniques/baked_fixture.c techniques/paint_fixture.c techniques/damage_fixture.c techniques/gi_baked.c techniques/technique_rules.c techniques/gi_fixture.c techniques/geometry_fixture.c techniques/geometry_twin.c techniques/mesh_fixture.c
-  techniques/rsm_fixture.c techniques/vo_fixture.c techniques/lpv/lpv_fixture.c techniques/lpv/lpv_twin.c techniques/lpv/lpv_twin_closed.c
+  techniques/rsm_fixture.c techniques/lpv/lpv_fixture.c techniques/lpv/lpv_twin.c techniques/lpv/lpv_twin_closed.c
   techniques/lpv/lpv_twin_product.c techniques/vct/svo_tree.c techniques/vct/vct_fixture.c techniques/vct/vct_twin.c
   techniques/vct/vct_voxel_count.c)
 target_link_libraries(ag_test_techniques PUBLIC ag_test_frame_fixture ag_techniques PRIVATE afterglow_flags m)
@@ -14,7 +14,7 @@ function(ag_technique_tests)
   endforeach()
 endfunction()
 
-ag_technique_tests(emission gi_bake gi_spec paint technique_invariants technique_smoke visibility vo)
+ag_technique_tests(emission gi_bake gi_spec paint technique_invariants technique_smoke visibility)
 target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")
 ag_test(techniques/kept USES techniques)
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)

@@ -1,4 +1,4 @@
-#include "techniques/vo_fixture.h"
+#include "techniques/vo/vo_fixture.h"
 
 #include "techniques/gi.h"
 #include "techniques/vo/vo.h"

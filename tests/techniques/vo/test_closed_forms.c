@@ -1,6 +1,6 @@
 // Volumetric obscurance against closed forms: planes and creases, at any angle, distance and sample
 // set.
-#include "techniques/vo_fixture.h"
+#include "techniques/vo/vo_fixture.h"
 
 #include "techniques/vo/vo.h"
 
