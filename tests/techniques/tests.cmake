@@ -1,7 +1,5 @@
-add_library(ag_test_techniques STATIC techniques/baked_fixture.c techniques/paint_fixture.c techniques/damage_fixture.c techniques/gi_baked.c techniques/technique_rules.c techniques/gi_fixture.c techniques/geometry_fixture.c techniques/geometry_twin.c techniques/mesh_fixture.c
-  techniques/rsm_fixture.c techniques/lpv/lpv_fixture.c techniques/lpv/lpv_twin.c techniques/lpv/lpv_twin_closed.c
-  techniques/lpv/lpv_twin_product.c techniques/vct/svo_tree.c techniques/vct/vct_fixture.c techniques/vct/vct_twin.c
-  techniques/vct/vct_voxel_count.c)
+add_library(ag_test_techniques STATIC techniques/baked_fixture.c techniques/damage_fixture.c techniques/gi_baked.c
+  techniques/gi_fixture.c techniques/paint_fixture.c techniques/technique_rules.c)
 target_link_libraries(ag_test_techniques PUBLIC ag_test_frame_fixture ag_techniques PRIVATE afterglow_flags m)
 
 add_library(ag_test_light_trial STATIC techniques/light_trial.c techniques/light_trial_scenes.c)
@@ -29,7 +27,6 @@ foreach(file ${tests_of_techniques})
   include(${file})
 endforeach()
 
-# Every option of every technique, or pipelines of many grids: minutes alone, more beside others.
-set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct.clip_light techniques.light_trials techniques.environment_trials techniques.environment_mirror
-  techniques.dnrt.frame
-  PROPERTIES TIMEOUT 900)
+# Every option of every technique: minutes alone, more beside others.
+set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.light_trials
+  techniques.environment_trials techniques.environment_mirror PROPERTIES TIMEOUT 900)

@@ -5,7 +5,7 @@
 #include "techniques/lpv/lpv_state.h"
 #include "techniques/lpv/lpv_volumes.h"
 #include "techniques/lpv/lpv_twin.h"
-#include "techniques/rsm_fixture.h"
+#include "techniques/lpv/rsm_fixture.h"
 
 enum { LPV_FIXTURE_COLOURS = 3 };
 

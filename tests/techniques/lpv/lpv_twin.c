@@ -1,7 +1,7 @@
 #include "techniques/lpv/lpv_twin.h"
 
 #include "core/sh.h"
-#include "techniques/geometry_twin.h"
+#include "techniques/lpv/geometry_twin.h"
 #include "techniques/lpv/lpv_twin_closed.h"
 #include "techniques/lpv/lpv_twin_product.h"
 

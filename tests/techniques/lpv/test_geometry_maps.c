@@ -1,5 +1,5 @@
 // The geometry volume from maps: equality with the plain C twin, bitwise invariants.
-#include "techniques/geometry_fixture.h"
+#include "techniques/lpv/geometry_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 // The geometry volume from the scene's triangles: equality with the plain C twin, bitwise
 // invariants.
-#include "techniques/geometry_fixture.h"
-#include "techniques/mesh_fixture.h"
+#include "techniques/lpv/geometry_fixture.h"
+#include "techniques/lpv/mesh_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // Light behind a wall between emitter and receiver.
-#include "techniques/mesh_fixture.h"
+#include "techniques/lpv/mesh_fixture.h"
 
 #include <math.h>
 

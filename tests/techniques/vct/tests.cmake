@@ -1,6 +1,12 @@
-ag_technique_tests(vct/bounces vct/clips vct/clip_light vct/edge_cases vct/hidden vct/history vct/kept_light
-  vct/light vct/octree_bricks vct/octree_nodes vct/screen vct/small_emitters vct/specular vct/storage vct/temporal
-  vct/vctao vct/voxels)
+add_library(ag_test_vct STATIC techniques/vct/svo_tree.c techniques/vct/vct_fixture.c techniques/vct/vct_twin.c
+  techniques/vct/vct_voxel_count.c)
+target_link_libraries(ag_test_vct PUBLIC ag_test_frame_fixture ag_test_techniques ag_techniques PRIVATE afterglow_flags m)
+foreach(name bounces clips clip_light edge_cases hidden history kept_light light octree_bricks octree_nodes screen
+    small_emitters specular storage temporal vctao voxels)
+  ag_test(techniques/vct/${name} USES techniques LIBRARIES ag_test_vct)
+endforeach()
 ag_test(techniques/vct/open_plane USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)
+# Pipelines of many grids: minutes alone, more beside others.
+set_tests_properties(techniques.vct.clip_light PROPERTIES TIMEOUT 900)
 # It compares times.
 set_tests_properties(techniques.vct.screen PROPERTIES RUN_SERIAL TRUE)

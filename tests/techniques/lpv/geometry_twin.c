@@ -1,4 +1,4 @@
-#include "techniques/geometry_twin.h"
+#include "techniques/lpv/geometry_twin.h"
 
 #include "core/sh.h"
 

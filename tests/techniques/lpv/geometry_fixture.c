@@ -1,4 +1,4 @@
-#include "techniques/geometry_fixture.h"
+#include "techniques/lpv/geometry_fixture.h"
 
 #include "core/rng.h"
 

@@ -1,4 +1,4 @@
-#include "techniques/rsm_fixture.h"
+#include "techniques/lpv/rsm_fixture.h"
 
 #include "frame/octahedral.h"
 

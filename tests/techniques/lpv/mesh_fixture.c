@@ -1,4 +1,4 @@
-#include "techniques/mesh_fixture.h"
+#include "techniques/lpv/mesh_fixture.h"
 
 #include "core/rng.h"
 

@@ -1,7 +1,7 @@
 // Fixture of the tests of the geometry volume.
 #pragma once
 
-#include "techniques/geometry_twin.h"
+#include "techniques/lpv/geometry_twin.h"
 #include "techniques/lpv/lpv_fixture.h"
 
 enum { GEOMETRY_SIZE = 24, GEOMETRY_WIDTH = 20, GEOMETRY_HEIGHT = 12 }; // of maps and images
