@@ -1,6 +1,6 @@
 // Shadows of pillars in the indirect light of @maze: irradiance of marked regions of the floor,
 // against the reference.
-#include "techniques/light_trial.h"
+#include "techniques/trials/light_trial.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 // Prefiltered light: links that do not cross walls, steps between them, levels of offsets, and the
 // levels of light on the GPU against the same sums on the CPU.
-#include "techniques/light_trial_scenes.h"
+#include "techniques/trials/light_trial_scenes.h"
 #include "techniques/ort/bake_fixture.h"
 
 #include "core/half.h"

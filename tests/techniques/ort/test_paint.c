@@ -1,7 +1,7 @@
 // Painted light of random texels: the light map of the GPU has it and what the bake transfers of
 // it.
 #include "techniques/ort/bake_fixture.h"
-#include "techniques/paint_fixture.h"
+#include "techniques/trials/paint_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>

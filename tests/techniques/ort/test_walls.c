@@ -1,5 +1,5 @@
 // Rays of a closed room meet texels of that room: those that reach through a wall count for others.
-#include "techniques/light_trial_scenes.h"
+#include "techniques/trials/light_trial_scenes.h"
 #include "techniques/ort/bake_fixture.h"
 
 #include "bake/plan.h"

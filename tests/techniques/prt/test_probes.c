@@ -5,8 +5,8 @@
 #include "core/sh.h"
 #include "techniques/baked_fixture.h"
 #include "techniques/common/probes/grid.h"
-#include "techniques/light_trial.h"
-#include "techniques/light_trial_scenes.h"
+#include "techniques/trials/light_trial.h"
+#include "techniques/trials/light_trial_scenes.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 // The far ends of @corridor: niches around the corners of its arms, which light reaches after
 // several bounces. Irradiance of regions of the floor, against the reference.
 #include "techniques/baked_fixture.h"
-#include "techniques/light_trial.h"
+#include "techniques/trials/light_trial.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 // Probes of radiosity: what moves is not in the bake, and is lit by them.
 #include "frame/frame_fixture.h"
 #include "techniques/baked_fixture.h"
-#include "techniques/light_trial.h"
-#include "techniques/light_trial_scenes.h"
+#include "techniques/trials/light_trial.h"
+#include "techniques/trials/light_trial_scenes.h"
 
 #include <string.h>
 

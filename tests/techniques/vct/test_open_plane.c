@@ -1,5 +1,5 @@
 // An open plane of any orientation and position gets the whole sky and none of its own light.
-#include "techniques/light_trial.h"
+#include "techniques/trials/light_trial.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 // The map of the environment in specular lobes of metal.
 #include "scene/environment_fixture.h"
 #include "techniques/gi_fixture.h"
-#include "techniques/light_trial_scenes.h"
+#include "techniques/trials/light_trial_scenes.h"
 
 #include <stdlib.h>
 

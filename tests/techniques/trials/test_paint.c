@@ -1,7 +1,7 @@
 // Painted light: it is light as any other, of the texels that it was painted on, and leaves nothing
 // behind.
 #include "frame/frame_fixture.h"
-#include "techniques/paint_fixture.h"
+#include "techniques/trials/paint_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>

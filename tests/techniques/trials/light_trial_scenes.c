@@ -1,5 +1,5 @@
 // Scenes of the physical trials.
-#include "techniques/light_trial_scenes.h"
+#include "techniques/trials/light_trial_scenes.h"
 
 #include <math.h>
 #include <stdlib.h>

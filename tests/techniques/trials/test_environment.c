@@ -3,8 +3,8 @@
 #include "scene/environment_fixture.h"
 #include "techniques/baked_fixture.h"
 #include "techniques/gi_fixture.h"
-#include "techniques/light_trial.h"
-#include "techniques/light_trial_scenes.h"
+#include "techniques/trials/light_trial.h"
+#include "techniques/trials/light_trial_scenes.h"
 
 #include <stdlib.h>
 

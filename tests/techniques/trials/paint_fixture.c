@@ -1,4 +1,4 @@
-#include "techniques/paint_fixture.h"
+#include "techniques/trials/paint_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,13 +5,13 @@
 // the mean irradiance of the box in the dark room over that of the same box, mirrored at the wall,
 // in the sunlit one.
 #include "techniques/baked_fixture.h"
-#include "techniques/light_trial.h"
-#include "techniques/light_trial_scenes.h"
+#include "techniques/trials/light_trial.h"
+#include "techniques/trials/light_trial_scenes.h"
 #include "techniques_test_shaders.h"
 
 #include <math.h>
 
-// As of test_light_trials.c.
+// That of test_light.c.
 #define DICTIONARY                                                                                 \
     "texels=8,rays=256,prior_modes=16,modes=12,lightfield_positions=4,lightfield_directions=6,"    \
     "lightfield_modes=16,response_modes=12,block_probes="

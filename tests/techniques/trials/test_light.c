@@ -1,7 +1,7 @@
 // Physical trials of the sources that trace light through the scene: thin walls, a plane's own
 // light, the sky, an empty room, small emitters. Each prints its figures.
-#include "techniques/light_trial.h"
-#include "techniques/light_trial_scenes.h"
+#include "techniques/trials/light_trial.h"
+#include "techniques/trials/light_trial_scenes.h"
 
 #include <math.h>
 

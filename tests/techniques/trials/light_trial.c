@@ -1,5 +1,5 @@
 // Irradiance of a fixture's scene by techniques and by the reference.
-#include "techniques/light_trial.h"
+#include "techniques/trials/light_trial.h"
 
 #include "scene/scene_edit.h"
 #include "techniques/gi_fixture.h"
