@@ -1,7 +1,8 @@
-// Cost and effect of each technique: renders a scene with every source of indirect light, prints
-// times, memory and the difference from direct light only, and writes the layers of the last one.
+// Cost and effect of each technique: renders a scene with every source of indirect light, or with
+// those given, prints times, memory and the difference from direct light only, and writes the
+// layers of the last one.
 //
-//     measure SCENE OUT.exr
+//     measure SCENE OUT.exr [GI...]
 #include <afterglow/afterglow.h>
 
 #include <stdio.h>
@@ -98,10 +99,18 @@ static enum ag_result measure(struct bench *bench, const char *gi)
     return result;
 }
 
-static enum ag_result run(struct bench *bench, const char *scene)
+static enum ag_result measure_all(struct bench *bench)
+{
+    struct ag_technique_info technique;
+    enum ag_result result = AG_OK;
+    for (int i = 0; ag_technique_get(i, &technique) && result == AG_OK; i++)
+        if (strcmp(technique.role, "source") == 0) result = measure(bench, technique.name);
+    return result;
+}
+
+static enum ag_result run(struct bench *bench, const char *scene, char *const *gi, int count)
 {
     struct ag_device_info device;
-    struct ag_technique_info technique;
     ag_frame_desc_default(&bench->frame);
     enum ag_result result = ag_device_create(bench->context, NULL, &bench->device);
     if (result == AG_OK) result = ag_scene_load(bench->context, scene, &bench->scene);
@@ -111,20 +120,20 @@ static enum ag_result run(struct bench *bench, const char *scene)
     if (result != AG_OK) return result;
     ag_device_get_info(bench->device, &device);
     printf("%s on %s, %dx%d\n", scene, device.name, WIDTH, HEIGHT);
-    for (int i = 0; ag_technique_get(i, &technique) && result == AG_OK; i++)
-        if (strcmp(technique.role, "source") == 0) result = measure(bench, technique.name);
+    if (count == 0) return measure_all(bench);
+    for (int i = 0; i < count && result == AG_OK; i++) result = measure(bench, gi[i]);
     return result;
 }
 
 int main(int argc, char **argv)
 {
-    if (argc != 3) {
-        fprintf(stderr, "usage: measure SCENE OUT.exr\n");
+    if (argc < 3) {
+        fprintf(stderr, "usage: measure SCENE OUT.exr [GI...]\n");
         return 2;
     }
     struct bench bench = { .out = argv[2] };
     enum ag_result result = ag_context_create(NULL, &bench.context);
-    if (result == AG_OK) result = run(&bench, argv[1]);
+    if (result == AG_OK) result = run(&bench, argv[1], argv + 3, argc - 3);
     if (result != AG_OK)
         fprintf(stderr, "measure: %s (%s)\n", ag_context_last_error(bench.context),
                 ag_result_string(result));

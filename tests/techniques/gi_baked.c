@@ -1,13 +1,14 @@
 #include "techniques/gi_baked.h"
 
+#include "techniques/kept_bake.h"
+
 static bool bake_term(struct gi_baked *out, struct host *host, const struct gi_spec *spec,
                       const struct scene_pose *pose, int i)
 {
-    const struct bake_run_options options = { .threads = 0 };
     const struct bake_identity identity = { .program = "" };
     out->how[i] = (struct technique_bake){ .pose = pose, .options = spec->options[i] };
     out->owned[i] = gi_bake_create(host, spec->technique[i], &out->how[i], identity);
-    if (!out->owned[i] || !bake_run(out->owned[i], &options)) return false;
+    if (!out->owned[i] || !kept_bake_run(out->owned[i])) return false;
     out->bakes.of_term[i] = bake_tensors(out->owned[i]);
     return true;
 }

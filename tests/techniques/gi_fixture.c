@@ -3,6 +3,7 @@
 #include "framework/test.h"
 #include "techniques/gi_bake.h"
 #include "techniques/gi_spec.h"
+#include "techniques/kept_bake.h"
 
 #include <string.h>
 
@@ -41,7 +42,7 @@ static struct bake *bake_of(const struct technique *technique, const void *optio
             return kept[i];
         }
     }
-    CHECK(bake_run(bake, &(struct bake_run_options){ .threads = 0 }));
+    CHECK(kept_bake_run(bake));
     bake_destroy(kept[oldest]);
     kept[oldest] = bake;
     oldest = (oldest + 1) % MAX_KEPT;

@@ -2,6 +2,7 @@
 
 #include "core/half.h"
 #include "core/rng.h"
+#include "techniques/kept_bake.h"
 #include "techniques/ort/levels.h"
 
 #include <math.h>
@@ -72,7 +73,7 @@ struct bake *ort_fixture_plan(const struct ort_fixture *f, const char *more, uin
 struct ort_baked ort_fixture_bake(const struct ort_fixture *f, const char *more, uint64_t seed)
 {
     struct ort_baked baked = { .bake = ort_fixture_plan(f, more, seed) };
-    CHECK(bake_run(baked.bake, &(struct bake_run_options){ 0 }));
+    CHECK(kept_bake_run(baked.bake));
     baked.tensors = bake_tensors(baked.bake);
     return baked;
 }

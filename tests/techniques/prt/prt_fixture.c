@@ -2,6 +2,7 @@
 
 #include "core/half.h"
 #include "core/rng.h"
+#include "techniques/kept_bake.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -164,7 +165,7 @@ struct bake *prt_fixture_plan(const struct prt_fixture *f, const char *more, uin
 struct prt_baked prt_fixture_bake(const struct prt_fixture *f, const char *more, uint64_t seed)
 {
     struct prt_baked baked = { .bake = prt_fixture_plan(f, more, seed) };
-    CHECK(bake_run(baked.bake, &(struct bake_run_options){ 0 }));
+    CHECK(kept_bake_run(baked.bake));
     baked.tensors = bake_tensors(baked.bake);
     return baked;
 }

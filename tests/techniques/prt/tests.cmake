@@ -1,5 +1,5 @@
 add_library(ag_test_prt_bake STATIC techniques/prt/prt_fixture.c)
-target_link_libraries(ag_test_prt_bake PUBLIC ag_test_frame_fixture ag_techniques ag_trace PRIVATE afterglow_flags m)
+target_link_libraries(ag_test_prt_bake PUBLIC ag_test_frame_fixture ag_test_kept_bake ag_techniques ag_trace PRIVATE afterglow_flags m)
 ag_test(techniques/prt/bake USES techniques LIBRARIES ag_test_prt_bake)
 ag_test(techniques/prt/transfer USES techniques LIBRARIES ag_test_prt_bake ag_test_techniques)
 ag_test(techniques/prt/glossy USES techniques LIBRARIES ag_test_prt_bake ag_test_techniques)
