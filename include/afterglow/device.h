@@ -66,7 +66,11 @@ struct ag_device_adopt {
     /// VkAllocationCallbacks for the host memory of all Vulkan objects of the library; its
     /// pUserData must stay valid as long as the handles. NULL: the driver's.
     const void *vk_allocation_callbacks;
-    uint64_t reserved[2]; ///< 0; see ABI in types.h
+    /// PFN_vkGetInstanceProcAddr that loads every Vulkan function of this device, for a program
+    /// with a loader of its own; the functions must stay valid as long as the handles. NULL: the
+    /// loader that the library is linked with.
+    void (*get_instance_proc_addr)(void);
+    uint64_t reserved[1]; ///< 0; see ABI in types.h
 };
 
 struct ag_device_desc {

@@ -25,8 +25,14 @@ struct ag_vulkan_requirements {
 /// For a device of a Vulkan 1.3 instance. `usable` of ag_device_info tells which devices have all.
 AG_API void ag_vulkan_requirements_get(VkPhysicalDevice physical_device,
                                        struct ag_vulkan_requirements *out);
+/// The same with the functions of ag_device_adopt.get_instance_proc_addr. extension_count is 0 if
+/// it lacks one.
+AG_API void ag_vulkan_requirements_get_with(VkInstance instance, VkPhysicalDevice physical_device,
+                                            PFN_vkGetInstanceProcAddr get_instance_proc_addr,
+                                            struct ag_vulkan_requirements *out);
 
-/// ag_device_adopt without a queue lock. requirements: those that the device was created with.
+/// ag_device_adopt with the linked loader and without a queue lock. requirements: those that the
+/// device was created with.
 static inline struct ag_device_adopt
 ag_vulkan_adopt(VkInstance instance, VkPhysicalDevice physical_device, VkDevice device,
                 VkQueue queue, uint32_t queue_family,

@@ -87,7 +87,8 @@ static struct gpu_adopt lent_device(struct ag_device *device, const struct ag_de
                              .unlock_queue = lent->unlock_queue,
                              .user = lent->user,
                              .enabled_features = lent->vk_enabled_features,
-                             .vk_allocation_callbacks = lent->vk_allocation_callbacks };
+                             .vk_allocation_callbacks = lent->vk_allocation_callbacks,
+                             .get_instance_proc_addr = lent->get_instance_proc_addr };
     if (!lent->memory) return out;
     device->memory = *lent->memory;
     out.memory = (struct gpu_memory_callbacks){ allocate_memory, free_memory, device };

@@ -177,14 +177,15 @@ void bind_record(struct gpu_cmd *cmd, const struct pipeline *pipeline, const str
     VkPipelineBindPoint point =
         pipeline->graphics ? VK_PIPELINE_BIND_POINT_GRAPHICS : VK_PIPELINE_BIND_POINT_COMPUTE;
     if (cmd->bound[pipeline->graphics] != pipeline->handle) {
-        vkCmdBindPipeline(cmd->buffer, point, pipeline->handle);
+        cmd->gpu->vk.CmdBindPipeline(cmd->buffer, point, pipeline->handle);
         cmd->bound[pipeline->graphics] = pipeline->handle;
     }
     if (r->binding_count) {
-        cmd->gpu->push_descriptors(cmd->buffer, point, pipeline->layout, 0,
-                                   (uint32_t)r->binding_count, set->writes);
+        cmd->gpu->vk.CmdPushDescriptorSetKHR(cmd->buffer, point, pipeline->layout, 0,
+                                             (uint32_t)r->binding_count, set->writes);
     }
     if (r->push_bytes) {
-        vkCmdPushConstants(cmd->buffer, pipeline->layout, r->push_stages, 0, r->push_bytes, push);
+        cmd->gpu->vk.CmdPushConstants(cmd->buffer, pipeline->layout, r->push_stages, 0,
+                                      r->push_bytes, push);
     }
 }

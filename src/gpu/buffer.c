@@ -16,23 +16,23 @@ static VkBufferUsageFlags usage_flags(uint32_t usage)
 static bool create_handle(struct gpu *gpu, struct buffer *buffer, uint32_t usage,
                           enum memory_kind kind)
 {
-    if (!VK_CHECK(gpu, vkCreateBuffer(gpu->device,
-                                      &(VkBufferCreateInfo){
-                                          .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                                          .size = buffer->capacity,
-                                          .usage = usage_flags(usage),
-                                      },
-                                      gpu->allocator, &buffer->handle))) {
+    if (!VK_CALL(gpu, CreateBuffer, gpu->device,
+                 &(VkBufferCreateInfo){
+                     .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                     .size = buffer->capacity,
+                     .usage = usage_flags(usage),
+                 },
+                 gpu->allocator, &buffer->handle)) {
         buffer->handle = VK_NULL_HANDLE;
         return false;
     }
     VK_NAME(gpu, VK_OBJECT_TYPE_BUFFER, buffer->handle, buffer->name);
     VkMemoryRequirements needs;
-    vkGetBufferMemoryRequirements(gpu->device, buffer->handle, &needs);
+    gpu->vk.GetBufferMemoryRequirements(gpu->device, buffer->handle, &needs);
     if (!memory_allocate(gpu, &needs, kind, true, buffer->name, &buffer->memory)) return false;
     if (buffer->memory.recycled) buffer->hazard = hazard_recycled();
-    return VK_CHECK(gpu, vkBindBufferMemory(gpu->device, buffer->handle, buffer->memory.memory,
-                                            buffer->memory.offset));
+    return VK_CALL(gpu, BindBufferMemory, gpu->device, buffer->handle, buffer->memory.memory,
+                   buffer->memory.offset);
 }
 
 struct buffer *buffer_new(struct gpu *gpu, const char *name, size_t bytes, uint32_t usage,
@@ -52,7 +52,7 @@ void buffer_free(struct gpu *gpu, void *object)
 {
     struct buffer *buffer = object;
     if (!buffer) return;
-    vkDestroyBuffer(gpu->device, buffer->handle, gpu->allocator);
+    gpu->vk.DestroyBuffer(gpu->device, buffer->handle, gpu->allocator);
     memory_free(gpu, &buffer->memory);
     host_free(gpu->host, buffer);
 }

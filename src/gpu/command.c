@@ -13,23 +13,21 @@ bool cmd_init(struct gpu *gpu, struct gpu_cmd *cmd, bool adopted)
     snprintf(name, sizeof name, "gpu.commands %d", (int)(cmd - gpu->cmds));
     if (cmd != &gpu->cmds[CMD_TRANSFER] && !scopes_init(gpu, &cmd->scopes, name)) return false;
     if (adopted) return true;
-    if (!VK_CHECK(gpu, vkCreateCommandPool(gpu->device,
-                                           &(VkCommandPoolCreateInfo){
-                                               .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                               .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
-                                               .queueFamilyIndex = gpu->queue_family },
-                                           gpu->allocator, &cmd->pool))) {
+    if (!VK_CALL(gpu, CreateCommandPool, gpu->device,
+                 &(VkCommandPoolCreateInfo){ .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                             .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+                                             .queueFamilyIndex = gpu->queue_family },
+                 gpu->allocator, &cmd->pool)) {
         cmd->pool = VK_NULL_HANDLE;
         return false;
     }
-    if (!VK_CHECK(gpu, vkAllocateCommandBuffers(
-                           gpu->device,
-                           &(VkCommandBufferAllocateInfo){
-                               .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                               .commandPool = cmd->pool,
-                               .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                               .commandBufferCount = 1 },
-                           &cmd->buffer))) {
+    if (!VK_CALL(
+            gpu, AllocateCommandBuffers, gpu->device,
+            &(VkCommandBufferAllocateInfo){ .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                            .commandPool = cmd->pool,
+                                            .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                            .commandBufferCount = 1 },
+            &cmd->buffer)) {
         return false;
     }
     VK_NAME(gpu, VK_OBJECT_TYPE_COMMAND_BUFFER, cmd->buffer, name);
@@ -38,8 +36,8 @@ bool cmd_init(struct gpu *gpu, struct gpu_cmd *cmd, bool adopted)
 
 void cmd_finish(struct gpu *gpu, struct gpu_cmd *cmd)
 {
-    vkDestroyQueryPool(gpu->device, cmd->scopes.queries, gpu->allocator);
-    vkDestroyCommandPool(gpu->device, cmd->pool, gpu->allocator);
+    gpu->vk.DestroyQueryPool(gpu->device, cmd->scopes.queries, gpu->allocator);
+    gpu->vk.DestroyCommandPool(gpu->device, cmd->pool, gpu->allocator);
     ring_finish(cmd);
     *cmd = (struct gpu_cmd){ 0 };
 }
@@ -88,12 +86,11 @@ static void start(struct gpu_cmd *cmd)
 static bool start_own(struct gpu_cmd *cmd)
 {
     struct gpu *gpu = cmd->gpu;
-    if (!VK_CHECK(gpu, vkResetCommandPool(gpu->device, cmd->pool, 0)) ||
-        !VK_CHECK(gpu,
-                  vkBeginCommandBuffer(
-                      cmd->buffer, &(VkCommandBufferBeginInfo){
-                                       .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT }))) {
+    if (!VK_CALL(gpu, ResetCommandPool, gpu->device, cmd->pool, 0) ||
+        !VK_CALL(
+            gpu, BeginCommandBuffer, cmd->buffer,
+            &(VkCommandBufferBeginInfo){ .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT })) {
         return false;
     }
     start(cmd);
@@ -103,7 +100,7 @@ static bool start_own(struct gpu_cmd *cmd)
 static VkResult submit_locked(struct gpu *gpu, const VkSubmitInfo2 *info)
 {
     if (gpu->adopt.lock_queue) gpu->adopt.lock_queue(gpu->adopt.user);
-    VkResult result = vkQueueSubmit2(gpu->queue, 1, info, VK_NULL_HANDLE);
+    VkResult result = gpu->vk.QueueSubmit2(gpu->queue, 1, info, VK_NULL_HANDLE);
     if (gpu->adopt.unlock_queue) gpu->adopt.unlock_queue(gpu->adopt.user);
     return result;
 }
@@ -113,7 +110,7 @@ static bool submit(struct gpu_cmd *cmd)
     struct gpu *gpu = cmd->gpu;
     gpu->recording = NULL;
     cmd->state = CMD_FREE;
-    if (!VK_CHECK(gpu, vkEndCommandBuffer(cmd->buffer))) return false;
+    if (!VK_CALL(gpu, EndCommandBuffer, cmd->buffer)) return false;
     VkSubmitInfo2 info = {
         .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
         .commandBufferInfoCount = 1,
@@ -127,7 +124,7 @@ static bool submit(struct gpu_cmd *cmd)
                                       .value = gpu->submitted + 1,
                                       .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT },
     };
-    if (!VK_CHECK(gpu, submit_locked(gpu, &info))) return false;
+    if (!vk_check(gpu, submit_locked(gpu, &info), "vkQueueSubmit2")) return false;
     cmd->timeline = ++gpu->submitted;
     cmd->state = CMD_PENDING;
     return true;

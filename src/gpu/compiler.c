@@ -16,7 +16,7 @@ struct gpu *gpu_compiler_create(const struct gpu *gpu, struct host *host)
     c->physical = gpu->physical;
     c->device = gpu->device;
     c->allocator = gpu->allocator;
-    c->set_name = gpu->set_name;
+    c->vk = gpu->vk;
     c->pipeline_cache = gpu->pipeline_cache; // synchronized by Vulkan
     return c;
 }

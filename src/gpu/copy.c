@@ -31,12 +31,13 @@ void gpu_clear_image(struct gpu_cmd *cmd, gpu_image handle, const float value[4]
     hazard_image(cmd, image, &range, &access);
     hazard_flush(cmd);
     if (image->desc.format == GPU_D32F) {
-        vkCmdClearDepthStencilImage(cmd->buffer, image->handle, access.layout,
-                                    &(VkClearDepthStencilValue){ .depth = value[0] }, 1, &all);
+        cmd->gpu->vk.CmdClearDepthStencilImage(cmd->buffer, image->handle, access.layout,
+                                               &(VkClearDepthStencilValue){ .depth = value[0] }, 1,
+                                               &all);
         return;
     }
     VkClearColorValue clear = format_clear(image->desc.format, value);
-    vkCmdClearColorImage(cmd->buffer, image->handle, access.layout, &clear, 1, &all);
+    cmd->gpu->vk.CmdClearColorImage(cmd->buffer, image->handle, access.layout, &clear, 1, &all);
 }
 
 void gpu_fill_buffer(struct gpu_cmd *cmd, gpu_buffer handle, size_t offset, size_t bytes,
@@ -53,7 +54,7 @@ void gpu_fill_buffer(struct gpu_cmd *cmd, gpu_buffer handle, size_t offset, size
     if (bytes == buffer->bytes) hazard_overwrite_buffer(buffer);
     hazard_buffer(cmd, buffer, &access);
     hazard_flush(cmd);
-    vkCmdFillBuffer(cmd->buffer, buffer->handle, offset, bytes, word);
+    cmd->gpu->vk.CmdFillBuffer(cmd->buffer, buffer->handle, offset, bytes, word);
 }
 
 static bool same_shape(const struct image *a, const struct image *b)
@@ -86,8 +87,8 @@ void gpu_copy_image(struct gpu_cmd *cmd, gpu_image to_handle, gpu_image from_han
                                       .dstSubresource = layers,
                                       .extent = image_extent(to, mip) };
     }
-    vkCmdCopyImage(cmd->buffer, from->handle, read.layout, to->handle, write.layout, to->desc.mips,
-                   regions);
+    cmd->gpu->vk.CmdCopyImage(cmd->buffer, from->handle, read.layout, to->handle, write.layout,
+                              to->desc.mips, regions);
 }
 
 void gpu_copy_buffer(struct gpu_cmd *cmd, gpu_buffer to_handle, size_t to_offset,
@@ -106,8 +107,8 @@ void gpu_copy_buffer(struct gpu_cmd *cmd, gpu_buffer to_handle, size_t to_offset
     hazard_buffer(cmd, to, &write);
     hazard_buffer(cmd, from, &read);
     hazard_flush(cmd);
-    vkCmdCopyBuffer(cmd->buffer, from->handle, to->handle, 1,
-                    &(VkBufferCopy){ from_offset, to_offset, bytes });
+    cmd->gpu->vk.CmdCopyBuffer(cmd->buffer, from->handle, to->handle, 1,
+                               &(VkBufferCopy){ from_offset, to_offset, bytes });
 }
 
 void gpu_copy_texel(struct gpu_cmd *cmd, gpu_buffer to_handle, size_t to_offset,
@@ -131,5 +132,6 @@ void gpu_copy_texel(struct gpu_cmd *cmd, gpu_buffer to_handle, size_t to_offset,
                                        .imageSubresource = { from->aspect, 0, 0, 1 },
                                        .imageOffset = { (int32_t)x, (int32_t)y, 0 },
                                        .imageExtent = { 1, 1, 1 } };
-    vkCmdCopyImageToBuffer(cmd->buffer, from->handle, read.layout, to->handle, 1, &region);
+    cmd->gpu->vk.CmdCopyImageToBuffer(cmd->buffer, from->handle, read.layout, to->handle, 1,
+                                      &region);
 }

@@ -7,6 +7,12 @@
 #include <string.h>
 #include <strings.h>
 
+// Linked for gpu_fill_requirements, which need not know an instance to load it with.
+VKAPI_ATTR VkResult VKAPI_CALL vkEnumerateDeviceExtensionProperties(VkPhysicalDevice physical,
+                                                                    const char *layer,
+                                                                    uint32_t *count,
+                                                                    VkExtensionProperties *out);
+
 enum { MAX_DEVICES = 16, MAX_EXTENSIONS = 512, MAX_FAMILIES = 32 };
 
 struct features {
@@ -68,11 +74,12 @@ static VkBool32 *feature_at(struct features *f, int i)
     return (VkBool32 *)(void *)((char *)f + required_features[i].offset);
 }
 
-static bool has_extension(VkPhysicalDevice physical, const char *name)
+static bool has_extension(const struct vulkan_functions *vk, VkPhysicalDevice physical,
+                          const char *name)
 {
     VkExtensionProperties list[MAX_EXTENSIONS];
     uint32_t count = MAX_EXTENSIONS;
-    VkResult result = vkEnumerateDeviceExtensionProperties(physical, NULL, &count, list);
+    VkResult result = vk->EnumerateDeviceExtensionProperties(physical, NULL, &count, list);
     if (result != VK_SUCCESS && result != VK_INCOMPLETE) return false;
     for (uint32_t i = 0; i < count; i++) {
         if (strcmp(list[i].extensionName, name) == 0) return true;
@@ -81,17 +88,20 @@ static bool has_extension(VkPhysicalDevice physical, const char *name)
 }
 
 // Returns the number of extensions.
-static uint32_t list_extensions(VkPhysicalDevice physical, const char *extensions[2])
+static uint32_t list_extensions(const struct vulkan_functions *vk, VkPhysicalDevice physical,
+                                const char *extensions[2])
 {
     uint32_t count = 0;
     extensions[count++] = VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
-    if (has_extension(physical, "VK_KHR_portability_subset"))
+    if (has_extension(vk, physical, "VK_KHR_portability_subset"))
         extensions[count++] = "VK_KHR_portability_subset"; // must be enabled if it is supported
     return count;
 }
 
-uint32_t gpu_fill_requirements(void *physical_device, void *features2, void *vulkan11,
-                               void *vulkan12, void *vulkan13, const char *extensions[2])
+uint32_t gpu_fill_requirements(void *instance, void *physical_device,
+                               void (*get_instance_proc_addr)(void), void *features2,
+                               void *vulkan11, void *vulkan12, void *vulkan13,
+                               const char *extensions[2])
 {
     struct features use;
     features_init(&use);
@@ -103,7 +113,13 @@ uint32_t gpu_fill_requirements(void *physical_device, void *features2, void *vul
     memcpy(vulkan11, &use.v11, sizeof use.v11);
     memcpy(vulkan12, &use.v12, sizeof use.v12);
     memcpy(vulkan13, &use.v13, sizeof use.v13);
-    return list_extensions(physical_device, extensions);
+    struct vulkan_functions vk = {
+        .EnumerateDeviceExtensionProperties = vkEnumerateDeviceExtensionProperties,
+    };
+    if (instance &&
+        vulkan_load_instance(&vk, instance, (PFN_vkGetInstanceProcAddr)get_instance_proc_addr))
+        return 0;
+    return list_extensions(&vk, physical_device, extensions);
 }
 
 // Copies a struct of a chain without its header, and notes that it is there.
@@ -151,20 +167,21 @@ const char *device_missing_feature(const void *chain)
     return NULL;
 }
 
-bool device_family_is_usable(VkPhysicalDevice physical, uint32_t family)
+bool device_family_is_usable(const struct gpu *gpu, uint32_t family)
 {
     VkQueueFamilyProperties families[MAX_FAMILIES];
     uint32_t count = MAX_FAMILIES;
     const VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families);
+    gpu->vk.GetPhysicalDeviceQueueFamilyProperties(gpu->physical, &count, families);
     return family < count && (families[family].queueFlags & wanted) == wanted;
 }
 
-static uint32_t find_queue_family(VkPhysicalDevice physical, uint32_t *valid_bits)
+static uint32_t find_queue_family(const struct vulkan_functions *vk, VkPhysicalDevice physical,
+                                  uint32_t *valid_bits)
 {
     VkQueueFamilyProperties families[MAX_FAMILIES];
     uint32_t count = MAX_FAMILIES;
-    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families);
+    vk->GetPhysicalDeviceQueueFamilyProperties(physical, &count, families);
     const VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
     for (uint32_t i = 0; i < count; i++) {
         if ((families[i].queueFlags & wanted) != wanted) continue;
@@ -181,8 +198,8 @@ static void miss(struct gpu_device_info *info, const char *what)
     info->usable = false;
 }
 
-static void check_usable(VkPhysicalDevice physical, const VkPhysicalDeviceProperties *p,
-                         struct gpu_device_info *out)
+static void check_usable(const struct vulkan_functions *vk, VkPhysicalDevice physical,
+                         const VkPhysicalDeviceProperties *p, struct gpu_device_info *out)
 {
     out->usable = true;
     if (p->apiVersion < VK_API_VERSION_1_3) {
@@ -191,18 +208,20 @@ static void check_usable(VkPhysicalDevice physical, const VkPhysicalDeviceProper
     }
     struct features has;
     features_init(&has);
-    vkGetPhysicalDeviceFeatures2(physical, &has.core);
+    vk->GetPhysicalDeviceFeatures2(physical, &has.core);
     for (int i = 0; i < REQUIRED_COUNT; i++) {
         if (!*feature_at(&has, i)) miss(out, required_features[i].name);
     }
     uint32_t bits;
-    if (find_queue_family(physical, &bits) == UINT32_MAX) miss(out, "a graphics and compute queue");
-    if (!has_extension(physical, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) {
+    if (find_queue_family(vk, physical, &bits) == UINT32_MAX)
+        miss(out, "a graphics and compute queue");
+    if (!has_extension(vk, physical, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) {
         miss(out, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
     }
 }
 
-void device_describe(VkPhysicalDevice physical, struct gpu_device_info *out)
+void device_describe(const struct vulkan_functions *vk, VkPhysicalDevice physical,
+                     struct gpu_device_info *out)
 {
     VkPhysicalDeviceDriverProperties driver = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES,
@@ -211,7 +230,7 @@ void device_describe(VkPhysicalDevice physical, struct gpu_device_info *out)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
         .pNext = &driver,
     };
-    vkGetPhysicalDeviceProperties2(physical, &p);
+    vk->GetPhysicalDeviceProperties2(physical, &p);
     *out = (struct gpu_device_info){ .type = GPU_OTHER };
     snprintf(out->name, sizeof out->name, "%s", p.properties.deviceName);
     snprintf(out->driver, sizeof out->driver, "%.120s %.120s", driver.driverName,
@@ -229,26 +248,29 @@ void device_describe(VkPhysicalDevice physical, struct gpu_device_info *out)
     default:
         break;
     }
-    check_usable(physical, &p.properties, out);
+    check_usable(vk, physical, &p.properties, out);
 }
 
-static uint32_t enumerate(VkInstance instance, VkPhysicalDevice out[MAX_DEVICES])
+static uint32_t enumerate(const struct vulkan_functions *vk, VkInstance instance,
+                          VkPhysicalDevice out[MAX_DEVICES])
 {
     uint32_t count = MAX_DEVICES;
-    VkResult result = vkEnumeratePhysicalDevices(instance, &count, out);
+    VkResult result = vk->EnumeratePhysicalDevices(instance, &count, out);
     return result == VK_SUCCESS || result == VK_INCOMPLETE ? count : 0;
 }
 
 bool gpu_list_devices(struct host *host, struct gpu_device_info *out, int capacity, int *count)
 {
     *count = 0;
+    struct vulkan_functions vk;
     VkInstance instance;
-    if (!instance_create(host, false, &instance)) return false;
+    if (!instance_create(host, false, &vk, &instance)) return false;
     VkPhysicalDevice devices[MAX_DEVICES];
-    uint32_t found = enumerate(instance, devices);
-    for (uint32_t i = 0; i < found && (int)i < capacity; i++) device_describe(devices[i], &out[i]);
+    uint32_t found = enumerate(&vk, instance, devices);
+    for (uint32_t i = 0; i < found && (int)i < capacity; i++)
+        device_describe(&vk, devices[i], &out[i]);
     *count = (int)found;
-    vkDestroyInstance(instance, NULL);
+    vk.DestroyInstance(instance, NULL);
     return true;
 }
 
@@ -305,13 +327,14 @@ static void list_text(const struct gpu_device_info *infos, uint32_t count, char 
     }
 }
 
-VkPhysicalDevice device_choose(struct host *host, VkInstance instance, const char *wanted)
+VkPhysicalDevice device_choose(struct host *host, const struct vulkan_functions *vk,
+                               VkInstance instance, const char *wanted)
 {
     VkPhysicalDevice devices[MAX_DEVICES];
     struct gpu_device_info infos[MAX_DEVICES];
     char list[1024];
-    uint32_t count = enumerate(instance, devices);
-    for (uint32_t i = 0; i < count; i++) device_describe(devices[i], &infos[i]);
+    uint32_t count = enumerate(vk, instance, devices);
+    for (uint32_t i = 0; i < count; i++) device_describe(vk, devices[i], &infos[i]);
     list_text(infos, count, list, sizeof list);
     if (wanted && !wanted[0]) wanted = NULL;
     int chosen = match(infos, count, wanted);
@@ -332,41 +355,53 @@ VkPhysicalDevice device_choose(struct host *host, VkInstance instance, const cha
     return VK_NULL_HANDLE;
 }
 
+bool device_use(struct gpu *gpu, VkDevice device)
+{
+    const char *missing = vulkan_load_device(&gpu->vk, device);
+    if (missing) {
+        if (!gpu->adopted && gpu->vk.DestroyDevice) gpu->vk.DestroyDevice(device, NULL);
+        return vk_missing(gpu->host, missing);
+    }
+    gpu->device = device;
+    if (gpu->vk.CmdPushDescriptorSetKHR) return true;
+    return host_fail(gpu->host, FAIL_UNSUPPORTED, "gpu device %s: it was created without %s",
+                     gpu->info.name, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
+}
+
 bool device_create(struct gpu *gpu)
 {
     uint32_t bits;
-    gpu->queue_family = find_queue_family(gpu->physical, &bits);
+    gpu->queue_family = find_queue_family(&gpu->vk, gpu->physical, &bits);
     struct features has, use;
     features_init(&has);
     features_init(&use);
-    vkGetPhysicalDeviceFeatures2(gpu->physical, &has.core);
+    gpu->vk.GetPhysicalDeviceFeatures2(gpu->physical, &has.core);
     for (int i = 0; i < REQUIRED_COUNT; i++) *feature_at(&use, i) = VK_TRUE;
     use.core.features.geometryShader = has.core.features.geometryShader;
 
     const char *extensions[2] = { NULL };
-    const uint32_t count = list_extensions(gpu->physical, extensions);
+    const uint32_t count = list_extensions(&gpu->vk, gpu->physical, extensions);
     float priority = 1;
-    if (!VK_CHECK(gpu,
-                  vkCreateDevice(gpu->physical,
-                                 &(VkDeviceCreateInfo){
-                                     .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                                     .pNext = &use.core,
-                                     .queueCreateInfoCount = 1,
-                                     .pQueueCreateInfos =
-                                         &(VkDeviceQueueCreateInfo){
-                                             .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                             .queueFamilyIndex = gpu->queue_family,
-                                             .queueCount = 1,
-                                             .pQueuePriorities = &priority,
-                                         },
-                                     .enabledExtensionCount = count,
-                                     .ppEnabledExtensionNames = extensions,
-                                 },
-                                 NULL, &gpu->device))) {
-        gpu->device = VK_NULL_HANDLE;
+    VkDevice device;
+    if (!VK_CALL(gpu, CreateDevice, gpu->physical,
+                 &(VkDeviceCreateInfo){
+                     .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                     .pNext = &use.core,
+                     .queueCreateInfoCount = 1,
+                     .pQueueCreateInfos =
+                         &(VkDeviceQueueCreateInfo){
+                             .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                             .queueFamilyIndex = gpu->queue_family,
+                             .queueCount = 1,
+                             .pQueuePriorities = &priority,
+                         },
+                     .enabledExtensionCount = count,
+                     .ppEnabledExtensionNames = extensions,
+                 },
+                 NULL, &device))
         return false;
-    }
-    vkGetDeviceQueue(gpu->device, gpu->queue_family, 0, &gpu->queue);
+    if (!device_use(gpu, device)) return false;
+    gpu->vk.GetDeviceQueue(gpu->device, gpu->queue_family, 0, &gpu->queue);
     gpu->limits.geometry_shader = use.core.features.geometryShader;
     return true;
 }
@@ -375,7 +410,7 @@ static void read_timestamps(struct gpu *gpu)
 {
     VkQueueFamilyProperties families[MAX_FAMILIES];
     uint32_t count = MAX_FAMILIES;
-    vkGetPhysicalDeviceQueueFamilyProperties(gpu->physical, &count, families);
+    gpu->vk.GetPhysicalDeviceQueueFamilyProperties(gpu->physical, &count, families);
     uint32_t bits = gpu->queue_family < count ? families[gpu->queue_family].timestampValidBits : 0;
     gpu->ns_per_tick = (double)gpu->vk_limits.timestampPeriod;
     gpu->tick_mask = bits >= 64 ? UINT64_MAX : ((uint64_t)1 << bits) - 1;
@@ -395,12 +430,12 @@ void device_read_limits(struct gpu *gpu)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
         .pNext = &push,
     };
-    vkGetPhysicalDeviceProperties2(gpu->physical, &p);
+    gpu->vk.GetPhysicalDeviceProperties2(gpu->physical, &p);
     const VkPhysicalDeviceLimits *l = &p.properties.limits;
     gpu->vk_limits = *l;
     gpu->max_push_descriptors = push.maxPushDescriptors;
     gpu->memory.max_allocation = allocation.maxMemoryAllocationSize;
-    vkGetPhysicalDeviceMemoryProperties(gpu->physical, &gpu->memory.properties);
+    gpu->vk.GetPhysicalDeviceMemoryProperties(gpu->physical, &gpu->memory.properties);
 
     struct gpu_limits *out = &gpu->limits;
     out->max_image_2d = l->maxImageDimension2D;
@@ -414,6 +449,6 @@ void device_read_limits(struct gpu *gpu)
         bool local = heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT;
         if (local && heap.size > out->memory_bytes) out->memory_bytes = heap.size;
     }
-    out->ray_query = has_extension(gpu->physical, VK_KHR_RAY_QUERY_EXTENSION_NAME);
+    out->ray_query = has_extension(&gpu->vk, gpu->physical, VK_KHR_RAY_QUERY_EXTENSION_NAME);
     read_timestamps(gpu);
 }

@@ -9,10 +9,11 @@ static bool allocate(struct gpu *gpu, struct device_memory *memory)
         .memoryTypeIndex = memory->request.memory_type,
     };
     VkDeviceMemory handle;
-    if (vkAllocateMemory(gpu->device, &info, gpu->allocator, &handle) != VK_SUCCESS) return false;
+    if (gpu->vk.AllocateMemory(gpu->device, &info, gpu->allocator, &handle) != VK_SUCCESS)
+        return false;
     memory->block.memory = (void *)handle;
-    return !memory->request.mapped || vkMapMemory(gpu->device, handle, 0, VK_WHOLE_SIZE, 0,
-                                                  &memory->block.mapped) == VK_SUCCESS;
+    return !memory->request.mapped || gpu->vk.MapMemory(gpu->device, handle, 0, VK_WHOLE_SIZE, 0,
+                                                        &memory->block.mapped) == VK_SUCCESS;
 }
 
 // Linear and optimal resources of the library and of others must not share a page of
@@ -67,5 +68,6 @@ void device_memory_free(struct gpu *gpu, const struct device_memory *memory)
     if (callbacks->free)
         callbacks->free(callbacks->user, &memory->request, &memory->block);
     else
-        vkFreeMemory(gpu->device, (VkDeviceMemory)memory->block.memory, gpu->allocator); // unmaps
+        gpu->vk.FreeMemory(gpu->device, (VkDeviceMemory)memory->block.memory,
+                           gpu->allocator); // unmaps
 }

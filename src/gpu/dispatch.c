@@ -39,7 +39,7 @@ void gpu_dispatch(struct gpu_cmd *cmd, gpu_pipeline handle, const struct gpu_bin
     if (!pipeline) return;
     hazard_flush(cmd);
     bind_record(cmd, pipeline, &set, push);
-    vkCmdDispatch(cmd->buffer, groups_x, groups_y, groups_z);
+    cmd->gpu->vk.CmdDispatch(cmd->buffer, groups_x, groups_y, groups_z);
 }
 
 void gpu_dispatch_indirect(struct gpu_cmd *cmd, gpu_pipeline handle,
@@ -58,5 +58,5 @@ void gpu_dispatch_indirect(struct gpu_cmd *cmd, gpu_pipeline handle,
     hazard_buffer(cmd, buffer, &(struct access){ .stages = VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT });
     hazard_flush(cmd);
     bind_record(cmd, pipeline, &set, push);
-    vkCmdDispatchIndirect(cmd->buffer, buffer->handle, offset);
+    cmd->gpu->vk.CmdDispatchIndirect(cmd->buffer, buffer->handle, offset);
 }

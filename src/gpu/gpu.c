@@ -5,25 +5,10 @@
 #include <string.h>
 #include <unistd.h>
 
-static bool load_functions(struct gpu *gpu)
-{
-    gpu->push_descriptors = (PFN_vkCmdPushDescriptorSetKHR)vkGetDeviceProcAddr(
-        gpu->device, "vkCmdPushDescriptorSetKHR");
-    gpu->set_name = (PFN_vkSetDebugUtilsObjectNameEXT)vkGetInstanceProcAddr(
-        gpu->instance, "vkSetDebugUtilsObjectNameEXT");
-    gpu->begin_label = (PFN_vkCmdBeginDebugUtilsLabelEXT)vkGetInstanceProcAddr(
-        gpu->instance, "vkCmdBeginDebugUtilsLabelEXT");
-    gpu->end_label = (PFN_vkCmdEndDebugUtilsLabelEXT)vkGetInstanceProcAddr(
-        gpu->instance, "vkCmdEndDebugUtilsLabelEXT");
-    if (gpu->push_descriptors) return true;
-    return host_fail(gpu->host, FAIL_UNSUPPORTED, "gpu device %s: it was created without %s",
-                     gpu->info.name, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
-}
-
 // As far as Vulkan tells what a device was created with.
 static bool check_adopted(struct gpu *gpu)
 {
-    if (!device_family_is_usable(gpu->physical, gpu->queue_family))
+    if (!device_family_is_usable(gpu, gpu->queue_family))
         return host_fail(gpu->host, FAIL_ARGUMENT,
                          "gpu device %s: queue family %u has no graphics and compute",
                          gpu->info.name, gpu->queue_family);
@@ -49,15 +34,17 @@ static bool adopt_device(struct gpu *gpu, const struct gpu_adopt *adopt)
     gpu->adopt = *adopt;
     gpu->instance = adopt->instance;
     gpu->physical = adopt->physical_device;
-    gpu->device = adopt->device;
     gpu->queue = adopt->queue;
     gpu->queue_family = adopt->queue_family;
     if (adopt->vk_allocation_callbacks) {
         gpu->allocator_copy = *(const VkAllocationCallbacks *)adopt->vk_allocation_callbacks;
         gpu->allocator = &gpu->allocator_copy;
     }
-    device_describe(gpu->physical, &gpu->info);
-    if (gpu->info.usable) return check_adopted(gpu);
+    const char *missing = vulkan_load_instance(
+        &gpu->vk, gpu->instance, (PFN_vkGetInstanceProcAddr)adopt->get_instance_proc_addr);
+    if (missing) return vk_missing(gpu->host, missing);
+    device_describe(&gpu->vk, gpu->physical, &gpu->info);
+    if (gpu->info.usable) return check_adopted(gpu) && device_use(gpu, adopt->device);
     return host_fail(gpu->host, FAIL_UNSUPPORTED, "gpu device %s: it lacks %s", gpu->info.name,
                      gpu->info.missing);
 }
@@ -68,11 +55,11 @@ static bool open_device(struct gpu *gpu, const struct gpu_desc *desc)
         if (!adopt_device(gpu, desc->adopt)) return false;
         return !desc->validation || instance_watch(gpu);
     }
-    if (!instance_create(gpu->host, desc->validation, &gpu->instance)) return false;
+    if (!instance_create(gpu->host, desc->validation, &gpu->vk, &gpu->instance)) return false;
     if (desc->validation && !instance_watch(gpu)) return false;
-    gpu->physical = device_choose(gpu->host, gpu->instance, desc->device);
+    gpu->physical = device_choose(gpu->host, &gpu->vk, gpu->instance, desc->device);
     if (!gpu->physical) return false;
-    device_describe(gpu->physical, &gpu->info);
+    device_describe(&gpu->vk, gpu->physical, &gpu->info);
     return device_create(gpu);
 }
 
@@ -82,11 +69,10 @@ static bool create_shared(struct gpu *gpu, const struct gpu_desc *desc)
         .sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
         .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE,
     };
-    if (!VK_CHECK(gpu, vkCreateSemaphore(gpu->device,
-                                         &(VkSemaphoreCreateInfo){
-                                             .sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
-                                             .pNext = &timeline },
-                                         gpu->allocator, &gpu->timeline))) {
+    if (!VK_CALL(gpu, CreateSemaphore, gpu->device,
+                 &(VkSemaphoreCreateInfo){ .sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
+                                           .pNext = &timeline },
+                 gpu->allocator, &gpu->timeline)) {
         return false;
     }
     VK_NAME(gpu, VK_OBJECT_TYPE_SEMAPHORE, gpu->timeline, "gpu.timeline");
@@ -108,7 +94,6 @@ struct gpu *gpu_create(struct host *host, const struct gpu_desc *desc)
     gpu->host = host;
     if (!open_device(gpu, desc)) goto fail;
     device_read_limits(gpu);
-    if (!load_functions(gpu)) goto fail;
     if (desc->shader_dir && desc->shader_dir[0]) {
         gpu->shader_dir = host_strdup(host, desc->shader_dir);
         if (!gpu->shader_dir) goto fail;
@@ -150,8 +135,8 @@ static void free_objects(struct gpu *gpu)
     free_table(gpu, &gpu->buffers, "buffer", offsetof(struct buffer, name), buffer_free);
     samplers_finish(gpu);
     for (int i = 0; i < 2; i++) buffer_free(gpu, gpu->staging[i]);
-    vkDestroySemaphore(gpu->device, gpu->timeline, gpu->allocator);
-    vkDestroyPipelineCache(gpu->device, gpu->pipeline_cache, gpu->allocator);
+    gpu->vk.DestroySemaphore(gpu->device, gpu->timeline, gpu->allocator);
+    gpu->vk.DestroyPipelineCache(gpu->device, gpu->pipeline_cache, gpu->allocator);
 }
 
 void gpu_destroy(struct gpu *gpu)
@@ -162,15 +147,10 @@ void gpu_destroy(struct gpu *gpu)
         free_objects(gpu);
         host_free(gpu->host, gpu->aliases);
         memory_finish(gpu);
-        if (!gpu->adopted) vkDestroyDevice(gpu->device, NULL);
+        if (!gpu->adopted) gpu->vk.DestroyDevice(gpu->device, NULL);
     }
-    if (gpu->messenger) {
-        PFN_vkDestroyDebugUtilsMessengerEXT destroy =
-            (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
-                gpu->instance, "vkDestroyDebugUtilsMessengerEXT");
-        if (destroy) destroy(gpu->instance, gpu->messenger, NULL);
-    }
-    if (gpu->instance && !gpu->adopted) vkDestroyInstance(gpu->instance, NULL);
+    if (gpu->messenger) gpu->vk.DestroyDebugUtilsMessengerEXT(gpu->instance, gpu->messenger, NULL);
+    if (gpu->instance && !gpu->adopted) gpu->vk.DestroyInstance(gpu->instance, NULL);
     host_free(gpu->host, gpu->shader_dir);
     host_free(gpu->host, gpu->clients);
     host_free(gpu->host, gpu);

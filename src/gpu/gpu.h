@@ -73,13 +73,17 @@ struct gpu_adopt {
     void (*lock_queue)(void *user), (*unlock_queue)(void *user); // around submissions; or NULL
     void *user;
     const void *enabled_features; // VkPhysicalDeviceFeatures2 of vkCreateDevice; NULL: not checked
-    struct gpu_memory_callbacks memory;  // zero: the layer allocates
-    const void *vk_allocation_callbacks; // VkAllocationCallbacks, copied; NULL: the driver's
+    struct gpu_memory_callbacks memory;   // zero: the layer allocates
+    const void *vk_allocation_callbacks;  // VkAllocationCallbacks, copied; NULL: the driver's
+    void (*get_instance_proc_addr)(void); // PFN_vkGetInstanceProcAddr; NULL: the linked one
 };
 // Sets the required features in these four structs (VkPhysicalDeviceFeatures2 and those of Vulkan
-// 1.1 to 1.3), which it zeroes and chains. Returns the number of device extensions, at most 2.
-uint32_t gpu_fill_requirements(void *physical_device, void *features2, void *vulkan11,
-                               void *vulkan12, void *vulkan13, const char *extensions[2]);
+// 1.1 to 1.3), which it zeroes and chains. Returns the number of device extensions, at most 2; 0:
+// get_instance_proc_addr (as in gpu_adopt) lacks a function. instance NULL: the linked loader.
+uint32_t gpu_fill_requirements(void *instance, void *physical_device,
+                               void (*get_instance_proc_addr)(void), void *features2,
+                               void *vulkan11, void *vulkan12, void *vulkan13,
+                               const char *extensions[2]);
 
 struct gpu_desc {
     const char *device; // index from gpu_list_devices, part of a name, or NULL for the best

@@ -49,7 +49,7 @@ VkResult pipeline_create_graphics(struct gpu *gpu, struct pipeline *p,
         .depthAttachmentFormat = format_of(d->depth_format)->vk,
     };
     VkPipelineRasterizationStateCreateInfo raster = raster_state(d);
-    return vkCreateGraphicsPipelines(
+    return gpu->vk.CreateGraphicsPipelines(
         gpu->device, gpu->pipeline_cache, 1,
         &(VkGraphicsPipelineCreateInfo){
             .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,

@@ -63,13 +63,13 @@ void hazard_flush(struct gpu_cmd *cmd)
     if (!memory && !batch->image_count) return;
     render_suspend(cmd);
     batch->memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
-    vkCmdPipelineBarrier2(cmd->buffer, &(VkDependencyInfo){
-                                           .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                           .memoryBarrierCount = memory,
-                                           .pMemoryBarriers = &batch->memory,
-                                           .imageMemoryBarrierCount = batch->image_count,
-                                           .pImageMemoryBarriers = batch->images,
-                                       });
+    cmd->gpu->vk.CmdPipelineBarrier2(cmd->buffer, &(VkDependencyInfo){
+                                                      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                                      .memoryBarrierCount = memory,
+                                                      .pMemoryBarriers = &batch->memory,
+                                                      .imageMemoryBarrierCount = batch->image_count,
+                                                      .pImageMemoryBarriers = batch->images,
+                                                  });
     batch->memory = (VkMemoryBarrier2){ 0 };
     batch->image_count = 0;
 }
@@ -236,11 +236,11 @@ static void zero_image(struct gpu_cmd *cmd, struct image *image)
     use_image(cmd, image, &range, &access);
     hazard_flush(cmd);
     if (image->desc.format == GPU_D32F) {
-        vkCmdClearDepthStencilImage(cmd->buffer, image->handle, access.layout,
-                                    &(VkClearDepthStencilValue){ 0 }, 1, &all);
+        cmd->gpu->vk.CmdClearDepthStencilImage(cmd->buffer, image->handle, access.layout,
+                                               &(VkClearDepthStencilValue){ 0 }, 1, &all);
     } else {
-        vkCmdClearColorImage(cmd->buffer, image->handle, access.layout, &(VkClearColorValue){ 0 },
-                             1, &all);
+        cmd->gpu->vk.CmdClearColorImage(cmd->buffer, image->handle, access.layout,
+                                        &(VkClearColorValue){ 0 }, 1, &all);
     }
     cmd->op = op;
 }
@@ -254,7 +254,7 @@ static void zero_buffer(struct gpu_cmd *cmd, struct buffer *buffer)
     use(cmd, &buffer->hazard, NULL, NULL, &access);
     hazard_flush(cmd);
     render_suspend(cmd);
-    vkCmdFillBuffer(cmd->buffer, buffer->handle, 0, buffer->capacity, 0);
+    cmd->gpu->vk.CmdFillBuffer(cmd->buffer, buffer->handle, 0, buffer->capacity, 0);
     cmd->op = op;
 }
 

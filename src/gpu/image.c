@@ -122,7 +122,7 @@ static bool check_supported(struct gpu *gpu, const struct gpu_image_desc *d,
                             const VkImageCreateInfo *info)
 {
     VkImageFormatProperties p;
-    VkResult result = vkGetPhysicalDeviceImageFormatProperties(
+    VkResult result = gpu->vk.GetPhysicalDeviceImageFormatProperties(
         gpu->physical, info->format, info->imageType, info->tiling, info->usage, info->flags, &p);
     if (result == VK_SUCCESS && info->extent.width <= p.maxExtent.width &&
         info->extent.height <= p.maxExtent.height && info->extent.depth <= p.maxExtent.depth &&
@@ -169,7 +169,7 @@ static struct image *image_new(struct gpu *gpu, const struct gpu_image_desc *des
 static bool allocate(struct gpu *gpu, struct image *image, const char *alias)
 {
     VkMemoryRequirements needs;
-    vkGetImageMemoryRequirements(gpu->device, image->handle, &needs);
+    gpu->vk.GetImageMemoryRequirements(gpu->device, image->handle, &needs);
     if (alias && gpu->client) return alias_allocate(gpu, image, alias, &needs);
     return memory_allocate(gpu, &needs, MEMORY_DEVICE, false, image->name, &image->memory);
 }
@@ -178,7 +178,7 @@ static bool create_handle(struct gpu *gpu, struct image *image, const char *alia
 {
     VkImageCreateInfo info = create_info(&image->desc);
     if (!check_supported(gpu, &image->desc, &info)) return false;
-    if (!VK_CHECK(gpu, vkCreateImage(gpu->device, &info, gpu->allocator, &image->handle))) {
+    if (!VK_CALL(gpu, CreateImage, gpu->device, &info, gpu->allocator, &image->handle)) {
         image->handle = VK_NULL_HANDLE;
         return false;
     }
@@ -186,8 +186,8 @@ static bool create_handle(struct gpu *gpu, struct image *image, const char *alia
     if (!allocate(gpu, image, alias)) return false;
     const struct allocation *memory = image->alias ? &image->alias->memory : &image->memory;
     if (memory->recycled) image->hazards[0] = hazard_recycled();
-    return VK_CHECK(gpu,
-                    vkBindImageMemory(gpu->device, image->handle, memory->memory, memory->offset));
+    return VK_CALL(gpu, BindImageMemory, gpu->device, image->handle, memory->memory,
+                   memory->offset);
 }
 
 bool gpu_image_create(struct gpu *gpu, const struct gpu_image_desc *desc, gpu_image *out)
@@ -234,9 +234,9 @@ void image_free(struct gpu *gpu, void *object)
     struct image *image = object;
     if (!image) return;
     for (uint32_t i = 0; i < image->view_count; i++) {
-        vkDestroyImageView(gpu->device, image->views[i].handle, gpu->allocator);
+        gpu->vk.DestroyImageView(gpu->device, image->views[i].handle, gpu->allocator);
     }
-    if (!image->wrapped) vkDestroyImage(gpu->device, image->handle, gpu->allocator);
+    if (!image->wrapped) gpu->vk.DestroyImage(gpu->device, image->handle, gpu->allocator);
     alias_release(gpu, image);
     memory_free(gpu, &image->memory);
     host_free(gpu->host, image->views);
@@ -289,17 +289,16 @@ VkImageView image_view(struct gpu *gpu, struct image *image, VkImageViewType typ
         image->views = views;
     }
     struct image_view view = { .type = type, .range = *range };
-    if (!VK_CHECK(gpu, vkCreateImageView(
-                           gpu->device,
-                           &(VkImageViewCreateInfo){
-                               .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                               .image = image->handle,
-                               .viewType = type,
-                               .format = format_of(image->desc.format)->vk,
-                               .subresourceRange = { image->aspect, range->mip, range->mip_count,
-                                                     range->layer, range->layer_count },
-                           },
-                           gpu->allocator, &view.handle))) {
+    if (!VK_CALL(gpu, CreateImageView, gpu->device,
+                 &(VkImageViewCreateInfo){
+                     .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                     .image = image->handle,
+                     .viewType = type,
+                     .format = format_of(image->desc.format)->vk,
+                     .subresourceRange = { image->aspect, range->mip, range->mip_count,
+                                           range->layer, range->layer_count },
+                 },
+                 gpu->allocator, &view.handle)) {
         return VK_NULL_HANDLE;
     }
     VK_NAME(gpu, VK_OBJECT_TYPE_IMAGE_VIEW, view.handle, image->name);

@@ -81,8 +81,7 @@ static bool create_layouts(struct gpu *gpu, struct pipeline *p)
         .bindingCount = (uint32_t)r->binding_count,
         .pBindings = bindings,
     };
-    if (!VK_CHECK(gpu,
-                  vkCreateDescriptorSetLayout(gpu->device, &set, gpu->allocator, &p->set_layout)))
+    if (!VK_CALL(gpu, CreateDescriptorSetLayout, gpu->device, &set, gpu->allocator, &p->set_layout))
         return false;
     VK_NAME(gpu, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, p->set_layout, p->name);
     VkPipelineLayoutCreateInfo layout = {
@@ -92,7 +91,7 @@ static bool create_layouts(struct gpu *gpu, struct pipeline *p)
         .pushConstantRangeCount = r->push_bytes ? 1 : 0,
         .pPushConstantRanges = &(VkPushConstantRange){ r->push_stages, 0, r->push_bytes },
     };
-    if (!VK_CHECK(gpu, vkCreatePipelineLayout(gpu->device, &layout, gpu->allocator, &p->layout)))
+    if (!VK_CALL(gpu, CreatePipelineLayout, gpu->device, &layout, gpu->allocator, &p->layout))
         return false;
     VK_NAME(gpu, VK_OBJECT_TYPE_PIPELINE_LAYOUT, p->layout, p->name);
     return true;
@@ -101,25 +100,24 @@ static bool create_layouts(struct gpu *gpu, struct pipeline *p)
 static VkResult create_compute(struct gpu *gpu, struct pipeline *p,
                                const VkPipelineShaderStageCreateInfo *stages)
 {
-    return vkCreateComputePipelines(gpu->device, gpu->pipeline_cache, 1,
-                                    &(VkComputePipelineCreateInfo){
-                                        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-                                        .stage = stages[0],
-                                        .layout = p->layout,
-                                    },
-                                    gpu->allocator, &p->handle);
+    return gpu->vk.CreateComputePipelines(
+        gpu->device, gpu->pipeline_cache, 1,
+        &(VkComputePipelineCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+            .stage = stages[0],
+            .layout = p->layout,
+        },
+        gpu->allocator, &p->handle);
 }
 
 static bool create_module(struct gpu *gpu, const struct code *code, const char *name,
                           VkShaderModule *out)
 {
-    if (!VK_CHECK(gpu,
-                  vkCreateShaderModule(gpu->device,
-                                       &(VkShaderModuleCreateInfo){
-                                           .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                           .codeSize = code->count * 4,
-                                           .pCode = code->words },
-                                       gpu->allocator, out))) {
+    if (!VK_CALL(gpu, CreateShaderModule, gpu->device,
+                 &(VkShaderModuleCreateInfo){ .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                              .codeSize = code->count * 4,
+                                              .pCode = code->words },
+                 gpu->allocator, out)) {
         *out = VK_NULL_HANDLE;
         return false;
     }
@@ -163,7 +161,7 @@ static bool create_handle(struct gpu *gpu, struct pipeline *p, const struct code
         if (!ok) p->handle = VK_NULL_HANDLE;
     }
     for (int i = 0; i < p->stage_count; i++)
-        vkDestroyShaderModule(gpu->device, modules[i], gpu->allocator);
+        gpu->vk.DestroyShaderModule(gpu->device, modules[i], gpu->allocator);
     if (ok) VK_NAME(gpu, VK_OBJECT_TYPE_PIPELINE, p->handle, p->name);
     return ok;
 }
@@ -186,9 +184,9 @@ static bool check_constants(struct gpu *gpu, const struct pipeline *p)
 
 static void free_handles(struct gpu *gpu, struct pipeline *p)
 {
-    vkDestroyPipeline(gpu->device, p->handle, gpu->allocator);
-    vkDestroyPipelineLayout(gpu->device, p->layout, gpu->allocator);
-    vkDestroyDescriptorSetLayout(gpu->device, p->set_layout, gpu->allocator);
+    gpu->vk.DestroyPipeline(gpu->device, p->handle, gpu->allocator);
+    gpu->vk.DestroyPipelineLayout(gpu->device, p->layout, gpu->allocator);
+    gpu->vk.DestroyDescriptorSetLayout(gpu->device, p->set_layout, gpu->allocator);
     p->handle = VK_NULL_HANDLE;
     p->layout = VK_NULL_HANDLE;
     p->set_layout = VK_NULL_HANDLE;

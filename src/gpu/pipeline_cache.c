@@ -25,7 +25,7 @@ static const char *misfit(const struct gpu *gpu, const struct header *header, co
     if (header->bytes < sizeof vulkan || hash_bytes(data, (size_t)header->bytes, 0) != header->hash)
         return "it is damaged";
     memcpy(&vulkan, data, sizeof vulkan);
-    vkGetPhysicalDeviceProperties(gpu->physical, &device);
+    gpu->vk.GetPhysicalDeviceProperties(gpu->physical, &device);
     if (vulkan.headerSize < sizeof vulkan || vulkan.headerSize > header->bytes ||
         vulkan.headerVersion != VK_PIPELINE_CACHE_HEADER_VERSION_ONE)
         return "it is of an unknown version";
@@ -67,8 +67,8 @@ bool pipeline_cache_create(struct gpu *gpu, const void *bytes, size_t size)
     const VkPipelineCacheCreateInfo info = { .sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
                                              .initialDataSize = data_bytes,
                                              .pInitialData = aligned };
-    const bool ok = VK_CHECK(
-        gpu, vkCreatePipelineCache(gpu->device, &info, gpu->allocator, &gpu->pipeline_cache));
+    const bool ok =
+        VK_CALL(gpu, CreatePipelineCache, gpu->device, &info, gpu->allocator, &gpu->pipeline_cache);
     host_free(gpu->host, aligned);
     return ok;
 }
@@ -78,7 +78,7 @@ bool gpu_pipeline_cache_read(struct gpu *gpu, void *out, size_t capacity, size_t
     size_t size;
     struct header header = { .zero = 0 };
     *bytes = 0;
-    if (!VK_CHECK(gpu, vkGetPipelineCacheData(gpu->device, gpu->pipeline_cache, &size, NULL)))
+    if (!VK_CALL(gpu, GetPipelineCacheData, gpu->device, gpu->pipeline_cache, &size, NULL))
         return false;
     *bytes = sizeof header + size;
     if (!out) return true;
@@ -87,7 +87,7 @@ bool gpu_pipeline_cache_read(struct gpu *gpu, void *out, size_t capacity, size_t
                          "gpu pipeline cache: it has %zu bytes, there is room for %zu", *bytes,
                          capacity);
     char *data = (char *)out + sizeof header;
-    if (!VK_CHECK(gpu, vkGetPipelineCacheData(gpu->device, gpu->pipeline_cache, &size, data)))
+    if (!VK_CALL(gpu, GetPipelineCacheData, gpu->device, gpu->pipeline_cache, &size, data))
         return false;
     memcpy(header.magic, MAGIC, MAGIC_BYTES);
     header.bytes = size;

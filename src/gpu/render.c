@@ -96,18 +96,19 @@ static bool resume(struct gpu_cmd *cmd)
         return false;
     }
     hazard_flush(cmd);
-    vkCmdBeginRendering(cmd->buffer, &(VkRenderingInfo){
-                                         .sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
-                                         .renderArea.extent = { r->width, r->height },
-                                         .layerCount = 1,
-                                         .colorAttachmentCount = (uint32_t)r->color_count,
-                                         .pColorAttachments = colors,
-                                         .pDepthAttachment = r->depth.image.id ? &depth : NULL,
-                                     });
+    cmd->gpu->vk.CmdBeginRendering(cmd->buffer,
+                                   &(VkRenderingInfo){
+                                       .sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                                       .renderArea.extent = { r->width, r->height },
+                                       .layerCount = 1,
+                                       .colorAttachmentCount = (uint32_t)r->color_count,
+                                       .pColorAttachments = colors,
+                                       .pDepthAttachment = r->depth.image.id ? &depth : NULL,
+                                   });
     r->active = r->begun = true;
-    vkCmdSetViewport(cmd->buffer, 0, 1,
-                     &(VkViewport){ 0, 0, (float)r->width, (float)r->height, 0, 1 });
-    vkCmdSetScissor(cmd->buffer, 0, 1, &(VkRect2D){ .extent = { r->width, r->height } });
+    cmd->gpu->vk.CmdSetViewport(cmd->buffer, 0, 1,
+                                &(VkViewport){ 0, 0, (float)r->width, (float)r->height, 0, 1 });
+    cmd->gpu->vk.CmdSetScissor(cmd->buffer, 0, 1, &(VkRect2D){ .extent = { r->width, r->height } });
     return true;
 }
 
@@ -190,17 +191,18 @@ static struct buffer *prepare_indices(struct gpu_cmd *cmd, const struct pipeline
 static void record_draw(struct gpu_cmd *cmd, const struct gpu_draw_desc *draw,
                         struct buffer *indices)
 {
+    const struct vulkan_functions *vk = &cmd->gpu->vk;
     static const VkCullModeFlags culls[] = { VK_CULL_MODE_NONE, VK_CULL_MODE_BACK_BIT,
                                              VK_CULL_MODE_FRONT_BIT };
-    vkCmdSetCullMode(cmd->buffer, culls[draw->cull]);
-    vkCmdSetFrontFace(cmd->buffer,
-                      draw->flip_front ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
+    vk->CmdSetCullMode(cmd->buffer, culls[draw->cull]);
+    vk->CmdSetFrontFace(cmd->buffer, draw->flip_front ? VK_FRONT_FACE_CLOCKWISE
+                                                      : VK_FRONT_FACE_COUNTER_CLOCKWISE);
     if (indices) {
-        vkCmdBindIndexBuffer(cmd->buffer, indices->handle, draw->index_offset,
-                             VK_INDEX_TYPE_UINT32);
-        vkCmdDrawIndexed(cmd->buffer, draw->count, 1, 0, 0, 0);
+        vk->CmdBindIndexBuffer(cmd->buffer, indices->handle, draw->index_offset,
+                               VK_INDEX_TYPE_UINT32);
+        vk->CmdDrawIndexed(cmd->buffer, draw->count, 1, 0, 0, 0);
     } else {
-        vkCmdDraw(cmd->buffer, draw->count, 1, 0, 0);
+        vk->CmdDraw(cmd->buffer, draw->count, 1, 0, 0);
     }
 }
 

@@ -30,6 +30,6 @@ bool render_has_target(const struct gpu_cmd *cmd, const struct image *image,
 void render_suspend(struct gpu_cmd *cmd)
 {
     if (!cmd->rendering.active) return;
-    vkCmdEndRendering(cmd->buffer);
+    cmd->gpu->vk.CmdEndRendering(cmd->buffer);
     cmd->rendering.active = false;
 }

@@ -65,13 +65,13 @@ bool gpu_sampler_get(struct gpu *gpu, const struct gpu_sampler_desc *desc, gpu_s
     sampler->desc = *desc;
     sampler->desc.name = NULL;
     VkSamplerCreateInfo info = create_info(desc);
-    if (!VK_CHECK(gpu, vkCreateSampler(gpu->device, &info, gpu->allocator, &sampler->handle)))
+    if (!VK_CALL(gpu, CreateSampler, gpu->device, &info, gpu->allocator, &sampler->handle))
         goto fail;
     char name[NAME_SIZE];
     VK_NAME(gpu, VK_OBJECT_TYPE_SAMPLER, sampler->handle, owner_name(gpu, desc->name, name));
     out->id = table_add(gpu->host, &gpu->samplers, sampler);
     if (out->id) return true;
-    vkDestroySampler(gpu->device, sampler->handle, gpu->allocator);
+    gpu->vk.DestroySampler(gpu->device, sampler->handle, gpu->allocator);
 fail:
     host_free(gpu->host, sampler);
     return false;
@@ -88,7 +88,7 @@ void samplers_finish(struct gpu *gpu)
 {
     for (uint32_t i = 0; i < gpu->samplers.count; i++) {
         struct sampler *sampler = gpu->samplers.objects[i];
-        vkDestroySampler(gpu->device, sampler->handle, gpu->allocator);
+        gpu->vk.DestroySampler(gpu->device, sampler->handle, gpu->allocator);
         host_free(gpu->host, sampler);
     }
     table_finish(gpu->host, &gpu->samplers);

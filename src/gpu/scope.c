@@ -10,12 +10,11 @@ static const uint32_t NOT_TIMED = UINT32_MAX;
 bool scopes_init(struct gpu *gpu, struct scopes *scopes, const char *name)
 {
     if (!gpu->limits.timestamps) return true;
-    if (!VK_CHECK(gpu, vkCreateQueryPool(gpu->device,
-                                         &(VkQueryPoolCreateInfo){
-                                             .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-                                             .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                             .queryCount = 2 * MAX_SCOPES },
-                                         gpu->allocator, &scopes->queries))) {
+    if (!VK_CALL(gpu, CreateQueryPool, gpu->device,
+                 &(VkQueryPoolCreateInfo){ .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                           .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                           .queryCount = 2 * MAX_SCOPES },
+                 gpu->allocator, &scopes->queries)) {
         return false;
     }
     VK_NAME(gpu, VK_OBJECT_TYPE_QUERY_POOL, scopes->queries, name);
@@ -27,8 +26,8 @@ static uint32_t stamp(struct gpu_cmd *cmd)
 {
     if (!cmd->scopes.queries) return NOT_TIMED;
     uint32_t query = cmd->scopes.query_count++;
-    vkCmdWriteTimestamp2(cmd->buffer, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, cmd->scopes.queries,
-                         query);
+    cmd->gpu->vk.CmdWriteTimestamp2(cmd->buffer, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                    cmd->scopes.queries, query);
     return query;
 }
 
@@ -66,7 +65,7 @@ void scopes_start(struct gpu_cmd *cmd)
 {
     struct scopes *s = &cmd->scopes;
     s->count = s->query_count = s->depth = 0;
-    if (s->queries) vkResetQueryPool(cmd->gpu->device, s->queries, 0, 2 * MAX_SCOPES);
+    if (s->queries) cmd->gpu->vk.ResetQueryPool(cmd->gpu->device, s->queries, 0, 2 * MAX_SCOPES);
     push(cmd, "frame");
 }
 
@@ -82,8 +81,8 @@ void gpu_scope_begin(struct gpu_cmd *cmd, const char *name)
 {
     char full[NAME_SIZE];
     name = owner_name(cmd->gpu, name, full);
-    if (cmd->gpu->begin_label) {
-        cmd->gpu->begin_label(
+    if (cmd->gpu->vk.CmdBeginDebugUtilsLabelEXT) {
+        cmd->gpu->vk.CmdBeginDebugUtilsLabelEXT(
             cmd->buffer, &(VkDebugUtilsLabelEXT){ .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
                                                   .pLabelName = name });
     }
@@ -98,7 +97,7 @@ void gpu_scope_end(struct gpu_cmd *cmd)
         return;
     }
     pop(cmd);
-    if (cmd->gpu->end_label) cmd->gpu->end_label(cmd->buffer);
+    if (cmd->gpu->vk.CmdEndDebugUtilsLabelEXT) cmd->gpu->vk.CmdEndDebugUtilsLabelEXT(cmd->buffer);
 }
 
 static struct gpu_timing *timing_of(struct frame_times *times, const char *name)
@@ -134,8 +133,8 @@ void scopes_collect(struct gpu_cmd *cmd)
     const struct scopes *s = &cmd->scopes;
     uint64_t ticks[2 * MAX_SCOPES];
     if (!s->queries || !s->query_count) return;
-    if (vkGetQueryPoolResults(gpu->device, s->queries, 0, s->query_count, sizeof ticks, ticks,
-                              sizeof *ticks, VK_QUERY_RESULT_64_BIT) != VK_SUCCESS) {
+    if (gpu->vk.GetQueryPoolResults(gpu->device, s->queries, 0, s->query_count, sizeof ticks, ticks,
+                                    sizeof *ticks, VK_QUERY_RESULT_64_BIT) != VK_SUCCESS) {
         return;
     }
     collect(cmd, ticks, &gpu->times);

@@ -4,20 +4,19 @@
 bool timeline_wait(struct gpu *gpu, uint64_t value)
 {
     if (gpu->lost || !gpu->timeline) return false;
-    return VK_CHECK(gpu, vkWaitSemaphores(
-                             gpu->device,
-                             &(VkSemaphoreWaitInfo){ .sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
-                                                     .semaphoreCount = 1,
-                                                     .pSemaphores = &gpu->timeline,
-                                                     .pValues = &value },
-                             UINT64_MAX));
+    return VK_CALL(gpu, WaitSemaphores, gpu->device,
+                   &(VkSemaphoreWaitInfo){ .sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                           .semaphoreCount = 1,
+                                           .pSemaphores = &gpu->timeline,
+                                           .pValues = &value },
+                   UINT64_MAX);
 }
 
 uint64_t timeline_completed_serial(struct gpu *gpu)
 {
     uint64_t value = 0;
     if (!gpu->timeline ||
-        vkGetSemaphoreCounterValue(gpu->device, gpu->timeline, &value) != VK_SUCCESS) {
+        gpu->vk.GetSemaphoreCounterValue(gpu->device, gpu->timeline, &value) != VK_SUCCESS) {
         value = gpu->lost ? UINT64_MAX : 0;
     }
     uint64_t completed = gpu->serial;

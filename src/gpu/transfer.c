@@ -82,7 +82,8 @@ bool gpu_image_upload(struct gpu *gpu, gpu_image handle, uint32_t mip, uint32_t 
     hazard_image(cmd, image, &range, &access);
     hazard_flush(cmd);
     VkBufferImageCopy region = copy_region(image, mip, layer);
-    vkCmdCopyBufferToImage(cmd->buffer, stage->handle, image->handle, access.layout, 1, &region);
+    gpu->vk.CmdCopyBufferToImage(cmd->buffer, stage->handle, image->handle, access.layout, 1,
+                                 &region);
     bool done = transfer_end(gpu, cmd);
     staging_trim(gpu, UPLOAD);
     return done;
@@ -101,7 +102,8 @@ static const void *download(struct gpu *gpu, struct image *image, uint32_t mip, 
     hazard_buffer(cmd, stage, &copy_write);
     hazard_flush(cmd);
     VkBufferImageCopy region = copy_region(image, mip, layer);
-    vkCmdCopyImageToBuffer(cmd->buffer, image->handle, access.layout, stage->handle, 1, &region);
+    gpu->vk.CmdCopyImageToBuffer(cmd->buffer, image->handle, access.layout, stage->handle, 1,
+                                 &region);
     return finish_download(gpu, cmd, stage) ? stage->memory.mapped : NULL;
 }
 
@@ -164,8 +166,8 @@ bool gpu_buffer_upload(struct gpu *gpu, gpu_buffer handle, size_t offset, const 
     if (bytes == buffer->bytes) hazard_overwrite_buffer(buffer);
     hazard_buffer(cmd, buffer, &copy_write);
     hazard_flush(cmd);
-    vkCmdCopyBuffer(cmd->buffer, stage->handle, buffer->handle, 1,
-                    &(VkBufferCopy){ 0, offset, bytes });
+    gpu->vk.CmdCopyBuffer(cmd->buffer, stage->handle, buffer->handle, 1,
+                          &(VkBufferCopy){ 0, offset, bytes });
     bool done = transfer_end(gpu, cmd);
     staging_trim(gpu, UPLOAD);
     return done;
@@ -182,8 +184,8 @@ bool gpu_buffer_download(struct gpu *gpu, gpu_buffer handle, size_t offset, void
     hazard_buffer(cmd, buffer, &copy_read);
     hazard_buffer(cmd, stage, &copy_write);
     hazard_flush(cmd);
-    vkCmdCopyBuffer(cmd->buffer, buffer->handle, stage->handle, 1,
-                    &(VkBufferCopy){ offset, 0, bytes });
+    gpu->vk.CmdCopyBuffer(cmd->buffer, buffer->handle, stage->handle, 1,
+                          &(VkBufferCopy){ offset, 0, bytes });
     bool done = finish_download(gpu, cmd, stage);
     if (done) memcpy(data, stage->memory.mapped, bytes);
     staging_trim(gpu, DOWNLOAD);
@@ -197,7 +199,7 @@ static bool check_blit(struct gpu *gpu, const struct image *image)
                                         VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
     const struct format *format = format_of(image->desc.format);
     VkFormatProperties p;
-    vkGetPhysicalDeviceFormatProperties(gpu->physical, format->vk, &p);
+    gpu->vk.GetPhysicalDeviceFormatProperties(gpu->physical, format->vk, &p);
     if ((p.optimalTilingFeatures & needed) == needed) return true;
     return host_fail(gpu->host, FAIL_UNSUPPORTED,
                      "gpu mips of image %s: the device cannot blit %s with a linear filter",
@@ -220,8 +222,8 @@ static void blit_mip(struct gpu_cmd *cmd, struct image *image, uint32_t mip)
         .dstSubresource = { image->aspect, mip, 0, image->layers },
         .dstOffsets = { { 0 }, { (int32_t)to.width, (int32_t)to.height, (int32_t)to.depth } },
     };
-    vkCmdBlitImage(cmd->buffer, image->handle, read.layout, image->handle, write.layout, 1, &blit,
-                   VK_FILTER_LINEAR);
+    cmd->gpu->vk.CmdBlitImage(cmd->buffer, image->handle, read.layout, image->handle, write.layout,
+                              1, &blit, VK_FILTER_LINEAR);
 }
 
 bool gpu_image_generate_mips(struct gpu *gpu, gpu_image handle)

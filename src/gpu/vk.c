@@ -59,12 +59,20 @@ static enum fail_kind kind_of(VkResult result)
     }
 }
 
-bool vk_check(struct gpu *gpu, VkResult result, const char *call)
+bool vk_check(struct gpu *gpu, VkResult result, const char *function)
 {
     if (result == VK_SUCCESS) return true;
     if (result == VK_ERROR_DEVICE_LOST) gpu->lost = true;
-    return host_fail(gpu->host, kind_of(result), "gpu %s: %s (%d)", call, vk_result_name(result),
-                     (int)result);
+    return host_fail(gpu->host, kind_of(result), "gpu %s: %s (%d)", function,
+                     vk_result_name(result), (int)result);
+}
+
+bool vk_missing(struct host *host, const char *function)
+{
+    return host_fail(host, FAIL_UNSUPPORTED,
+                     "gpu %s: the Vulkan loader (get_instance_proc_addr of an adopted device) does "
+                     "not have it; create instance and device for Vulkan 1.3",
+                     function);
 }
 
 bool gpu_misuse(struct gpu *gpu, const char *format, ...)
@@ -82,11 +90,12 @@ bool gpu_misuse(struct gpu *gpu, const char *format, ...)
 
 void vk_name(struct gpu *gpu, VkObjectType type, uint64_t handle, const char *name)
 {
-    if (!gpu->set_name || !handle || !name) return;
-    gpu->set_name(gpu->device, &(VkDebugUtilsObjectNameInfoEXT){
-                                   .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
-                                   .objectType = type,
-                                   .objectHandle = handle,
-                                   .pObjectName = name,
-                               });
+    if (!gpu->vk.SetDebugUtilsObjectNameEXT || !handle || !name) return;
+    gpu->vk.SetDebugUtilsObjectNameEXT(
+        gpu->device, &(VkDebugUtilsObjectNameInfoEXT){
+                         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+                         .objectType = type,
+                         .objectHandle = handle,
+                         .pObjectName = name,
+                     });
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gpu/gpu.h"
+#include "gpu/vulkan_functions.h"
 
 #include <vulkan/vulkan.h>
 
@@ -19,9 +20,12 @@ enum {
 
 // ---- Failure (vk.c) -----------------------------------------------------------------------------
 
-// True on VK_SUCCESS; else logs the call's text and the result, and notes a lost device.
-#define VK_CHECK(gpu, call) vk_check((gpu), (call), #call)
-bool vk_check(struct gpu *gpu, VkResult result, const char *call);
+// Calls a function of gpu->vk. True on VK_SUCCESS; else logs its name and the result, and notes a
+// lost device.
+#define VK_CALL(gpu, function, ...) vk_check((gpu), (gpu)->vk.function(__VA_ARGS__), "vk" #function)
+bool vk_check(struct gpu *gpu, VkResult result, const char *function);
+// A function that cannot be loaded, by its name. Returns false.
+bool vk_missing(struct host *host, const char *function);
 #define GPU_DRIVER_HINT                                                                            \
     "install a driver: the package mesa-vulkan-drivers (vulkan-swrast on Arch) has one for the "   \
     "CPU"
@@ -457,23 +461,20 @@ struct gpu {
 
     bool adopted;
     struct gpu_adopt adopt;
+    struct vulkan_functions vk;
     VkInstance instance;
     VkDebugUtilsMessengerEXT messenger;
     int validation_messages;
     const char *owners[MAX_OWNERS];
     uint32_t owner_depth;
     VkPhysicalDevice physical;
-    VkDevice device;
+    VkDevice device; // NULL until its functions are loaded
     // Allocator of all objects of the device: NULL, or a copy of the caller's.
     const VkAllocationCallbacks *allocator;
     VkAllocationCallbacks allocator_copy;
     VkQueue queue;
     uint32_t queue_family;
     bool lost;
-    PFN_vkCmdPushDescriptorSetKHR push_descriptors;
-    PFN_vkSetDebugUtilsObjectNameEXT set_name; // these three may be NULL
-    PFN_vkCmdBeginDebugUtilsLabelEXT begin_label;
-    PFN_vkCmdEndDebugUtilsLabelEXT end_label;
 
     VkPipelineCache pipeline_cache;
     struct memory memory;
@@ -507,13 +508,17 @@ struct gpu {
 // pipeline_cache.c. NULL: an empty one.
 bool pipeline_cache_create(struct gpu *gpu, const void *bytes, size_t size);
 // instance.c
-bool instance_create(struct host *host, bool validation, VkInstance *out);
+bool instance_create(struct host *host, bool validation, struct vulkan_functions *vk,
+                     VkInstance *out);
 bool instance_watch(struct gpu *gpu); // counts validation messages from now on
 // device.c
-VkPhysicalDevice device_choose(struct host *host, VkInstance instance, const char *wanted);
-void device_describe(VkPhysicalDevice physical, struct gpu_device_info *out);
+VkPhysicalDevice device_choose(struct host *host, const struct vulkan_functions *vk,
+                               VkInstance instance, const char *wanted);
+void device_describe(const struct vulkan_functions *vk, VkPhysicalDevice physical,
+                     struct gpu_device_info *out);
 // The first required feature that a chain of vkCreateDevice does not enable; NULL: none is known.
 const char *device_missing_feature(const void *chain);
-bool device_family_is_usable(VkPhysicalDevice physical, uint32_t family);
+bool device_family_is_usable(const struct gpu *gpu, uint32_t family);
 bool device_create(struct gpu *gpu);
+bool device_use(struct gpu *gpu, VkDevice device); // loads its functions
 void device_read_limits(struct gpu *gpu);

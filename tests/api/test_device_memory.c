@@ -10,26 +10,44 @@
 static long memories, views, wrong_allocators;
 static const VkAllocationCallbacks *expected_allocator;
 
-// In place of the loader's function, for the library and for this test.
-VKAPI_ATTR VkResult VKAPI_CALL vkAllocateMemory(VkDevice device, const VkMemoryAllocateInfo *info,
-                                                const VkAllocationCallbacks *allocator,
-                                                VkDeviceMemory *out)
+static VKAPI_ATTR VkResult VKAPI_CALL allocate_memory(VkDevice device,
+                                                      const VkMemoryAllocateInfo *info,
+                                                      const VkAllocationCallbacks *allocator,
+                                                      VkDeviceMemory *out)
 {
-    PFN_vkAllocateMemory next =
-        (PFN_vkAllocateMemory)vkGetDeviceProcAddr(device, "vkAllocateMemory");
     memories++;
-    return next(device, info, allocator, out);
+    return vkAllocateMemory(device, info, allocator, out);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL vkCreateImageView(VkDevice device, const VkImageViewCreateInfo *info,
-                                                 const VkAllocationCallbacks *allocator,
-                                                 VkImageView *out)
+static VKAPI_ATTR VkResult VKAPI_CALL create_image_view(VkDevice device,
+                                                        const VkImageViewCreateInfo *info,
+                                                        const VkAllocationCallbacks *allocator,
+                                                        VkImageView *out)
 {
-    PFN_vkCreateImageView next =
-        (PFN_vkCreateImageView)vkGetDeviceProcAddr(device, "vkCreateImageView");
     views++;
     wrong_allocators += (allocator != NULL) != (expected_allocator != NULL);
-    return next(device, info, allocator, out);
+    return vkCreateImageView(device, info, allocator, out);
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL device_function(VkDevice device, const char *name)
+{
+    if (strcmp(name, "vkAllocateMemory") == 0) return (PFN_vkVoidFunction)allocate_memory;
+    if (strcmp(name, "vkCreateImageView") == 0) return (PFN_vkVoidFunction)create_image_view;
+    return vkGetDeviceProcAddr(device, name);
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instance_function(VkInstance instance,
+                                                                  const char *name)
+{
+    if (strcmp(name, "vkGetDeviceProcAddr") == 0) return (PFN_vkVoidFunction)device_function;
+    return vkGetInstanceProcAddr(instance, name);
+}
+
+static struct ag_device_adopt lend(struct own_device *own)
+{
+    struct ag_device_adopt adopt = fixture_lend(own);
+    adopt.get_instance_proc_addr = (void (*)(void))instance_function;
+    return adopt;
 }
 
 // ---- The program's memory
@@ -61,9 +79,7 @@ static bool allocate(void *user, const struct ag_memory_request *request,
     const VkMemoryAllocateInfo info = { .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                                         .allocationSize = offset + request->bytes,
                                         .memoryTypeIndex = request->vk_memory_type };
-    const long before = memories;
     assert_int_equal(vkAllocateMemory(m->own->device, &info, NULL, &memory), VK_SUCCESS);
-    memories = before;
     out->vk_memory = (void *)memory;
     out->offset = offset;
     out->handle = m;
@@ -126,7 +142,7 @@ TEST(all_device_memory_is_the_programs_and_is_returned)
     struct own_device own;
     test_gpu_require();
     own_device_open(&own, OWN_DEVICE_VALIDATION);
-    struct ag_device_adopt adopt = fixture_lend(&own);
+    struct ag_device_adopt adopt = lend(&own);
     static float expected[FLOATS], got[FLOATS];
     memories = 0;
     render(&adopt, NULL, expected);
@@ -201,7 +217,7 @@ static void check_every_refusal(bool rest, uint64_t most_bytes)
     struct ag_context *context = fixture_context();
     struct program_memory m = { .own = &own, .most_bytes = most_bytes };
     const struct ag_memory_callbacks callbacks = callbacks_of(&m);
-    struct ag_device_adopt adopt = fixture_lend(&own);
+    struct ag_device_adopt adopt = lend(&own);
     adopt.memory = &callbacks;
     if (use_device(context, &adopt) != AG_OK) fail_msg("%s", ag_context_last_error(context));
     const long calls = m.calls;
@@ -241,7 +257,7 @@ TEST(wrong_blocks_are_refused_and_returned)
     struct ag_context *context = fixture_context();
     struct program_memory m = { .own = &own };
     struct ag_memory_callbacks callbacks = callbacks_of(&m);
-    struct ag_device_adopt adopt = fixture_lend(&own);
+    struct ag_device_adopt adopt = lend(&own);
     struct ag_device_desc desc;
     struct ag_device *device;
     ag_device_desc_default(&desc);
@@ -303,7 +319,7 @@ TEST(host_memory_of_vulkan_objects_is_the_programs)
                                               .pfnAllocation = host_allocate,
                                               .pfnReallocation = host_reallocate,
                                               .pfnFree = host_free_block };
-    struct ag_device_adopt adopt = fixture_lend(&own);
+    struct ag_device_adopt adopt = lend(&own);
     adopt.vk_allocation_callbacks = &callbacks;
     expected_allocator = &callbacks;
     views = wrong_allocators = 0;

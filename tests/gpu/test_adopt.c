@@ -11,7 +11,7 @@ static void open_own(struct own_device *own, uint32_t flags)
     own_device_open(own, flags | OWN_DEVICE_VALIDATION);
 }
 
-static struct gpu *adopt(struct own_device *own)
+static struct gpu *adopt_with(struct own_device *own, PFN_vkGetInstanceProcAddr get)
 {
     struct gpu_adopt adopt = { .instance = own->instance,
                                .physical_device = own->physical,
@@ -20,16 +20,19 @@ static struct gpu *adopt(struct own_device *own)
                                .queue_family = own->family,
                                .lock_queue = own_device_lock,
                                .unlock_queue = own_device_unlock,
-                               .user = own };
+                               .user = own,
+                               .get_instance_proc_addr = (void (*)(void))get };
     return gpu_create(test_host(), &(struct gpu_desc){ .validation = true, .adopt = &adopt });
 }
 
-TEST(an_adopted_device_runs_frames_and_transfers)
+static struct gpu *adopt(struct own_device *own)
 {
-    struct own_device own;
-    open_own(&own, 0);
-    struct gpu *gpu = adopt(&own);
-    CHECK(gpu != NULL);
+    return adopt_with(own, NULL);
+}
+
+// One frame and one transfer.
+static void add_ten_times_seven(struct gpu *gpu)
+{
     gpu_buffer words = test_gpu_buffer(gpu, 40), total = test_gpu_buffer(gpu, 4);
     gpu_pipeline sum = test_gpu_compute(gpu, &shader_test_sum_comp);
     struct gpu_cmd *cmd = gpu_frame_begin(gpu);
@@ -40,11 +43,20 @@ TEST(an_adopted_device_runs_frames_and_transfers)
     uint32_t got;
     CHECK(gpu_buffer_download(gpu, total, 0, &got, 4));
     assert_int_equal(got, 70);
-    assert_int_equal(own.locks, 2); // one frame, one transfer
-    assert_int_equal(own.held, 0);
     gpu_buffer_destroy(gpu, &words);
     gpu_buffer_destroy(gpu, &total);
     gpu_pipeline_destroy(gpu, &sum);
+}
+
+TEST(an_adopted_device_runs_frames_and_transfers)
+{
+    struct own_device own;
+    open_own(&own, 0);
+    struct gpu *gpu = adopt(&own);
+    CHECK(gpu != NULL);
+    add_ten_times_seven(gpu);
+    assert_int_equal(own.locks, 2);
+    assert_int_equal(own.held, 0);
     test_gpu_finish(gpu);
     gpu_destroy(gpu);
     own_device_close(&own);
@@ -265,5 +277,109 @@ TEST(an_unsuitable_adopted_device_is_refused_with_the_reason)
     assert_null(adopt(&own));
     assert_non_null(strstr(test_last_message(), "must be there"));
     own.queue = queue;
+    own_device_close(&own);
+}
+
+// ---- A Vulkan loader of the host's own
+
+static struct {
+    const char *lacks; // name of a function; NULL: none
+    int dispatches, submissions, buffers;
+} loader;
+
+static VKAPI_ATTR void VKAPI_CALL count_dispatch(VkCommandBuffer commands, uint32_t x, uint32_t y,
+                                                 uint32_t z)
+{
+    loader.dispatches++;
+    vkCmdDispatch(commands, x, y, z);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL count_submission(VkQueue queue, uint32_t count,
+                                                       const VkSubmitInfo2 *infos, VkFence fence)
+{
+    loader.submissions++;
+    return vkQueueSubmit2(queue, count, infos, fence);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL count_buffer(VkDevice device, const VkBufferCreateInfo *info,
+                                                   const VkAllocationCallbacks *allocator,
+                                                   VkBuffer *out)
+{
+    loader.buffers++;
+    return vkCreateBuffer(device, info, allocator, out);
+}
+
+static VKAPI_ATTR void VKAPI_CALL destroy_buffer(VkDevice device, VkBuffer buffer,
+                                                 const VkAllocationCallbacks *allocator)
+{
+    if (buffer) loader.buffers--;
+    vkDestroyBuffer(device, buffer, allocator);
+}
+
+static bool lacks(const char *name)
+{
+    return loader.lacks && strcmp(name, loader.lacks) == 0;
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL device_function(VkDevice device, const char *name)
+{
+    static const struct {
+        const char *name;
+        PFN_vkVoidFunction function;
+    } own[] = {
+        { "vkCmdDispatch", (PFN_vkVoidFunction)count_dispatch },
+        { "vkQueueSubmit2", (PFN_vkVoidFunction)count_submission },
+        { "vkCreateBuffer", (PFN_vkVoidFunction)count_buffer },
+        { "vkDestroyBuffer", (PFN_vkVoidFunction)destroy_buffer },
+    };
+    if (lacks(name)) return NULL;
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+        if (strcmp(name, own[i].name) == 0) return own[i].function;
+    return vkGetDeviceProcAddr(device, name);
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instance_function(VkInstance instance,
+                                                                  const char *name)
+{
+    if (lacks(name)) return NULL;
+    if (strcmp(name, "vkGetDeviceProcAddr") == 0) return (PFN_vkVoidFunction)device_function;
+    return vkGetInstanceProcAddr(instance, name);
+}
+
+TEST(functions_come_from_the_loader_of_the_host)
+{
+    struct own_device own;
+    open_own(&own, 0);
+    memset(&loader, 0, sizeof loader);
+    struct gpu *gpu = adopt_with(&own, instance_function);
+    CHECK(gpu != NULL);
+    add_ten_times_seven(gpu);
+    assert_int_equal(loader.dispatches, 1);
+    assert_int_equal(loader.submissions, 2);
+    CHECK(loader.buffers >= 2);
+    test_gpu_finish(gpu);
+    gpu_destroy(gpu);
+    assert_int_equal(loader.buffers, 0);
+    own_device_close(&own);
+}
+
+TEST(a_function_that_the_loader_lacks_is_named)
+{
+    static const char *const needed[] = { "vkGetDeviceProcAddr", "vkGetPhysicalDeviceFeatures2",
+                                          "vkCmdDispatch", "vkDestroySemaphore" };
+    struct own_device own;
+    open_own(&own, 0);
+    memset(&loader, 0, sizeof loader);
+    for (size_t i = 0; i < sizeof needed / sizeof *needed; i++) {
+        loader.lacks = needed[i];
+        assert_null(adopt_with(&own, instance_function));
+        assert_non_null(strstr(test_last_message(), needed[i]));
+    }
+    loader.lacks = "vkCmdBeginDebugUtilsLabelEXT"; // of an extension that nothing depends on
+    struct gpu *gpu = adopt_with(&own, instance_function);
+    CHECK(gpu != NULL);
+    add_ten_times_seven(gpu);
+    test_gpu_finish(gpu);
+    gpu_destroy(gpu);
     own_device_close(&own);
 }
