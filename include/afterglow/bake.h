@@ -28,24 +28,27 @@ struct ag_bake_desc {
     int lightmap_samples;
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
+/// Thread: any.
 AG_API void ag_bake_desc_default(struct ag_bake_desc *desc);
 
 /// The index-th technique of a GI spec that needs a bake; *name is NULL past the last.
+/// Thread: the context's.
 AG_API enum ag_result ag_bake_technique(struct ag_context *context, const char *gi, int index,
                                         const char **name);
 /// The technique that files of that bake name: mrt for drt, which has the same bake.
+/// Thread: the context's.
 AG_API enum ag_result ag_bake_technique_in_file(struct ag_context *context, const char *gi,
                                                 int index, const char **name);
-/// The technique that a bake file names, at most 31 characters.
+/// The technique that a bake file names, at most 31 characters. Thread: the context's.
 AG_API enum ag_result ag_bake_file_technique(struct ag_context *context, const char *path,
                                              char name[32]);
 
 /// Nothing is computed yet. Until the bake is destroyed, only lights and sky of the scene may
 /// change; the scene may be destroyed before. desc NULL: the defaults. AG_ERROR_ARGUMENT where no
-/// technique of the spec bakes.
+/// technique of the spec bakes. Thread: the context's.
 AG_API enum ag_result ag_bake_create(struct ag_scene *scene, const char *gi,
                                      const struct ag_bake_desc *desc, struct ag_bake **out);
-/// Also before renderers that were created with it: they keep nothing of it.
+/// Also before renderers that were created with it: they keep nothing of it. Thread: the context's.
 AG_API void ag_bake_destroy(struct ag_bake *bake);
 
 struct ag_bake_estimate {
@@ -58,18 +61,18 @@ struct ag_bake_estimate {
     uint64_t reserved[3];       ///< 0; see ABI in types.h
 };
 /// Estimates the resources of ag_bake_run. probe: run a few tasks, about a second, to estimate the
-/// time; their results are kept.
+/// time; their results are kept. Thread: the context's.
 AG_API enum ag_result ag_bake_estimate_cost(struct ag_bake *bake, bool probe,
                                             struct ag_bake_estimate *out);
 #ifndef __cplusplus
 /// Former name of ag_bake_estimate_cost, which hid the struct in C++; the next minor version is
-/// without it.
+/// without it. Thread: the context's.
 AG_API AG_DEPRECATED enum ag_result ag_bake_estimate(struct ag_bake *bake, bool probe,
                                                      struct ag_bake_estimate *out);
 #endif
 
 /// A file that keeps finished tasks, also while running; ag_bake_run resumes it, ag_bake_save
-/// and ag_bake_save_partial remove it. NULL: none, as at first.
+/// and ag_bake_save_partial remove it. NULL: none, as at first. Thread: the context's.
 AG_API enum ag_result ag_bake_set_checkpoint(struct ag_bake *bake, const char *path);
 
 struct ag_bake_progress {
@@ -83,27 +86,30 @@ struct ag_bake_progress {
 /// called about ten times a second on this thread, also while `stopping`; if it returns false, the
 /// call ends with AG_ERROR_CANCELLED, usually within a second. What was finished is kept, in this
 /// object and in the checkpoint; a later call continues with it. The same scene, options and
-/// seed give the same bytes whatever the threads, shards and interruptions.
+/// seed give the same bytes whatever the threads, shards and interruptions. Thread: the context's.
 AG_API enum ag_result
 ag_bake_run(struct ag_bake *bake,
             bool (*progress)(void *user, const struct ag_bake_progress *progress), void *user);
 
 /// Writes the file of a complete bake and removes its checkpoint. record_seconds: add
 /// ag_bake_info.seconds to the file, which differ from run to run, and the name of the scene.
+/// Thread: the context's.
 AG_API enum ag_result ag_bake_save(struct ag_bake *bake, const char *path, bool record_seconds);
 /// Writes the data of a complete bake for other programs into an existing folder: of ort,
 /// index.json and the images that it names (docs/techniques/ort.md). Files of the same names are
 /// replaced, each completely or not at all, index.json last. AG_ERROR_ARGUMENT where the bake is
 /// incomplete, a light map, or of a technique without such data (ag_technique_info.exports_bake).
+/// Thread: the context's.
 AG_API enum ag_result ag_bake_export(const struct ag_bake *bake, const char *folder);
 /// Reads a file, untrusted, instead of a run. AG_ERROR_FORMAT if it is damaged or of another
-/// technique, version, scene or options; its seed may be any.
+/// technique, version, scene or options; its seed may be any. Thread: the context's.
 AG_API enum ag_result ag_bake_load(struct ag_bake *bake, const char *path);
 /// Writes the finished tasks of a shard. A shard runs its part of the first tasks of the bake; with
 /// all parts merged, its part of the next tasks that are worth splitting, and so on until
-/// ag_bake_info.split_stage is NULL. A bake without a shard does the rest.
+/// ag_bake_info.split_stage is NULL. A bake without a shard does the rest. Thread: the context's.
 AG_API enum ag_result ag_bake_save_partial(struct ag_bake *bake, const char *path);
 /// Adds the finished tasks of such a file, untrusted; ag_bake_run does the rest.
+/// Thread: the context's.
 AG_API enum ag_result ag_bake_merge(struct ag_bake *bake, const char *path);
 struct ag_bake_origin {
     char gi[4096];         ///< GI spec
@@ -114,7 +120,7 @@ struct ag_bake_origin {
     float scene_scale;    ///< ag_scene_load_desc.scale
     uint64_t reserved[3]; ///< 0; see ABI in types.h
 };
-/// The bake that such a file is a part of, for ag_bake_create.
+/// The bake that such a file is a part of, for ag_bake_create. Thread: the context's.
 AG_API enum ag_result ag_bake_partial_origin(struct ag_context *context, const char *path,
                                              struct ag_bake_origin *out);
 
@@ -130,10 +136,11 @@ struct ag_bake_info {
     const char *split_stage;
     uint64_t reserved[3]; ///< 0; see ABI in types.h
 };
+/// Thread: the context's.
 AG_API enum ag_result ag_bake_get_info(const struct ag_bake *bake, struct ag_bake_info *out);
 /// The report as a JSON document: technique, options, stages with their seconds, seconds,
 /// peak_memory_bytes of the process, bytes, and more members of some techniques. Owned by the bake,
-/// valid until the next call with it. Requires a complete bake.
+/// valid until the next call with it. Requires a complete bake. Thread: the context's.
 AG_API enum ag_result ag_bake_report(struct ag_bake *bake, const char **json);
 
 AG_END

@@ -31,17 +31,21 @@ struct ag_technique_info {
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 
-/// Each function returns false if an index is out of range. Strings are static.
+/// Each function returns false if an index is out of range. Strings are static. Thread: any.
 AG_API bool ag_technique_get(int index, struct ag_technique_info *out);
+/// Thread: any.
 AG_API bool ag_technique_option_get(int technique, int index, struct ag_option_info *out);
 /// A preset, chosen by `name:quality=PRESET`: *options is "key=value,key=value", or "" for the
 /// defaults. Options given beside the preset override it. name and options may be NULL.
+/// Thread: any.
 AG_API bool ag_technique_preset_get(int technique, int index, const char **name,
                                     const char **options);
+/// Thread: any.
 AG_API bool ag_technique_debug_view_get(int technique, int index, const char **name,
                                         const char **help);
-/// Index of the debug view with this name or former name; -1: none.
+/// Index of the debug view with this name or former name; -1: none. Thread: any.
 AG_API int ag_technique_debug_view_find(int technique, const char *name);
+/// Thread: any.
 AG_API bool ag_frame_option_get(int index, struct ag_option_info *out);
 
 struct ag_builtin_scene_info {
@@ -49,10 +53,13 @@ struct ag_builtin_scene_info {
     int option_count;
     uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
+/// Thread: any.
 AG_API bool ag_builtin_scene_get(int index, struct ag_builtin_scene_info *out);
+/// Thread: any.
 AG_API bool ag_builtin_scene_option_get(int scene, int index, struct ag_option_info *out);
 
 /// The known name closest to a misspelled one, for "did you mean …?"; NULL if none is close.
+/// Thread: any.
 AG_API const char *ag_nearest_name(const char *name, const char *const *known, int count);
 
 AG_END

@@ -14,7 +14,8 @@ enum ag_log_level { AG_LOG_ERROR, AG_LOG_WARNING, AG_LOG_INFO, AG_LOG_DEBUG };
 struct ag_context_desc {
     /// Gets one sentence without a newline, on the calling thread. NULL: no log.
     void (*log)(void *user, enum ag_log_level level, const char *message);
-    /// Like realloc; 0 bytes frees and returns NULL. NULL: the C library's.
+    /// Like realloc; 0 bytes frees and returns NULL. Bakes that run call it on threads of their own
+    /// too, one at a time. NULL: the C library's.
     void *(*reallocate)(void *user, void *old, size_t bytes);
     void *user;                  ///< passed to both callbacks
     enum ag_log_level log_up_to; ///< least important level to log; default AG_LOG_WARNING
@@ -32,6 +33,7 @@ struct ag_context_desc {
     uint64_t reserved[3]; ///< 0; see ABI in types.h
 };
 
+/// Thread: any.
 AG_API void ag_context_desc_default(struct ag_context_desc *desc);
 
 /// The symbol of ag_context_create has the minor version in its name, as ag_context_create_0_1, so
@@ -42,13 +44,15 @@ AG_API void ag_context_desc_default(struct ag_context_desc *desc);
 #define AG_VERSIONED(name)          AG_NAME(name, AG_VERSION_MAJOR, AG_VERSION_MINOR)
 #define ag_context_create           AG_VERSIONED(ag_context_create)
 #define AG_CONTEXT_CREATE_SYMBOL    AG_STRING(ag_context_create)
-/// desc NULL: the defaults. *out is NULL on failure.
+/// desc NULL: the defaults. *out is NULL on failure. Thread: any.
 AG_API enum ag_result ag_context_create(const struct ag_context_desc *desc,
                                         struct ag_context **out);
 /// The context stays, and its callbacks are called, until all of its objects are destroyed, images
 /// and probes too: a program that leaks none knows then that it may unload the callbacks.
+/// Thread: the context's.
 AG_API void ag_context_destroy(struct ag_context *context);
 /// Sentence of the last error, "" if there was none. Valid until the next call with the context.
+/// Thread: the context's.
 AG_API const char *ag_context_last_error(const struct ag_context *context);
 
 AG_END

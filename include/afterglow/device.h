@@ -16,7 +16,7 @@ struct ag_device_info {
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 
-/// Writes at most `capacity` entries; *count is the number of devices.
+/// Writes at most `capacity` entries; *count is the number of devices. Thread: the context's.
 AG_API enum ag_result ag_device_list(struct ag_context *context, struct ag_device_info *out,
                                      int capacity, int *count);
 
@@ -85,21 +85,25 @@ struct ag_device_desc {
     uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 
+/// Thread: any.
 AG_API void ag_device_desc_default(struct ag_device_desc *desc);
-/// desc NULL: the defaults.
+/// desc NULL: the defaults. Thread: the context's.
 AG_API enum ag_result ag_device_create(struct ag_context *context,
                                        const struct ag_device_desc *desc, struct ag_device **out);
 /// A device that renderers use stays until the last of them is destroyed, and what it adopted must
-/// stay valid until then; a warning says so.
+/// stay valid until then; a warning says so. Thread: the context's.
 AG_API void ag_device_destroy(struct ag_device *device);
+/// Thread: the context's.
 AG_API void ag_device_get_info(const struct ag_device *device, struct ag_device_info *out);
 /// Vulkan features that an adopted device must enable, one name per line; a static string.
+/// Thread: any.
 AG_API const char *ag_device_required_features(void);
 /// Number of messages from the validation layers so far; 0 without validation.
+/// Thread: the context's.
 AG_API int ag_device_validation_messages(const struct ag_device *device);
 /// Copies what the driver has compiled so far to `out`, for ag_device_desc.pipeline_cache of later
 /// runs: call it when all renderers are created. *bytes is the size; out NULL: the size alone. Too
-/// little `capacity` is AG_ERROR_ARGUMENT.
+/// little `capacity` is AG_ERROR_ARGUMENT. Thread: the context's.
 AG_API enum ag_result ag_device_pipeline_cache(struct ag_device *device, void *out, size_t capacity,
                                                size_t *bytes);
 
@@ -112,6 +116,7 @@ struct ag_device_counters {
     uint64_t passes;      ///< of frames, recorded
     uint64_t reserved[7]; ///< 0; see ABI in types.h
 };
+/// Thread: the context's.
 AG_API void ag_device_get_counters(const struct ag_device *device, struct ag_device_counters *out);
 
 struct ag_memory {
@@ -119,7 +124,7 @@ struct ag_memory {
     uint64_t bytes;
 };
 /// GPU memory that the library allocated on a device, by owner. Returns the number of owners and
-/// writes at most `capacity`. See ag_renderer_memory.
+/// writes at most `capacity`. See ag_renderer_memory. Thread: the context's.
 AG_API int ag_device_memory(struct ag_device *device, struct ag_memory *out, int capacity);
 
 AG_END

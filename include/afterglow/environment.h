@@ -18,9 +18,11 @@ struct ag_environment;
 ///
 /// A small bright sun becomes a directional light with shadows (docs/environment.md): techniques
 /// and the reference get its illuminance from there, and the rest from the image.
+/// Thread: the context's.
 AG_API enum ag_result ag_environment_load(struct ag_context *context, const char *path,
                                           struct ag_environment **out);
 /// The same from an image in memory, of which 1 or 3 channels are used. It is copied.
+/// Thread: the context's.
 AG_API enum ag_result ag_environment_from_image(struct ag_context *context,
                                                 const struct ag_image *image,
                                                 struct ag_environment **out);
@@ -33,11 +35,13 @@ struct ag_sun_sky_desc {
     float ground_albedo[3]; ///< of the ground below the horizon, 0 to 1; default 0.2
     uint64_t reserved[4];   ///< 0; see ABI in types.h
 };
+/// Thread: any.
 AG_API void ag_sun_sky_desc_default(struct ag_sun_sky_desc *desc);
+/// Thread: the context's.
 AG_API enum ag_result ag_environment_from_sun_sky(struct ag_context *context,
                                                   const struct ag_sun_sky_desc *desc,
                                                   struct ag_environment **out);
-/// Scenes that use it keep what they need. Accepts NULL.
+/// Scenes that use it keep what they need. Accepts NULL. Thread: the context's.
 AG_API void ag_environment_destroy(struct ag_environment *environment);
 
 struct ag_environment_info {
@@ -52,6 +56,7 @@ struct ag_environment_info {
                           ///< the sun is no part of
     uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
+/// Thread: the context's.
 AG_API enum ag_result ag_environment_get_info(const struct ag_environment *environment,
                                               struct ag_environment_info *out);
 
@@ -61,16 +66,17 @@ struct ag_environment_use {
     float rotation;       ///< about +y, radians, counterclockwise seen from above; default 0
     uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
+/// Thread: any.
 AG_API void ag_environment_use_default(struct ag_environment_use *use);
 /// Replaces the environment of a scene; its uniform sky and its lights stay. NULL: none. use NULL:
 /// the defaults. Renderers show it from their next frame on; another use of the same environment
 /// allocates nothing. Bakes do not depend on it. AG_ERROR_ARGUMENT, and nothing has changed: a
-/// value is wrong, or the environment is of another context.
+/// value is wrong, or the environment is of another context. Thread: the context's.
 AG_API enum ag_result ag_scene_set_environment(struct ag_scene *scene,
                                                const struct ag_environment *environment,
                                                const struct ag_environment_use *use);
 /// The environment that a scene has, set or read from its file, and its use, which may be NULL. The
-/// caller destroys it. *out NULL: the scene has none.
+/// caller destroys it. *out NULL: the scene has none. Thread: the context's.
 AG_API enum ag_result ag_scene_get_environment(const struct ag_scene *scene,
                                                struct ag_environment **out,
                                                struct ag_environment_use *use);

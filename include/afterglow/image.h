@@ -13,10 +13,10 @@ struct ag_image {
     float *pixels; ///< [height][width][channels]
 };
 
-/// A black image. width and height 1…16384, channels 1…4.
+/// A black image. width and height 1…16384, channels 1…4. Thread: the context's.
 AG_API enum ag_result ag_image_create(struct ag_context *context, int width, int height,
                                       int channels, struct ag_image **out);
-/// context: that of the image; it may be destroyed already, and NULL.
+/// context: that of the image; it may be destroyed already, and NULL. Thread: the context's.
 AG_API void ag_image_destroy(struct ag_context *context, struct ag_image *image);
 
 struct ag_image_layer {
@@ -28,36 +28,39 @@ struct ag_attribute {
 };
 
 /// Writes a multi-layer OpenEXR file of 32-bit floats. All layers have the same size. A failed
-/// write leaves no file and keeps an existing one.
+/// write leaves no file and keeps an existing one. Thread: the context's.
 AG_API enum ag_result ag_image_write_exr(struct ag_context *context, const char *path,
                                          const struct ag_image_layer *layers, int layer_count,
                                          const struct ag_attribute *attributes,
                                          int attribute_count);
 /// Writes an 8-bit sRGB PNG of a linear display image (see ag_image_tonemap); values are clamped to
-/// 0…1.
+/// 0…1. Thread: the context's.
 AG_API enum ag_result ag_image_write_png(struct ag_context *context, const char *path,
                                          const struct ag_image *image);
 /// Reads an .exr (layer NULL: "color") or .png (decoded to linear) file, by its extension.
 /// Untrusted input. Former names of reference layers are accepted with a warning.
+/// Thread: the context's.
 AG_API enum ag_result ag_image_read(struct ag_context *context, const char *path, const char *layer,
                                     struct ag_image **out);
 /// Width and height of such a file, without reading its pixels: to estimate the memory that
-/// ag_image_read takes, which is 16 bytes a pixel and twice the file.
+/// ag_image_read takes, which is 16 bytes a pixel and twice the file. Thread: the context's.
 AG_API enum ag_result ag_image_read_size(struct ag_context *context, const char *path, int *width,
                                          int *height);
 /// Copies the text attribute `name` of an EXR file to `out`, truncated to `size` bytes; "" if
-/// absent.
+/// absent. Thread: the context's.
 AG_API enum ag_result ag_image_read_attribute(struct ag_context *context, const char *path,
                                               const char *name, char *out, size_t size);
 
 /// Converts radiance (cd/m²) to linear display values 0…1: exposure for `ev` at ISO 100, then the
-/// Khronos PBR Neutral tone mapper.
+/// Khronos PBR Neutral tone mapper. Thread: the context's.
 AG_API enum ag_result ag_image_tonemap(struct ag_context *context, const struct ag_image *radiance,
                                        float ev, struct ag_image **out);
 /// EV that maps the log-average luminance of a radiance image, clamped to its 10th and 90th
 /// percentile, to middle grey. A fourth channel is alpha; pixels with alpha 0 are ignored.
+/// Thread: any.
 AG_API float ag_image_auto_exposure(const struct ag_image *radiance);
 /// Places two images of equal height side by side, with `gap` black columns between them.
+/// Thread: the context's.
 AG_API enum ag_result ag_image_side_by_side(struct ag_context *context, const struct ag_image *a,
                                             const struct ag_image *b, int gap,
                                             struct ag_image **out);
@@ -71,7 +74,7 @@ struct ag_compare_desc {
     float pixels_per_degree;     ///< of the viewing condition of flip, 1…1000
     uint64_t reserved[4];        ///< 0; see ABI in types.h
 };
-/// Display values, all pixels, 67 pixels per degree.
+/// Display values, all pixels, 67 pixels per degree. Thread: any.
 AG_API void ag_compare_desc_default(struct ag_compare_desc *desc);
 
 /// Metrics over all counted pixels and three colour channels; docs/metrics.md explains them.
@@ -87,7 +90,7 @@ struct ag_metrics {
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 /// Error of `a` relative to the reference `b`: equal sizes, at least 3 channels. desc NULL: the
-/// defaults.
+/// defaults. Thread: the context's.
 AG_API enum ag_result ag_image_metrics(struct ag_context *context, const struct ag_image *a,
                                        const struct ag_image *b, const struct ag_compare_desc *desc,
                                        struct ag_metrics *out);
@@ -102,7 +105,7 @@ enum ag_difference {
 };
 /// Display image of the difference at each pixel, from dark to bright; white at `full` (≤ 0: at 1
 /// for ssim and flip, else at the 99th percentile), black where pixels do not count. desc NULL: the
-/// defaults.
+/// defaults. Thread: the context's.
 AG_API enum ag_result ag_image_error_map(struct ag_context *context, const struct ag_image *a,
                                          const struct ag_image *b,
                                          const struct ag_compare_desc *desc,

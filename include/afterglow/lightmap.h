@@ -24,24 +24,28 @@ struct ag_lightmap_desc {
                         ///< GPU is needed; ag_lightmap_read and _write are refused; default false
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
+/// Thread: any.
 AG_API void ag_lightmap_desc_default(struct ag_lightmap_desc *desc);
 
 /// The technique of a GI spec that has a light map; *name is NULL where none has one.
+/// Thread: the context's.
 AG_API enum ag_result ag_lightmap_technique(struct ag_context *context, const char *gi,
                                             const char **name);
 
 /// The light map of a complete bake with lightmap_samples; bake and scene may be destroyed before
-/// the light map. desc NULL: the defaults.
+/// the light map. desc NULL: the defaults. Thread: the context's.
 AG_API enum ag_result ag_lightmap_from_bake(const struct ag_bake *bake,
                                             const struct ag_lightmap_desc *desc,
                                             struct ag_lightmap **out);
 /// The light map of the newest frame; waits for the GPU. AG_ERROR_ARGUMENT if no technique of the
 /// renderer has a light map. Direct light of punctual lights is traced on the CPU. If a technique
 /// scatters it below surfaces, its map has it already, and indirect_only is AG_ERROR_UNSUPPORTED.
+/// Thread: the context's.
 AG_API enum ag_result ag_lightmap_from_renderer(struct ag_renderer *renderer,
                                                 const struct ag_lightmap_desc *desc,
                                                 struct ag_lightmap **out);
-AG_API void ag_lightmap_destroy(struct ag_lightmap *lightmap); ///< accepts NULL
+/// Accepts NULL. Thread: the context's.
+AG_API void ag_lightmap_destroy(struct ag_lightmap *lightmap);
 
 struct ag_lightmap_info {
     int width, height;
@@ -50,19 +54,20 @@ struct ag_lightmap_info {
     float texels_per_m;   ///< density
     uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
+/// Thread: the context's.
 AG_API enum ag_result ag_lightmap_get_info(const struct ag_lightmap *lightmap,
                                            struct ag_lightmap_info *out);
-/// A copy of a map, 3 channels, lux. Texels of no chart are 0.
+/// A copy of a map, 3 channels, lux. Texels of no chart are 0. Thread: the context's.
 AG_API enum ag_result ag_lightmap_read(const struct ag_lightmap *lightmap, bool back,
                                        struct ag_image **out);
 /// World-space positions of texels, 3 channels, metres: of the middle of the part of a texel that
 /// the surface covers. NaN where a texel is on no surface, as in gutters. Both sides of a surface
-/// have one position; only texels with a back have one there.
+/// have one position; only texels with a back have one there. Thread: the context's.
 AG_API enum ag_result ag_lightmap_positions(const struct ag_lightmap *lightmap, bool back,
                                             struct ag_image **out);
 /// Writes the maps, irradiance.exr and irradiance_back.exr, and scene.glb, a copy of the scene with
 /// coordinates of the maps, into an existing folder; docs/lightmaps.md describes them. Each file is
-/// written completely or not at all.
+/// written completely or not at all. Thread: the context's.
 AG_API enum ag_result ag_lightmap_write(const struct ag_lightmap *lightmap, const char *folder);
 
 /// Painted light: first-order irradiance that a program gives the texels of a renderer's light map,
@@ -75,6 +80,7 @@ struct ag_light_paint {
     const float *lux;
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
+/// Thread: any.
 AG_API void ag_light_paint_default(struct ag_light_paint *paint);
 /// Replaces the painted light of the rectangle's texels, from the next frame on. It is light from
 /// all directions, which bounces and scatters; surfaces show it as they show that of the sky. The
@@ -86,6 +92,7 @@ AG_API void ag_light_paint_default(struct ag_light_paint *paint);
 ///
 /// AG_ERROR_ARGUMENT, and nothing has changed: no technique of the renderer takes painted light
 /// (radiosity and ort do), the rectangle is empty or not in the light map, or a value is wrong.
+/// Thread: the context's.
 AG_API enum ag_result ag_renderer_paint_light(struct ag_renderer *renderer,
                                               const struct ag_light_paint *paint);
 

@@ -19,13 +19,13 @@ struct ag_probes {
 };
 /// Copies the volume of the newest frame; waits for the GPU. AG_ERROR_ARGUMENT if no running
 /// technique publishes probes; the message names the option to set. The copy is independent of the
-/// renderer.
+/// renderer. Thread: the context's.
 AG_API enum ag_result ag_renderer_read_probes(struct ag_renderer *renderer, struct ag_probes **out);
-/// context as for ag_image_destroy.
+/// context as for ag_image_destroy. Thread: the context's.
 AG_API void ag_probes_destroy(struct ag_context *context, struct ag_probes *probes);
 /// Irradiance (3 values, lux, ≥ 0) at a world position for a unit normal, by trilinear
 /// interpolation; positions outside the grid are clamped to it. A diffuse surface reflects the
-/// radiance albedo / π · irradiance. `probes` must be as read. Any thread.
+/// radiance albedo / π · irradiance. `probes` must be as read. Thread: any.
 AG_API void ag_probes_irradiance(const struct ag_probes *probes, const float *position,
                                  const float *normal, float *out);
 
@@ -42,6 +42,7 @@ struct ag_probes_handle {
     int counts[3], slab;
     uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
+/// Thread: the context's.
 AG_API enum ag_result ag_renderer_probes_handle(struct ag_renderer *renderer,
                                                 struct ag_probes_handle *out);
 

@@ -30,24 +30,26 @@ struct ag_reference_desc {
     uint64_t seed;          ///< of all random numbers; default 0
     uint64_t reserved[8];   ///< 0; see ABI in types.h
 };
-/// Sets every member except `camera`.
+/// Sets every member except `camera`. Thread: any.
 AG_API void ag_reference_desc_default(struct ag_reference_desc *desc);
 
 /// Copies what it needs of the scene at that moment; later changes have no effect. The scene may be
-/// destroyed before the reference.
+/// destroyed before the reference. Thread: the context's.
 AG_API enum ag_result ag_reference_create(struct ag_scene *scene,
                                           const struct ag_reference_desc *desc,
                                           struct ag_reference **out);
-AG_API void ag_reference_destroy(struct ag_reference *reference); ///< accepts NULL
+/// Accepts NULL. Thread: the context's.
+AG_API void ag_reference_destroy(struct ag_reference *reference);
 
 /// Adds `samples` ≥ 1 to every pixel, on all cores, and returns when they are done. The image
 /// depends neither on the number of cores nor on how samples are spread over calls. `progress` (may
 /// be NULL) is called on this thread with the share done, 0…1; if it returns false, the call ends
 /// with AG_ERROR_CANCELLED. Samples taken until then are kept, and later calls add to them.
+/// Thread: the context's.
 AG_API enum ag_result ag_reference_render(struct ag_reference *reference, int samples,
                                           bool (*progress)(void *user, double done), void *user);
 
-/// Names of the layers that ag_reference_read knows; NULL past the end.
+/// Names of the layers that ag_reference_read knows; NULL past the end. Thread: any.
 AG_API const char *ag_reference_layer_name(int index);
 /// A new image with one layer. `channels` is 3 unless stated.
 ///
@@ -70,6 +72,8 @@ AG_API const char *ag_reference_layer_name(int index);
 ///   as without a surface
 /// - ambient_occlusion: unoccluded cosine-weighted share of the hemisphere within
 ///   obscurance_radius_m; 1 channel; 1 is open, as without a surface
+///
+/// Thread: the context's.
 AG_API enum ag_result ag_reference_read(struct ag_reference *reference, const char *layer,
                                         struct ag_image **out);
 
@@ -81,6 +85,7 @@ struct ag_reference_info {
                   ///< infinite for fewer than 2 samples
     uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
+/// Thread: the context's.
 AG_API enum ag_result ag_reference_get_info(const struct ag_reference *reference,
                                             struct ag_reference_info *out);
 
@@ -89,10 +94,11 @@ AG_API enum ag_result ag_reference_get_info(const struct ag_reference *reference
 /// irradiance, irradiance_emitters_sky, error and samples.
 #define AG_REFERENCE_CHECKPOINT "afterglow.checkpoint"
 /// Identifies scene, lights, camera, size and options; owned by the reference.
+/// Thread: the context's.
 AG_API const char *ag_reference_checkpoint(const struct ag_reference *reference);
 /// Replaces the samples by those of a checkpoint file; untrusted input. AG_ERROR_ARGUMENT if the
 /// file's scene, lights, camera, size or options differ. Files hold 32-bit floats, so further
-/// samples give the image of an uninterrupted run up to rounding.
+/// samples give the image of an uninterrupted run up to rounding. Thread: the context's.
 AG_API enum ag_result ag_reference_resume(struct ag_reference *reference, const char *path);
 
 AG_END

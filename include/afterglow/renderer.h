@@ -46,6 +46,7 @@ struct ag_gbuffer_layout {
                           ///< default true; false for formats of two components
     uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
+/// Thread: any.
 AG_API void ag_gbuffer_layout_default(struct ag_gbuffer_layout *layout);
 
 struct ag_renderer_desc {
@@ -75,23 +76,27 @@ struct ag_renderer_desc {
     const struct ag_gbuffer_layout *gbuffer_layout;
     uint64_t reserved[6]; ///< 0; see ABI in types.h
 };
+/// Thread: any.
 AG_API void ag_renderer_desc_default(struct ag_renderer_desc *desc);
 /// GPU memory of a renderer with these settings: bytes of buffers and texels, without the scene,
 /// further views (ag_view_estimate_memory) and what the driver pads. It counts each light as a sun
 /// or a point light, whichever takes more, and a material with a specular lobe of its own. Beside
 /// that, and what a bake brings, it is exact to 1 %. desc NULL: the defaults.
+/// Thread: the context's.
 AG_API enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
                                                   const struct ag_renderer_desc *desc,
                                                   int light_count, uint64_t *bytes);
 /// Renderers follow changes of their scene between frames. Device and scene may
 /// be destroyed before the renderer, which keeps them. desc NULL: the defaults.
+/// Thread: the context's.
 AG_API enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *scene,
                                          const struct ag_renderer_desc *desc,
                                          struct ag_renderer **out);
 /// A renderer with views stays, with its GPU memory, until the last of them is destroyed.
+/// Thread: the context's.
 AG_API void ag_renderer_destroy(struct ag_renderer *renderer);
 /// Discards the newest frame and the history of techniques. If it fails, only a successful resize
-/// allows further frames.
+/// allows further frames. Thread: the context's.
 AG_API enum ag_result ag_renderer_resize(struct ag_renderer *renderer, int width, int height);
 
 /// Exchanges the GI spec from the next frame on; options that it does not name have their defaults.
@@ -99,10 +104,10 @@ AG_API enum ag_result ag_renderer_resize(struct ag_renderer *renderer, int width
 /// ag_option_info): nothing is created. Others are created again beside the old ones, which are
 /// destroyed afterwards. The scene, the frame's images and maps stay. `bakes` as in
 /// ag_renderer_desc, for techniques created again. A debug view ends with its technique. After a
-/// failure nothing has changed.
+/// failure nothing has changed. Thread: the context's.
 AG_API enum ag_result ag_renderer_set_gi(struct ag_renderer *renderer, const char *gi,
                                          const struct ag_bake *const *bakes, int bake_count);
-/// Exchanges the frame options likewise. NULL: the defaults.
+/// Exchanges the frame options likewise. NULL: the defaults. Thread: the context's.
 AG_API enum ag_result ag_renderer_set_frame_options(struct ag_renderer *renderer,
                                                     const char *options);
 
@@ -182,27 +187,28 @@ struct ag_frame_desc {
     uint64_t reserved[3];                    ///< 0; see ABI in types.h
 };
 /// Sets every member except `camera`; ag_scene_default_camera, ag_scene_camera and ag_scene_look_at
-/// return one.
+/// return one. Thread: any.
 AG_API void ag_frame_desc_default(struct ag_frame_desc *desc);
 /// Renders one frame and submits it. Two frames are in flight: the call waits until the frame
-/// before the last is finished.
+/// before the last is finished. Thread: the context's.
 AG_API enum ag_result ag_renderer_render(struct ag_renderer *renderer,
                                          const struct ag_frame_desc *desc);
 /// Like ag_renderer_render, but records into the caller's VkCommandBuffer (recording, outside of a
 /// rendering); adopted devices only. *frame is the frame's number. Never waits: up to eight
 /// recorded frames of a device may be unfinished. Submit command buffers to the adopted queue in
 /// the order of recording. Calls that wait for the GPU, and ag_renderer_render, are refused while a
-/// recorded frame is unfinished.
+/// recorded frame is unfinished. Thread: the context's; no other uses the pool of the command
+/// buffer meanwhile.
 AG_API enum ag_result ag_renderer_record(struct ag_renderer *renderer,
                                          const struct ag_frame_desc *desc, void *vk_command_buffer,
                                          uint64_t *frame);
 /// Tells that the GPU has executed a recorded frame, and all that the renderer recorded before: the
-/// memory that they used may be reused.
+/// memory that they used may be reused. Thread: the context's.
 AG_API enum ag_result ag_renderer_recorded_done(struct ag_renderer *renderer, uint64_t frame);
-/// Waits until the GPU has finished all frames.
+/// Waits until the GPU has finished all frames. Thread: the context's.
 AG_API enum ag_result ag_renderer_wait(struct ag_renderer *renderer);
 
-/// Names of the layers that ag_renderer_read knows; NULL past the end.
+/// Names of the layers that ag_renderer_read knows; NULL past the end. Thread: any.
 AG_API const char *ag_layer_name(int index);
 /// A new image with one layer of the newest frame; waits for the GPU. `channels` is 3 unless
 /// stated. Without a technique that writes them, indirect light is 0 and visibility 1.
@@ -229,7 +235,7 @@ AG_API const char *ag_layer_name(int index);
 /// - debug: the debug view; requires ag_renderer_set_debug_view
 ///
 /// With host_gbuffer, albedo, normal, position, depth, emissive and motion are the program's own
-/// and cannot be read here; there is no layer id, and a frame cannot pick.
+/// and cannot be read here; there is no layer id, and a frame cannot pick. Thread: the context's.
 AG_API enum ag_result ag_renderer_read(struct ag_renderer *renderer, const char *layer,
                                        struct ag_image **out);
 /// For programs that share the device; also before the first frame. "position" has no image.
@@ -249,6 +255,7 @@ AG_API enum ag_result ag_renderer_read(struct ag_renderer *renderer, const char 
 /// program waits for the frame: in the same or a later command buffer of the queue by a barrier
 /// from ALL_COMMANDS, MEMORY_WRITE; on other queues by a semaphore. A layout that it changes it
 /// restores. The first call for a layer submits a command buffer: submit recorded frames before.
+/// Thread: the context's.
 AG_API enum ag_result ag_renderer_layer_handle(struct ag_renderer *renderer, const char *layer,
                                                struct ag_layer_handle *out);
 /// Numbers of the newest frame that the GPU has finished.
@@ -259,6 +266,7 @@ struct ag_finished_frame {
     uint64_t reserved[6]; ///< 0; see ABI in types.h
 };
 /// Does not wait. A recorded frame is finished with ag_renderer_recorded_done.
+/// Thread: the context's.
 AG_API enum ag_result ag_renderer_finished(struct ag_renderer *renderer,
                                            struct ag_finished_frame *out);
 /// The surface of a pixel.
@@ -270,11 +278,12 @@ struct ag_pick {
 };
 /// The pick of the newest frame with `pick` (ag_frame_desc) that the GPU has finished. Neither
 /// waits nor submits. Instances are numbered as at the time of that frame: the index of one that
-/// was removed since may belong to another one.
+/// was removed since may belong to another one. Thread: the context's.
 AG_API enum ag_result ag_renderer_picked(struct ag_renderer *renderer, struct ag_pick *out);
-/// EV of the newest frame; waits for the GPU.
+/// EV of the newest frame; waits for the GPU. Thread: the context's.
 AG_API enum ag_result ag_renderer_exposure(struct ag_renderer *renderer, float *ev);
 /// Draws a debug view of a technique to the layer "debug" in all further frames; NULL: none.
+/// Thread: the context's.
 AG_API enum ag_result ag_renderer_set_debug_view(struct ag_renderer *renderer, const char *name);
 
 /// Shows another layer in the layer "display" of all further frames; NULL: color. Requires
@@ -287,6 +296,8 @@ AG_API enum ag_result ag_renderer_set_debug_view(struct ag_renderer *renderer, c
 /// - normal: (n + 1)/2; depth: 1/(1 + metres); motion: x, y in pixels and z, each as
 ///   (1 + v/(1 + |v|))/2. Black where there is no surface
 /// - id, position and display cannot be shown; with host_gbuffer, nor can emissive
+///
+/// Thread: the context's.
 AG_API enum ag_result ag_renderer_set_display(struct ag_renderer *renderer, const char *layer);
 
 struct ag_timing {
@@ -294,20 +305,22 @@ struct ag_timing {
     double ms;     ///< GPU time
 };
 /// GPU times of the newest frame; waits for the GPU. Returns the number of passes and writes at
-/// most `capacity`.
+/// most `capacity`. Thread: the context's.
 AG_API int ag_renderer_timings(struct ag_renderer *renderer, struct ag_timing *out, int capacity);
 
 /// The same times of the newest frame that the GPU has finished. Does not wait.
+/// Thread: the context's.
 AG_API int ag_renderer_finished_timings(struct ag_renderer *renderer, struct ag_timing *out,
                                         int capacity);
 
 /// GPU memory of a renderer by owner, with its copy of the scene; without the transient and staging
 /// buffers, which are the device's (ag_device_memory). Does not wait. Returns the number of owners
-/// and writes at most `capacity`.
+/// and writes at most `capacity`. Thread: the context's.
 AG_API int ag_renderer_memory(struct ag_renderer *renderer, struct ag_memory *out, int capacity);
-/// The GI spec with all options; owned by the renderer.
+/// The GI spec with all options; owned by the renderer. Thread: the context's.
 AG_API const char *ag_renderer_gi(const struct ag_renderer *renderer);
 /// Reloads shaders that changed on disk (AFTERGLOW_SHADER_DIR); returns their number.
+/// Thread: the context's.
 AG_API int ag_renderer_reload_shaders(struct ag_renderer *renderer);
 
 AG_END

@@ -26,6 +26,7 @@ struct ag_scene_image_desc {
 };
 /// Copies the image, with 4 bytes a texel, until the scene is destroyed. Mip levels are generated.
 /// Sets *index (may be NULL), -1 on failure. AG_ERROR_FORMAT: `encoded` cannot be decoded.
+/// Thread: the context's.
 AG_API enum ag_result ag_scene_add_image(struct ag_scene *scene,
                                          const struct ag_scene_image_desc *desc, int *index);
 
@@ -55,9 +56,9 @@ struct ag_material_maps {
     float normal_scale;                       ///< of the normal map's x and y; default 1
     uint64_t reserved[8];                     ///< 0; see ABI in types.h
 };
-/// No texture.
+/// No texture. Thread: any.
 AG_API void ag_material_maps_default(struct ag_material_maps *maps);
-/// The textures of a material, of a file or as they were given.
+/// The textures of a material, of a file or as they were given. Thread: the context's.
 AG_API enum ag_result ag_scene_get_material_maps(struct ag_scene *scene, int material,
                                                  struct ag_material_maps *out);
 

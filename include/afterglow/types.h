@@ -7,15 +7,21 @@
 /// reference or light map a scene, and each of them and devices, scenes, environments, images and
 /// probes their context. Descriptions: ag_X_desc_default fills a struct ag_X_desc with the
 /// defaults. It and all pointers in it are needed only during the call. Strings: UTF-8; arguments
-/// are copied. Threads: one thread at a time per context; different contexts are independent. A
-/// scene can be transferred from the context of a loading thread to that of a renderer
-/// (ag_scene_transfer). Functions without an object of a context (ag_…_default, those of
-/// catalogue.h, ag_version, ag_printable, ag_image_auto_exposure) may be called on any thread at
-/// any time. ABI: structs with `reserved` keep their size; new members take its place, and 0 is
+/// are copied. ABI: structs with `reserved` keep their size; new members take its place, and 0 is
 /// what they were without. A description whose reserved words are not 0 is refused: the program
 /// needs a newer library. ag_X_desc_default sets them. A program links only with a library of the
 /// same minor version (ag_context_create). Errors: on failure *out is NULL, and
 /// ag_context_last_error() has one sentence.
+///
+/// Threads: the comment of each function ends with the threads that may call it.
+///
+/// - "Thread: the context's": one thread at a time uses a context and all of its objects, from the
+///   beginning of a call to its end. Another thread may follow, after a mutex or a join. Different
+///   contexts are independent.
+/// - "Thread: any": at any time, on several threads at once. These functions use no context.
+///
+/// A scene can be transferred from the context of a loading thread to that of a renderer
+/// (ag_scene_transfer). Callbacks run on the calling thread, unless their comment differs.
 #ifndef AFTERGLOW_TYPES_H
 #define AFTERGLOW_TYPES_H
 
@@ -70,13 +76,14 @@ enum ag_result {
     AG_ERROR_CANCELLED,   ///< a callback returned false
 };
 
-/// A short static description; never NULL.
+/// A short static description; never NULL. Thread: any.
 AG_API const char *ag_result_string(enum ag_result result);
-/// Version of the linked library: major·10000 + minor·100 + patch.
+/// Version of the linked library: major·10000 + minor·100 + patch. Thread: any.
 AG_API int ag_version(void);
 /// Copies `text` to `out` of `size` bytes, truncated between characters, so that it can be shown:
 /// control characters, also C1 and bidirectional ones, become \uXXXX, bytes that are not UTF-8
 /// \xXX. Log messages and names of scenes are escaped already; paths are not. Returns the length.
+/// Thread: any.
 AG_API size_t ag_printable(const char *text, char *out, size_t size);
 
 AG_END

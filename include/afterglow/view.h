@@ -28,18 +28,20 @@ struct ag_view_desc {
     const struct ag_gbuffer_layout *gbuffer_layout; ///< default NULL
     uint64_t reserved[7];                           ///< 0; see ABI in types.h
 };
+/// Thread: any.
 AG_API void ag_view_desc_default(struct ag_view_desc *desc);
 /// Bytes that a view adds to the GPU memory of a renderer, as ag_renderer_estimate_memory counts
 /// them. Either description may be NULL: the defaults. Handles that are asked for later add their
-/// layers.
+/// layers. Thread: the context's.
 AG_API enum ag_result ag_view_estimate_memory(struct ag_context *context,
                                               const struct ag_renderer_desc *renderer,
                                               const struct ag_view_desc *desc, uint64_t *bytes);
-/// Adds a view; a renderer has at most seven. desc NULL: the defaults.
+/// Adds a view; a renderer has at most seven. desc NULL: the defaults. Thread: the context's.
 AG_API enum ag_result ag_view_create(struct ag_renderer *renderer, const struct ag_view_desc *desc,
                                      struct ag_view **out);
+/// Thread: the context's.
 AG_API void ag_view_destroy(struct ag_view *view);
-/// As ag_renderer_resize, for this view alone.
+/// As ag_renderer_resize, for this view alone. Thread: the context's.
 AG_API enum ag_result ag_view_resize(struct ag_view *view, int width, int height);
 
 /// A view in one frame, for ag_frame_desc.views. A view that a frame leaves out keeps its images
@@ -54,15 +56,17 @@ struct ag_view_frame {
     const struct ag_view_matrices *matrices; ///< in place of `camera`; default NULL
     uint64_t reserved[3];                    ///< 0; see ABI in types.h
 };
-/// Sets every member except `view` and `camera`.
+/// Sets every member except `view` and `camera`. Thread: any.
 AG_API void ag_view_frame_default(struct ag_view_frame *frame);
 
 /// As ag_renderer_read, ag_renderer_layer_handle and ag_renderer_exposure, of the newest frame that
 /// had the view. There are no layers id and debug. A layer is kept from the next frame on, once its
-/// handle has been asked for.
+/// handle has been asked for. Thread: the context's.
 AG_API enum ag_result ag_view_read(struct ag_view *view, const char *layer, struct ag_image **out);
+/// Likewise. Thread: the context's.
 AG_API enum ag_result ag_view_layer_handle(struct ag_view *view, const char *layer,
                                            struct ag_layer_handle *out);
+/// Likewise. Thread: the context's.
 AG_API enum ag_result ag_view_exposure(struct ag_view *view, float *ev);
 
 AG_END

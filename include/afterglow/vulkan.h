@@ -23,10 +23,11 @@ struct ag_vulkan_requirements {
     uint32_t extension_count;
 };
 /// For a device of a Vulkan 1.3 instance. `usable` of ag_device_info tells which devices have all.
+/// Thread: any.
 AG_API void ag_vulkan_requirements_get(VkPhysicalDevice physical_device,
                                        struct ag_vulkan_requirements *out);
 /// The same with the functions of ag_device_adopt.get_instance_proc_addr. extension_count is 0 if
-/// it lacks one.
+/// it lacks one. Thread: any.
 AG_API void ag_vulkan_requirements_get_with(VkInstance instance, VkPhysicalDevice physical_device,
                                             PFN_vkGetInstanceProcAddr get_instance_proc_addr,
                                             struct ag_vulkan_requirements *out);

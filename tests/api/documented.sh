@@ -1,6 +1,6 @@
 #!/bin/sh
-# documented.sh ROOT: every public function is on docs/library.md's page, and called in a program that the tests run; every
-# option of the command line is on docs/cli.md's.
+# documented.sh ROOT: every public function is on docs/library.md's page, and called in a program that the tests run; its comment
+# tells the threads that may call it. Every option of the command line is on docs/cli.md's.
 set -eu
 cd "$1"
 bad=0
@@ -11,6 +11,10 @@ for name in $functions; do
     grep -q "\`$name\`" docs/library.md || { echo "$name is not on docs/library.md"; bad=1; }
     cat examples/*.c tests/api/*.c | grep -q "$name(" || { echo "$name is called in no example and no test"; bad=1; }
 done
+awk '
+    /^AG_API / && comment !~ /Thread: / { print FILENAME ":" FNR ": the comment has no \"Thread: ...\" (types.h)"; bad = 1 }
+    { comment = /^\/\/\// ? comment $0 : "" }
+    END { exit bad }' include/afterglow/*.h || bad=1
 for option in $(grep -o '^OPTION("[^"]*"' app/cli/options.def | cut -d'"' -f2 | grep -v -e --help); do
     grep -q -e "\`$option[\` ]" docs/cli.md || { echo "$option is not on docs/cli.md"; bad=1; }
 done
