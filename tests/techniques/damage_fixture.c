@@ -1,5 +1,8 @@
 #include "techniques/damage_fixture.h"
 
+#include "core/rng.h"
+
+#include <math.h>
 #include <string.h>
 
 void damage_open(struct damage_fixture *u, const char *text, int term)
@@ -63,4 +66,90 @@ bool damage_loads(struct damage_fixture *u)
     fixture_render(&u->s);
     gi_destroy(gi);
     return true;
+}
+
+void damage_check_refused(struct damage_fixture *u, const char *message)
+{
+    CHECK(!damage_loads(u));
+    const char *newline = strchr(test_last_message(), '\n');
+    if (!strstr(test_last_message(), message) || newline) fail_msg("%s", test_last_message());
+}
+
+void damage_open_room(struct damage_fixture *u, struct gpu *gpu, const char *text)
+{
+    struct material m = material_default();
+    *u = (struct damage_fixture){ 0 };
+    m.metallic = 0;
+    fixture_init(&u->s, gpu);
+    fixture_box(&u->s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, fixture_material(&u->s, &m));
+    m.emissive = vec3_of(10, 10, 10);
+    fixture_box(&u->s, vec3_of(-0.5f, 0.5f, -0.5f), vec3_of(0.5f, 1, 0.5f), false,
+                fixture_material(&u->s, &m));
+    fixture_add_point(&u->s, vec3_of(0, 2, 0), vec3_of(100, 100, 100));
+    fixture_look(&u->s, vec3_of(-1.7f, 2.6f, 1.7f), vec3_of(0.2f, 0.8f, -0.2f));
+    damage_open(u, text, 0);
+}
+
+void damage_check_tensors(struct damage_fixture *u)
+{
+    CHECK(damage_loads(u));
+    for (size_t i = 0; i < u->set.count; i++) {
+        u->at[i].name = "another";
+        damage_check_refused(u, u->from->at[i].name);
+        damage_restore(u, i);
+        for (int axis = 0; axis < u->at[i].rank; axis++) {
+            u->at[i].shape[axis]--;
+            damage_check_refused(u, u->at[i].name);
+            damage_restore(u, i);
+        }
+    }
+    print_message("%zu tensors\n", u->set.count);
+}
+
+void damage_check_finite(struct damage_fixture *u)
+{
+    int changed = 0;
+    for (size_t i = 0; i < u->set.count; i++) {
+        const size_t size = tensor_type_bytes(u->at[i].type), middle = u->at[i].bytes / size / 2;
+        static const float NOT_FINITE[] = { NAN, INFINITY };
+        if (u->at[i].type != TENSOR_F16 && u->at[i].type != TENSOR_F32) continue;
+        for (int k = 0; k < 2; k++) {
+            void *data = damage_own(u, i);
+            if (u->at[i].type == TENSOR_F16)
+                ((uint16_t *)data)[middle] = k ? 0x7c00 : 0x7e00;
+            else
+                ((float *)data)[middle] = NOT_FINITE[k];
+            damage_check_refused(u, u->at[i].name);
+            damage_restore(u, i);
+            changed++;
+        }
+    }
+    print_message("%d tensors with a value that is not finite were refused\n", changed);
+    CHECK(changed >= 6);
+}
+
+static uint16_t huge(uint64_t i)
+{
+    return i % 2 ? 0x7bff : 0xfbff; // ±65504
+}
+static uint16_t negative(uint64_t i)
+{
+    (void)i;
+    return 0xbc00;
+}
+static uint16_t noise(uint64_t i)
+{
+    return rng_mix(i) & 0xbfff; // finite
+}
+
+void damage_check_halves(struct damage_fixture *u, const char *tensor)
+{
+    static uint16_t (*const KINDS[])(uint64_t) = { huge, negative, noise };
+    const size_t i = damage_index(u, tensor);
+    for (size_t kind = 0; kind < sizeof KINDS / sizeof *KINDS; kind++) {
+        uint16_t *data = damage_own(u, i);
+        for (size_t k = 0; k < u->at[i].bytes / sizeof *data; k++) data[k] = KINDS[kind](k);
+        CHECK(damage_loads(u));
+        damage_restore(u, i);
+    }
 }

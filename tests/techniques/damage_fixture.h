@@ -30,3 +30,14 @@ void *damage_own(struct damage_fixture *u, size_t tensor);
 void damage_restore(struct damage_fixture *u, size_t tensor);
 // A bake that is accepted renders a frame, too. A refusal is FAIL_FORMAT with a message.
 bool damage_loads(struct damage_fixture *u);
+// It is refused with one line that has this text.
+void damage_check_refused(struct damage_fixture *u, const char *message);
+
+// Instead of fixture_init: a closed room with a light and an emissive block.
+void damage_open_room(struct damage_fixture *u, struct gpu *gpu, const char *text);
+// Each tensor that is missing, or smaller along an axis, is refused by name.
+void damage_check_tensors(struct damage_fixture *u);
+// Each tensor of floats of which one element is not finite is refused by name.
+void damage_check_finite(struct damage_fixture *u);
+// A tensor of halves draws with large, negative and random values.
+void damage_check_halves(struct damage_fixture *u, const char *tensor);
