@@ -17,6 +17,14 @@ void fixture_init(struct frame_fixture *s, struct gpu *gpu)
     fixture_look(s, vec3_of(0, 0, 0), vec3_of(0, 0, -1));
 }
 
+void fixture_init_furnace(struct frame_fixture *s, struct gpu *gpu, float albedo, float emission)
+{
+    fixture_init(s, gpu);
+    fixture_box(s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true,
+                fixture_emissive(s, albedo, emission));
+    fixture_look(s, vec3_of(-1.7f, 2.6f, 1.7f), vec3_of(1, 0.5f, -1));
+}
+
 void fixture_finish(struct frame_fixture *s)
 {
     frame_destroy(s->frame);
@@ -27,6 +35,11 @@ void fixture_finish(struct frame_fixture *s)
 void fixture_open(struct frame_fixture *s)
 {
     assert_true(pose_init(&s->pose, s->scene, s->scene->animation_count ? 0 : -1, 0));
+    fixture_open_frame(s);
+}
+
+void fixture_open_frame(struct frame_fixture *s)
+{
     s->frame = frame_create(test_host(), s->gpu, &s->options);
     assert_non_null(s->frame);
     assert_true(frame_set_scene(s->frame, s->scene));
@@ -68,6 +81,17 @@ int fixture_matte(struct frame_fixture *s, vec3s albedo)
     m.metallic = 0;
     m.roughness = 1;
     m.specular = 0;
+    return fixture_material(s, &m);
+}
+
+int fixture_emissive(struct frame_fixture *s, float albedo, float emission)
+{
+    struct material m = material_default();
+    m.base_color = vec4_of(vec3_of(albedo, albedo, albedo), 1);
+    m.emissive = vec3_of(emission, emission, emission);
+    m.metallic = 0;
+    m.roughness = 1;
+    m.specular = 0; // a furnace's reflectance is the albedo
     return fixture_material(s, &m);
 }
 

@@ -26,14 +26,19 @@ struct frame_fixture {
 };
 
 void fixture_init(struct frame_fixture *s, struct gpu *gpu);
+// Also a closed room of 4 × 3 × 4 m, of one fixture_emissive, viewed from a corner.
+void fixture_init_furnace(struct frame_fixture *s, struct gpu *gpu, float albedo, float emission);
 void fixture_finish(struct frame_fixture *s);
 void fixture_open(struct frame_fixture *s);
+void fixture_open_frame(struct frame_fixture *s); // the frame alone: the pose is there
 void fixture_render(struct frame_fixture *s);
 void fixture_resize(struct frame_fixture *s, uint32_t width, uint32_t height);
 
 // Lambertian plus a 4 % GGX lobe at roughness 1.
 int fixture_matte(struct frame_fixture *s, vec3s albedo);
 int fixture_material(struct frame_fixture *s, const struct material *material);
+// Grey, Lambertian alone, and emissive.
+int fixture_emissive(struct frame_fixture *s, float albedo, float emission);
 // Corners counter-clockwise from the front; uv (0,1) (1,1) (1,0) (0,0). Returns the instance.
 int fixture_quad(struct frame_fixture *s, vec3s a, vec3s b, vec3s c, vec3s d, int material);
 // Two walls along the y axis, z = 0 and x = 0, viewed from between them; opens the scene.

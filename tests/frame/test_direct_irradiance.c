@@ -277,9 +277,7 @@ TEST_GPU(a_programs_gbuffer_gives_the_same_irradiance)
     for (int l = FRAME_DEPTH; l <= FRAME_ALBEDO; l++)
         gbuffer.layers[l] = frame_layer_image(s.frame, (enum frame_layer)l);
     struct frame *first = s.frame;
-    s.frame = frame_create(test_host(), gpu, &s.options);
-    assert_non_null(s.frame);
-    assert_true(frame_set_scene(s.frame, s.scene) && frame_resize(s.frame, SIZE, SIZE));
+    fixture_open_frame(&s);
     s.input.gbuffer = &gbuffer;
     for (int k = 0; k < 2; k++) {
         fixture_render(&s);

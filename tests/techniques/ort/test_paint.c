@@ -18,10 +18,7 @@ static void open_stack(struct gpu_side *g, struct ort_fixture *f, const struct o
     const struct gi_bakes bakes = { .of_term = { baked->tensors } };
     *g = (struct gpu_side){ 0 };
     s->gpu = gpu;
-    s->frame = frame_create(test_host(), gpu, &s->options);
-    s->input.pose = &s->pose;
-    CHECK(s->frame && frame_set_scene(s->frame, s->scene));
-    fixture_resize(s, s->width, s->height);
+    fixture_open_frame(s);
     CHECK(gi_spec_parse(&g->run.spec, test_host(), text));
     g->run.gi =
         gi_create_baked(test_host(), gpu, &g->run.spec, &bakes, &s->pose, s->width, s->height);

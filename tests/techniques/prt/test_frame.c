@@ -40,10 +40,7 @@ static void open_stack(struct gpu_side *g, struct prt_fixture *f, const struct p
     const struct gi_bakes bakes = { .of_term = { baked->tensors } };
     *g = (struct gpu_side){ 0 };
     s->gpu = gpu;
-    s->frame = frame_create(test_host(), gpu, &s->options);
-    s->input.pose = &s->pose;
-    CHECK(s->frame && frame_set_scene(s->frame, s->scene));
-    fixture_resize(s, s->width, s->height);
+    fixture_open_frame(s);
     snprintf(text, sizeof text, "prt:%s%s%s", f->options, more[0] ? "," : "", more);
     CHECK(gi_spec_parse(&g->spec, test_host(), text));
     g->technique = *g->spec.technique[0];

@@ -10,30 +10,11 @@
 
 #define SMALL "radiosity:texels=2048,rays=100,sources=16"
 
-static int emissive(struct frame_fixture *s, float albedo, float emission)
-{
-    struct material m = material_default();
-    m.base_color = vec4_of(vec3_of(albedo, albedo, albedo), 1);
-    m.emissive = vec3_of(emission, emission, emission);
-    m.metallic = 0;
-    m.roughness = 1;
-    m.specular = 0; // the furnace's reflectance is the albedo
-    return fixture_material(s, &m);
-}
-
-// A closed room, seen from a corner.
-static void room(struct frame_fixture *s, struct gpu *gpu, float albedo, float emission)
-{
-    fixture_init(s, gpu);
-    fixture_box(s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, emissive(s, albedo, emission));
-    fixture_look(s, vec3_of(-1.7f, 2.6f, 1.7f), vec3_of(1, 0.5f, -1));
-}
-
 // Below 0 it is sunk into the floor.
 static void add_block(struct frame_fixture *s, float bottom)
 {
     fixture_box(s, vec3_of(-0.4f, bottom, -0.6f), vec3_of(0.8f, bottom + 1.2f, 0.5f), false,
-                emissive(s, 0.5f, 0));
+                fixture_emissive(s, 0.5f, 0));
 }
 
 // ---- the bake
@@ -57,7 +38,7 @@ TEST_GPU(rows_of_a_closed_room_sum_to_one)
 {
     struct frame_fixture s;
     struct baked_fixture run;
-    room(&s, gpu, 0.5f, 10);
+    fixture_init_furnace(&s, gpu, 0.5f, 10);
     add_block(&s, 0.4f);
     baked_fixture_open(&run, &s, SMALL);
     check_rows(run.baked.bakes.of_term[0]);
@@ -72,7 +53,7 @@ TEST_GPU(furnace_has_the_emission_over_one_minus_the_albedo)
     for (int i = 0; i < 2; i++) {
         struct frame_fixture s;
         struct baked_fixture run;
-        room(&s, gpu, ALBEDO[i], 10);
+        fixture_init_furnace(&s, gpu, ALBEDO[i], 10);
         baked_fixture_open(&run, &s, "radiosity:texels=2048");
         fixture_render(&s);
         const double expected = GLM_PI * 10 / (1 - (double)ALBEDO[i]);
@@ -105,7 +86,7 @@ TEST_GPU(a_light_that_is_switched_off_leaves_nothing_in_the_next_frame)
 {
     struct frame_fixture s;
     struct baked_fixture run;
-    room(&s, gpu, 0.7f, 0);
+    fixture_init_furnace(&s, gpu, 0.7f, 0);
     struct world_light *light = fixture_add_point(&s, vec3_of(0, 2, 0), vec3_of(100, 100, 100));
     baked_fixture_open(&run, &s, SMALL);
     const double lit = mean_irradiance(&s), again = mean_irradiance(&s);
@@ -129,7 +110,7 @@ TEST_GPU(a_still_scene_costs_the_lookup_alone)
 {
     struct frame_fixture s;
     struct baked_fixture run;
-    room(&s, gpu, 0.7f, 10);
+    fixture_init_furnace(&s, gpu, 0.7f, 10);
     baked_fixture_open(&run, &s, SMALL);
     fixture_render(&s);
     const uint64_t still = passes_of_frame(&s);
@@ -148,7 +129,7 @@ TEST_GPU(nothing_is_black_beside_a_sunk_block)
 {
     struct frame_fixture s;
     struct baked_fixture run;
-    room(&s, gpu, 0.5f, 10);
+    fixture_init_furnace(&s, gpu, 0.5f, 10);
     add_block(&s, -0.3f);
     baked_fixture_open(&run, &s, SMALL);
     fixture_render(&s);
@@ -171,8 +152,8 @@ TEST_GPU(nothing_is_black_under_overlapping_solids)
 {
     struct frame_fixture s;
     struct baked_fixture run;
-    room(&s, gpu, 0.5f, 10);
-    const int stone = emissive(&s, 0.5f, 0);
+    fixture_init_furnace(&s, gpu, 0.5f, 10);
+    const int stone = fixture_emissive(&s, 0.5f, 0);
     fixture_box(&s, vec3_of(-2.1f, 0.8f, -1), vec3_of(2.1f, 1.1f, 0), false, stone);
     fixture_box(&s, vec3_of(-2.1f, 0.94f, -0.2f), vec3_of(2.1f, 1.16f, 0.1f), false, stone);
     fixture_box(&s, vec3_of(-2.1f, -0.1f, -0.9f), vec3_of(2.1f, 0.85f, -0.1f), false, stone);
@@ -202,7 +183,7 @@ TEST_GPU(metal_reflects_uniform_light_whole)
     for (int i = 0; i < 3; i++) {
         struct frame_fixture s;
         struct baked_fixture run;
-        room(&s, gpu, 0, 10);
+        fixture_init_furnace(&s, gpu, 0, 10);
         fixture_box(&s, vec3_of(-0.4f, 0.4f, -0.6f), vec3_of(0.8f, 1.6f, 0.5f), false,
                     metal(&s, ROUGHNESS[i]));
         baked_fixture_open(&run, &s, "radiosity:texels=2048");
@@ -225,7 +206,7 @@ static double seen_from(struct gpu *gpu, float eye, const char *text)
     fixture_init(&s, gpu);
     fixture_floor(&s, 1, metal(&s, 0.3f));
     fixture_quad(&s, vec3_of(2, 0, -3), vec3_of(2, 0, 3), vec3_of(2, 3, 3), vec3_of(2, 3, -3),
-                 emissive(&s, 0, 10));
+                 fixture_emissive(&s, 0, 10));
     fixture_look(&s, vec3_of(eye, 0.8f, 0), vec3_of(0, 0, 0));
     baked_fixture_open(&run, &s, text);
     fixture_render(&s);
