@@ -22,9 +22,14 @@ static void lower(const struct technique *technique, void *options)
     }
 }
 
-void gi_fixture_parse(struct gi_spec *spec, const char *text)
+static void parse(struct gi_spec *spec, const char *text)
 {
     if (!gi_spec_parse(spec, test_host(), text)) fail_msg("%s: %s", text, test_last_message());
+}
+
+void gi_fixture_parse(struct gi_spec *spec, const char *text)
+{
+    parse(spec, text);
     for (int i = 0; i < spec->count; i++)
         if (spec->technique[i]->bake_version != 0) lower(spec->technique[i], spec->options[i]);
 }
@@ -57,4 +62,27 @@ struct gi *gi_fixture_create(struct gpu *gpu, const struct gi_spec *spec,
         if (spec->technique[i]->bake_version != 0)
             bakes.of_term[i] = bake_tensors(bake_of(spec->technique[i], spec->options[i], pose));
     return gi_create_baked(test_host(), gpu, spec, &bakes, pose, width, height);
+}
+
+static struct gi *light(struct frame_fixture *s, struct gi_spec *spec, const char *text)
+{
+    struct gi *gi = gi_fixture_create(s->gpu, spec, &s->pose, s->width, s->height);
+    if (!gi) fail_msg("%s: %s", text, test_last_message());
+    gi_spec_finish(spec);
+    s->indirect = gi_hook(gi);
+    return gi;
+}
+
+struct gi *gi_fixture_light(struct frame_fixture *s, const char *text)
+{
+    struct gi_spec spec;
+    parse(&spec, text);
+    return light(s, &spec, text);
+}
+
+struct gi *gi_fixture_light_small(struct frame_fixture *s, const char *text)
+{
+    struct gi_spec spec;
+    gi_fixture_parse(&spec, text);
+    return light(s, &spec, text);
 }

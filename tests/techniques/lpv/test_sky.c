@@ -1,6 +1,6 @@
 // Light of the sky, which enters through the border of the grid.
 #include "frame/frame_fixture.h"
-#include "techniques/gi_baked.h"
+#include "techniques/gi_fixture.h"
 #include "techniques/lpv/lpv_fixture.h"
 
 #include <math.h>
@@ -108,16 +108,12 @@ TEST_GPU(lpv_sky_adds_to_other_light)
 static void floor_under_sky(struct gpu *gpu, const char *text, double *least, double *most)
 {
     struct frame_fixture s;
-    struct gi_spec spec;
     fixture_init(&s, gpu);
     fixture_floor(&s, 3, fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
     fixture_look(&s, vec3_of(0, 2, 0.1f), vec3_of(0, 0, 0));
     s.input.environment.sky = SKY;
     fixture_open(&s);
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    struct gi *gi = gi_create(test_host(), gpu, &spec, &s.pose, s.width, s.height);
-    assert_non_null(gi);
-    s.indirect = gi_hook(gi);
+    struct gi *gi = gi_fixture_light(&s, text);
     fixture_render(&s);
     float *e = fixture_read(&s, READ_IRRADIANCE), *depth = fixture_read(&s, READ_DEPTH);
     *least = HUGE_VAL;
@@ -131,7 +127,6 @@ static void floor_under_sky(struct gpu *gpu, const char *text, double *least, do
     free(e);
     free(depth);
     gi_destroy(gi);
-    gi_spec_finish(&spec);
     fixture_finish(&s);
 }
 

@@ -1,7 +1,6 @@
 // Delta radiance transfer in whole frames.
 #include "frame/frame_fixture.h"
 #include "techniques/gi_fixture.h"
-#include "techniques/gi_spec.h"
 
 #include "core/sh.h"
 #include "techniques/gi_state.h"
@@ -36,7 +35,6 @@ struct room {
 // finishes the fixture.
 static struct gi *render_room(struct frame_fixture *s, struct gpu *gpu, struct room room)
 {
-    struct gi_spec spec;
     char text[TEXT];
     fixture_init(s, gpu);
     const int material = fixture_matte(s, vec3_of(0.6f, 0.5f, 0.4f));
@@ -48,11 +46,7 @@ static struct gi *render_room(struct frame_fixture *s, struct gpu *gpu, struct r
                       glms_vec3_scale(vec3_of(100, 60, 20), room.power));
     snprintf(text, sizeof text, "%s" DICTIONARY "%s", room.technique, room.options);
     fixture_open(s);
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    struct gi *gi = gi_fixture_create(s->gpu, &spec, &s->pose, SIZE, SIZE);
-    assert_non_null(gi);
-    s->indirect = gi_hook(gi);
-    gi_spec_finish(&spec);
+    struct gi *gi = gi_fixture_light(s, text);
     for (int i = 0; i < room.frames; i++) fixture_render(s);
     return gi;
 }
@@ -134,7 +128,6 @@ TEST_GPU(drt_feedback_converges)
 static float *irradiance_in_hollow(struct gpu *gpu, const char *text, bool thin)
 {
     struct frame_fixture s;
-    struct gi_spec spec;
     fixture_init(&s, gpu);
     const int material = fixture_matte(&s, vec3_of(0.6f, 0.5f, 0.4f));
     fixture_box(&s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, material);
@@ -146,11 +139,7 @@ static float *irradiance_in_hollow(struct gpu *gpu, const char *text, bool thin)
     fixture_look(&s, vec3_of(-0.5f, 1.9f, 0.5f), vec3_of(0.5f, 0.8f, -0.5f));
     fixture_add_point(&s, vec3_of(-1.5f, 2.7f, -1.2f), vec3_of(100, 60, 20));
     fixture_open(&s);
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    struct gi *gi = gi_fixture_create(s.gpu, &spec, &s.pose, SIZE, SIZE);
-    assert_non_null(gi);
-    s.indirect = gi_hook(gi);
-    gi_spec_finish(&spec);
+    struct gi *gi = gi_fixture_light(&s, text);
     fixture_render(&s);
     float *out = fixture_read(&s, READ_IRRADIANCE);
     gi_destroy(gi);
@@ -282,7 +271,6 @@ static void sheet_irradiance(struct gpu *gpu, bool from_back, float out[FLOATS])
     const vec3s low = vec3_of(x, 0.5f, -0.8f), high = vec3_of(x, 1.7f, 0.8f);
     const vec3s across = vec3_of(x, low.y, high.z), up = vec3_of(x, high.y, low.z);
     struct frame_fixture s;
-    struct gi_spec spec;
     struct material m = material_default();
     fixture_init(&s, gpu);
     fixture_box(&s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true,
@@ -295,12 +283,8 @@ static void sheet_irradiance(struct gpu *gpu, bool from_back, float out[FLOATS])
     fixture_look(&s, vec3_of(-1.5f, 1.5f, 0.5f), vec3_of(x, 1.1f, 0));
     fixture_add_point(&s, vec3_of(-1.2f, 2.2f, -1), vec3_of(100, 60, 20));
     fixture_open(&s);
-    CHECK(gi_spec_parse(&spec, test_host(), "drt" HOLLOW));
-    struct gi *gi = gi_fixture_create(s.gpu, &spec, &s.pose, SIZE, SIZE);
-    assert_non_null(gi);
-    s.indirect = gi_hook(gi);
+    struct gi *gi = gi_fixture_light(&s, "drt" HOLLOW);
     s.input.want_id_layer = true;
-    gi_spec_finish(&spec);
     fixture_render(&s);
     float *e = fixture_read(&s, READ_IRRADIANCE), *id = fixture_read(&s, READ_ID);
     for (int i = 0; i < FLOATS; i++) out[i] = (int)id[2 * (i / 3)] == sheet ? e[i] : 0.0f;

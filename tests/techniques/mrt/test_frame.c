@@ -1,7 +1,6 @@
 // Modular radiance transfer in whole frames.
 #include "frame/frame_fixture.h"
 #include "techniques/gi_fixture.h"
-#include "techniques/gi_spec.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -31,14 +30,9 @@ static void room_begin(struct room *room, struct gpu *gpu, const struct material
 static void room_open(struct room *room, const char *options)
 {
     char text[TEXT];
-    struct gi_spec spec;
     snprintf(text, sizeof text, DICTIONARY ",%s", options);
     fixture_open(&room->s);
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    room->gi = gi_fixture_create(room->s.gpu, &spec, &room->s.pose, SIZE, SIZE);
-    assert_non_null(room->gi);
-    room->s.indirect = gi_hook(room->gi);
-    gi_spec_finish(&spec);
+    room->gi = gi_fixture_light(&room->s, text);
 }
 
 // Irradiance after some frames; ends the room.

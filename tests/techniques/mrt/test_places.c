@@ -1,7 +1,6 @@
 // Modular radiance transfer: the block, or none, that a surface takes its light from.
 #include "frame/frame_fixture.h"
 #include "techniques/gi_fixture.h"
-#include "techniques/gi_spec.h"
 
 #include <stdio.h>
 
@@ -24,13 +23,8 @@ static void write_map(const char *blocks)
 // Irradiance of the pixel in the middle after one frame; ends the fixture.
 static vec3s middle_of(struct frame_fixture *s)
 {
-    struct gi_spec spec;
     fixture_open(s);
-    CHECK(gi_spec_parse(&spec, test_host(), DICTIONARY));
-    struct gi *gi = gi_fixture_create(s->gpu, &spec, &s->pose, SIZE, SIZE);
-    assert_non_null(gi);
-    s->indirect = gi_hook(gi);
-    gi_spec_finish(&spec);
+    struct gi *gi = gi_fixture_light(s, DICTIONARY);
     fixture_render(s);
     const vec3s out = fixture_pixel(s, READ_IRRADIANCE, SIZE / 2, SIZE / 2);
     gi_destroy(gi);

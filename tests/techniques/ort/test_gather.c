@@ -14,28 +14,9 @@
 
 #define SMALL "ort:texels=1024,offsets=100"
 
-static int emissive(struct frame_fixture *s, float albedo, float emission)
-{
-    struct material m = material_default();
-    m.base_color = vec4_of(vec3_of(albedo, albedo, albedo), 1);
-    m.emissive = vec3_of(emission, emission, emission);
-    m.metallic = 0;
-    m.roughness = 1;
-    m.specular = 0; // the furnace's reflectance is the albedo
-    return fixture_material(s, &m);
-}
-
-// A closed room, seen from a corner.
-static void room(struct frame_fixture *s, struct gpu *gpu, float albedo, float emission)
-{
-    fixture_init(s, gpu);
-    fixture_box(s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, emissive(s, albedo, emission));
-    fixture_look(s, vec3_of(-1.7f, 2.6f, 1.7f), vec3_of(1, 0.5f, -1));
-}
-
 static void lit_room(struct frame_fixture *s, struct gpu *gpu)
 {
-    room(s, gpu, 0.7f, 0);
+    fixture_init_furnace(s, gpu, 0.7f, 0);
     fixture_box(s, vec3_of(-0.4f, 0.4f, -0.6f), vec3_of(0.8f, 1.6f, 0.5f), false,
                 fixture_matte(s, vec3_of(0.8f, 0.4f, 0.2f)));
     fixture_add_point(s, vec3_of(1, 2.5f, 1), vec3_of(100, 50, 20));
@@ -54,7 +35,7 @@ TEST_GPU(furnace_has_the_emission_over_one_minus_the_albedo)
     for (int i = 0; i < 2; i++) {
         struct frame_fixture s;
         struct baked_fixture run;
-        room(&s, gpu, ALBEDO[i], 10);
+        fixture_init_furnace(&s, gpu, ALBEDO[i], 10);
         baked_fixture_open(&run, &s, SMALL);
         fixture_render(&s);
         const double expected = GLM_PI * 10 / (1 - (double)ALBEDO[i]);
@@ -104,16 +85,12 @@ TEST_GPU(twice_the_light_is_twice_the_irradiance_and_none_is_none)
 static float *image_of(struct gpu *gpu, const char *text)
 {
     struct frame_fixture s;
-    struct gi_spec spec;
     lit_room(&s, gpu);
     fixture_open(&s);
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    struct gi *gi = gi_fixture_create(gpu, &spec, &s.pose, s.width, s.height); // keeps the bake
-    s.indirect = gi_hook(gi);
+    struct gi *gi = gi_fixture_light(&s, text); // keeps the bake
     fixture_render(&s);
     float *e = fixture_read(&s, READ_IRRADIANCE);
     gi_destroy(gi);
-    gi_spec_finish(&spec);
     fixture_finish(&s);
     return e;
 }
@@ -164,7 +141,7 @@ TEST_GPU(bytes_differ_from_halves_by_their_rounding)
     for (int bytes = 0; bytes < 2; bytes++) {
         struct frame_fixture s;
         struct baked_fixture run;
-        room(&s, gpu, 0.5f, 10);
+        fixture_init_furnace(&s, gpu, 0.5f, 10);
         baked_fixture_open(&run, &s, bytes ? SMALL ",precision=byte" : SMALL);
         fixture_render(&s);
         image[bytes] = fixture_read(&s, READ_IRRADIANCE);

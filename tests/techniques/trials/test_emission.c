@@ -13,7 +13,6 @@ static const double PI = 3.14159265358979323846;
 
 struct room {
     struct frame_fixture frame_fixture;
-    struct gi_spec spec;
     struct gi *gi;
     int emitter; // instance
 };
@@ -30,17 +29,12 @@ static int emissive_material(struct frame_fixture *s, vec3s radiance)
 static void room_open(struct room *r, const char *gi)
 {
     fixture_open(&r->frame_fixture);
-    gi_fixture_parse(&r->spec, gi);
-    r->gi = gi_fixture_create(r->frame_fixture.gpu, &r->spec, &r->frame_fixture.pose,
-                              r->frame_fixture.width, r->frame_fixture.height);
-    assert_non_null(r->gi);
-    r->frame_fixture.indirect = gi_hook(r->gi);
+    r->gi = gi_fixture_light_small(&r->frame_fixture, gi);
 }
 
 static void room_finish(struct room *r)
 {
     gi_destroy(r->gi);
-    gi_spec_finish(&r->spec);
     fixture_finish(&r->frame_fixture);
 }
 

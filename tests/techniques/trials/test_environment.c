@@ -58,18 +58,13 @@ struct image_of {
 
 static struct image_of render(struct frame_fixture *s, const char *text)
 {
-    struct gi_spec spec;
     struct image_of image = { .pixels = (size_t)s->width * s->height };
     fixture_open(s);
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    struct gi *gi = gi_fixture_create(s->gpu, &spec, &s->pose, s->width, s->height);
-    assert_non_null(gi);
-    s->indirect = gi_hook(gi);
+    struct gi *gi = gi_fixture_light(s, text);
     fixture_render(s);
     image.irradiance = fixture_read(s, READ_IRRADIANCE);
     image.depth = fixture_read(s, READ_DEPTH);
     gi_destroy(gi);
-    gi_spec_finish(&spec);
     return image;
 }
 
@@ -216,14 +211,10 @@ static struct image_of image_after(struct gpu *gpu, const char *text,
 {
     enum { BEFORE = 3, AFTER = 12 };
     struct frame_fixture s;
-    struct gi_spec spec;
     build(&s, gpu, BOX_ON_FLOOR, 0);
     struct image_of image = { .pixels = (size_t)s.width * s.height };
     fixture_open(&s);
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    struct gi *gi = gi_fixture_create(gpu, &spec, &s.pose, s.width, s.height);
-    assert_non_null(gi);
-    s.indirect = gi_hook(gi);
+    struct gi *gi = gi_fixture_light(&s, text);
     for (int i = 0; i < BEFORE + AFTER; i++) {
         s.input.environment = i < BEFORE ? *first : *second;
         fixture_render(&s);
@@ -231,7 +222,6 @@ static struct image_of image_after(struct gpu *gpu, const char *text,
     image.irradiance = fixture_read(&s, READ_IRRADIANCE);
     image.depth = fixture_read(&s, READ_DEPTH);
     gi_destroy(gi);
-    gi_spec_finish(&spec);
     fixture_finish(&s);
     return image;
 }

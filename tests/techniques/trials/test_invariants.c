@@ -25,15 +25,10 @@ static float *layer(struct gpu *gpu, const char *text, int lights, float strengt
     if (lights & 2) fixture_add_spot(&s, vec3_of(1, 2.5f, 1), vec3_of(-1, -2, -1), 0.3f, 0.7f, two);
     fixture_look(&s, vec3_of(-1.7f, 2, 1.8f), vec3_of(1, 0.5f, -1));
     fixture_open(&s);
-    struct gi_spec spec;
-    gi_fixture_parse(&spec, text);
-    struct gi *gi = gi_fixture_create(gpu, &spec, &s.pose, s.width, s.height);
-    assert_non_null(gi);
-    s.indirect = gi_hook(gi);
+    struct gi *gi = gi_fixture_light_small(&s, text);
     for (int i = 0; i < frames; i++) fixture_render(&s);
     float *out = fixture_read(&s, what);
     gi_destroy(gi);
-    gi_spec_finish(&spec);
     fixture_finish(&s);
     return out;
 }

@@ -28,16 +28,11 @@ static int metal(struct frame_fixture *s, float roughness)
 // A layer of one frame of a fixture that is not open.
 static float *layer_of(struct frame_fixture *s, const char *text, enum frame_readback layer)
 {
-    struct gi_spec spec;
     fixture_open(s);
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    struct gi *gi = gi_fixture_create(s->gpu, &spec, &s->pose, s->width, s->height);
-    assert_non_null(gi);
-    s->indirect = gi_hook(gi);
+    struct gi *gi = gi_fixture_light(s, text);
     fixture_render(s);
     float *values = fixture_read(s, layer);
     gi_destroy(gi);
-    gi_spec_finish(&spec);
     return values;
 }
 

@@ -25,17 +25,6 @@ static void room(struct frame_fixture *s, struct gpu *gpu)
     fixture_open(s);
 }
 
-static struct gi *create(struct frame_fixture *s, const char *text)
-{
-    struct gi_spec spec;
-    gi_fixture_parse(&spec, text);
-    struct gi *gi = gi_fixture_create(s->gpu, &spec, &s->pose, s->width, s->height);
-    if (!gi) fail_msg("%s: %s", text, test_last_message());
-    gi_spec_finish(&spec);
-    s->indirect = gi_hook(gi);
-    return gi;
-}
-
 static void finite_frames(struct frame_fixture *s, int count)
 {
     for (int i = 0; i < count; i++) fixture_render(s);
@@ -68,7 +57,7 @@ TEST_GPU(techniques_survive_frames_resizes_and_debug_views)
         char text[64];
         const bool probes = techniques[i]->capabilities & PUBLISHES_PROBES; // has a debug view
         print_spec(techniques[i], probes ? "probes=true" : "", text, sizeof text);
-        struct gi *gi = create(&s, text);
+        struct gi *gi = gi_fixture_light_small(&s, text);
         finite_frames(&s, 3);
         CHECK(gi_resize(gi, 45, 27));
         fixture_resize(&s, 45, 27);
@@ -127,7 +116,7 @@ static void run_with(struct frame_fixture *s, struct gi *running, const char *te
     gi_fixture_parse(&spec, text);
     const bool live = gi_set_options(running, &spec);
     gi_spec_finish(&spec);
-    struct gi *gi = live ? running : create(s, text);
+    struct gi *gi = live ? running : gi_fixture_light_small(s, text);
     s->indirect = gi_hook(gi);
     finite_frames(s, 1);
     if (!live) gi_destroy(gi);
@@ -140,7 +129,7 @@ TEST_GPU(techniques_run_with_every_option_at_both_ends)
     for (size_t i = 0; techniques[i]; i++) {
         char text[OPTION_VALUE_SIZE + 128];
         print_spec(techniques[i], "", text, sizeof text);
-        struct gi *running = create(&s, text);
+        struct gi *running = gi_fixture_light_small(&s, text);
         for (size_t k = 0; k < techniques[i]->options.count; k++)
             for (int end = 0; end < 2; end++) {
                 // The largest bakes take hours. Texts have no ends.
@@ -163,7 +152,7 @@ TEST_GPU(techniques_survive_empty_scenes)
     fixture_add_sun(&s, vec3_of(0, -1, 0), vec3_of(1, 1, 1));
     fixture_open(&s);
     for (size_t i = 0; techniques[i]; i++) {
-        struct gi *gi = create(&s, techniques[i]->name);
+        struct gi *gi = gi_fixture_light_small(&s, techniques[i]->name);
         finite_frames(&s, 2);
         gi_destroy(gi);
     }
@@ -190,7 +179,7 @@ TEST_GPU(techniques_estimate_their_memory)
         struct gi_spec spec;
         gi_fixture_parse(&spec, techniques[i]->name);
         const uint64_t estimate = gi_memory_estimate(&spec, s.width, s.height);
-        struct gi *gi = create(&s, techniques[i]->name);
+        struct gi *gi = gi_fixture_light_small(&s, techniques[i]->name);
         const uint64_t taken = memory_of(gpu, &spec);
         gi_spec_finish(&spec);
         print_message("%s: %llu bytes estimated, %llu allocated\n", techniques[i]->name,
@@ -209,7 +198,7 @@ TEST_GPU(gi_changes_live_options_in_place_and_refuses_others)
 {
     struct frame_fixture s;
     room(&s, gpu);
-    struct gi *gi = create(&s, "ambient");
+    struct gi *gi = gi_fixture_light_small(&s, "ambient");
     fixture_render(&s);
     const float before = fixture_pixel(&s, READ_IRRADIANCE, 16, 20).y;
     struct gi_spec spec;
@@ -225,7 +214,7 @@ TEST_GPU(gi_changes_live_options_in_place_and_refuses_others)
     gi_spec_finish(&spec);
     gi_destroy(gi);
 
-    gi = create(&s, "lpv:dim=16");
+    gi = gi_fixture_light_small(&s, "lpv:dim=16");
     CHECK(gi_spec_parse(&spec, test_host(), "lpv:dim=16,steps=2,gain=3"));
     CHECK(gi_set_options(gi, &spec));
     gi_spec_finish(&spec);
