@@ -1,9 +1,6 @@
-add_library(ag_test_kept_bake STATIC techniques/kept_bake.c)
-target_link_libraries(ag_test_kept_bake PUBLIC ag_test_framework ag_bake PRIVATE afterglow_flags)
-
-add_library(ag_test_techniques STATIC techniques/baked_fixture.c techniques/damage_fixture.c techniques/gi_baked.c
-  techniques/gi_fixture.c techniques/technique_rules.c)
-target_link_libraries(ag_test_techniques PUBLIC ag_test_frame_fixture ag_test_kept_bake ag_techniques PRIVATE afterglow_flags m)
+add_library(ag_test_techniques STATIC techniques/bake_bytes.c techniques/baked_fixture.c techniques/damage_fixture.c
+  techniques/gi_baked.c techniques/gi_fixture.c techniques/kept_bake.c techniques/technique_rules.c)
+target_link_libraries(ag_test_techniques PUBLIC ag_test_frame_fixture ag_techniques PRIVATE afterglow_flags m)
 
 # Tests of frames of a technique.
 function(ag_technique_tests)

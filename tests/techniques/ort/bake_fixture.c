@@ -2,6 +2,7 @@
 
 #include "core/half.h"
 #include "core/rng.h"
+#include "techniques/bake_bytes.h"
 #include "techniques/kept_bake.h"
 #include "techniques/ort/levels.h"
 
@@ -58,14 +59,9 @@ void ort_fixture_close(struct ort_fixture *f)
 
 struct bake *ort_fixture_plan(const struct ort_fixture *f, const char *more, uint64_t seed)
 {
-    struct gi_spec spec;
     char text[256];
     snprintf(text, sizeof text, "ort:%s%s%s", f->options, more[0] ? "," : "", more);
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    const struct technique_bake how = { .pose = &f->s.pose, .options = spec.options[0] };
-    struct bake *bake = gi_bake_create(test_host(), spec.technique[0], &how,
-                                       (struct bake_identity){ .program = "test", .seed = seed });
-    gi_spec_finish(&spec);
+    struct bake *bake = bake_of_gi(text, &f->s.pose, seed);
     assert_non_null(bake);
     return bake;
 }

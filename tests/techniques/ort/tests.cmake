@@ -1,7 +1,7 @@
 add_library(ag_test_ort STATIC techniques/ort/map_fixture.c)
 target_link_libraries(ag_test_ort PUBLIC ag_test_framework ag_techniques PRIVATE afterglow_flags m)
 add_library(ag_test_ort_bake STATIC techniques/ort/bake_fixture.c)
-target_link_libraries(ag_test_ort_bake PUBLIC ag_test_frame_fixture ag_test_kept_bake ag_techniques ag_trace PRIVATE afterglow_flags m)
+target_link_libraries(ag_test_ort_bake PUBLIC ag_test_frame_fixture ag_test_techniques ag_techniques ag_trace PRIVATE afterglow_flags m)
 ag_test(techniques/ort/bins USES techniques LIBRARIES ag_test_ort)
 foreach(name delaunay density offsets profile regions)
   ag_test(techniques/ort/${name} USES techniques)

@@ -2,6 +2,7 @@
 
 #include "core/half.h"
 #include "core/rng.h"
+#include "techniques/bake_bytes.h"
 #include "techniques/kept_bake.h"
 
 #include <math.h>
@@ -123,18 +124,13 @@ void prt_fixture_disk(struct prt_fixture *f, vec3s center, float radius, int mat
     fixture_instance(&f->s, mesh, NULL);
 }
 
-static void parse(const struct prt_fixture *f, const char *more, struct gi_spec *out)
-{
-    char text[256];
-    snprintf(text, sizeof text, "prt:%s%s%s", f->options, more[0] ? "," : "", more);
-    CHECK(gi_spec_parse(out, test_host(), text));
-}
-
 void prt_fixture_open(struct prt_fixture *f, const char *options)
 {
     struct gi_spec spec;
+    char text[256];
     f->options = options;
-    parse(f, "", &spec);
+    snprintf(text, sizeof text, "prt:%s", options);
+    CHECK(gi_spec_parse(&spec, test_host(), text));
     CHECK(pose_init(&f->s.pose, f->s.scene, -1, 0.0f));
     CHECK(scene_statics_init(&f->statics, test_host(), &f->s.pose));
     CHECK(prt_charts(&f->statics.pose, spec.options[0], test_host(), &f->charts));
@@ -152,12 +148,9 @@ void prt_fixture_close(struct prt_fixture *f)
 
 struct bake *prt_fixture_plan(const struct prt_fixture *f, const char *more, uint64_t seed)
 {
-    struct gi_spec spec;
-    parse(f, more, &spec);
-    const struct technique_bake how = { .pose = &f->s.pose, .options = spec.options[0] };
-    struct bake *bake = gi_bake_create(test_host(), spec.technique[0], &how,
-                                       (struct bake_identity){ .program = "test", .seed = seed });
-    gi_spec_finish(&spec);
+    char text[256];
+    snprintf(text, sizeof text, "prt:%s%s%s", f->options, more[0] ? "," : "", more);
+    struct bake *bake = bake_of_gi(text, &f->s.pose, seed);
     assert_non_null(bake);
     return bake;
 }

@@ -1,5 +1,6 @@
 // Transfer at vertices: which vertices are receivers, closed forms of their transfer, and the light
 // of texels of the same scene.
+#include "techniques/bake_bytes.h"
 #include "techniques/prt/prt_fixture.h"
 
 #include <math.h>
@@ -139,16 +140,11 @@ TEST(hidden_vertices_show_the_nearest_along_edges)
 TEST(glossy_transfer_at_vertices_is_refused)
 {
     struct prt_fixture f;
-    struct gi_spec spec;
     prt_fixture_init(&f);
     add_unshared_quad(&f, false);
     prt_fixture_open(&f, "rays=16");
-    CHECK(gi_spec_parse(&spec, test_host(), "prt:at=vertex,glossy=true"));
-    const struct technique_bake how = { .pose = &f.s.pose, .options = spec.options[0] };
-    CHECK(!gi_bake_create(test_host(), spec.technique[0], &how,
-                          (struct bake_identity){ .program = "test" }));
+    CHECK(!bake_of_gi("prt:at=vertex,glossy=true", &f.s.pose, 0));
     CHECK(strstr(test_last_message(), "prt: glossy=true needs the texels of a light map"));
-    gi_spec_finish(&spec);
     prt_fixture_close(&f);
 }
 

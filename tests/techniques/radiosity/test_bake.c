@@ -1,19 +1,13 @@
 // The bake of radiosity: its bytes on any number of threads and after interruptions, and what is
 // refused before anything runs.
 #include "framework/test.h"
-#include "techniques/gi_bake.h"
-#include "techniques/gi_spec.h"
+#include "techniques/bake_bytes.h"
 
-#include "core/file.h"
-
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#define SMALL "radiosity:texels=2048,rays=100,sources=16"
-// Takes a second or more.
+#define SMALL  "radiosity:texels=2048,rays=100,sources=16"
 #define LONGER "radiosity:texels=2048,rays=2000,sources=16"
 
 struct source {
@@ -34,95 +28,29 @@ static void close_source(struct source *s)
     scene_destroy(s->scene);
 }
 
-// NULL: it is refused.
-static struct bake *bake_of(const struct source *s, const char *text)
-{
-    struct gi_spec spec;
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    const struct technique_bake how = { .pose = &s->pose, .options = spec.options[0] };
-    struct bake *bake = gi_bake_create(test_host(), spec.technique[0], &how,
-                                       (struct bake_identity){ .program = "test" });
-    gi_spec_finish(&spec);
-    return bake;
-}
-
 // ---- bytes
 
-// Saves and destroys it. The caller frees the bytes.
-static struct file_bytes bytes_of(struct bake *bake)
+static struct bake_subject bake_of(const struct source *s, const char *gi)
 {
-    struct file_bytes bytes;
-    CHECK(bake_save(bake, test_path("bake.safetensors"), false));
-    CHECK(file_read(test_host(), test_path("bake.safetensors"), 0, &bytes));
-    bake_destroy(bake);
-    return bytes;
-}
-
-static struct file_bytes baked_on(const struct source *s, const char *text, int threads)
-{
-    struct bake *bake = bake_of(s, text);
-    CHECK(bake && bake_run(bake, &(struct bake_run_options){ .threads = threads }));
-    return bytes_of(bake);
-}
-
-static void check_same(struct file_bytes *a, struct file_bytes *b)
-{
-    CHECK(a->size == b->size && a->size > 100000);
-    CHECK(memcmp(a->data, b->data, a->size) == 0);
-    file_bytes_finish(test_host(), b);
+    return (struct bake_subject){ .gi = gi, .pose = &s->pose, .least_bytes = 100000 };
 }
 
 TEST(bake_has_the_same_bytes_on_1_2_and_4_threads)
 {
     struct source s;
     open_source(&s);
-    struct file_bytes one = baked_on(&s, SMALL, 1);
-    for (int threads = 2; threads <= 4; threads *= 2) {
-        struct file_bytes more = baked_on(&s, SMALL, threads);
-        check_same(&one, &more);
-    }
-    file_bytes_finish(test_host(), &one);
+    const struct bake_subject bake = bake_of(&s, SMALL);
+    bake_bytes_check_threads(&bake);
     close_source(&s);
-}
-
-// Cancels where this share is done.
-static bool stop_at(void *user, const struct bake_progress *progress)
-{
-    const double *share = user;
-    return progress->done < *share;
-}
-
-// Each run is that of another program, which has the checkpoint alone.
-static struct file_bytes baked_with_interruptions(const struct source *s, const char *text,
-                                                  int *interruptions)
-{
-    static double SHARES[] = { 0.1, 0.4, 0.7, 2.0 };
-    const char *checkpoint = test_path("radiosity.checkpoint");
-    struct bake *bake = NULL;
-    for (int i = 0; !bake; i++) {
-        bake = bake_of(s, text);
-        const struct bake_run_options how = {
-            .threads = 2, .checkpoint = checkpoint, .progress = stop_at, .user = &SHARES[i]
-        };
-        if (bake_run(bake, &how)) break;
-        CHECK(test_host()->failure == FAIL_CANCELLED && access(checkpoint, F_OK) == 0);
-        bake_destroy(bake);
-        bake = NULL;
-        ++*interruptions;
-    }
-    return bytes_of(bake);
 }
 
 TEST(bake_has_the_same_bytes_after_interruptions)
 {
+    static const double SHARES[] = { 0.1, 0.4, 0.7 };
     struct source s;
-    int interruptions = 0;
     open_source(&s);
-    struct file_bytes whole = baked_on(&s, LONGER, 0);
-    struct file_bytes resumed = baked_with_interruptions(&s, LONGER, &interruptions);
-    CHECK(interruptions >= 2);
-    check_same(&whole, &resumed);
-    file_bytes_finish(test_host(), &whole);
+    const struct bake_subject bake = bake_of(&s, LONGER);
+    bake_bytes_check_interruptions(&bake, SHARES);
     close_source(&s);
 }
 
@@ -139,7 +67,7 @@ static struct bake *bake_at(const struct source *s, double density)
 {
     char text[128];
     snprintf(text, sizeof text, "radiosity:density=%.9g,rays=16,sources=8", density);
-    return bake_of(s, text);
+    return bake_of_gi(text, &s->pose, 0);
 }
 
 // The density that the newest message advises.

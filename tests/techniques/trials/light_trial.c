@@ -2,8 +2,9 @@
 #include "techniques/trials/light_trial.h"
 
 #include "scene/scene_edit.h"
+#include "techniques/baked_fixture.h"
 #include "techniques/gi_fixture.h"
-#include "techniques/gi_spec.h"
+#include "techniques/trials/light_trial_scenes.h"
 #include "trace/trace.h"
 
 #include <math.h>
@@ -30,19 +31,14 @@ static struct trial_irradiance summary(const float *irradiance, const float *dep
 
 struct trial_irradiance trial_technique(struct frame_fixture *s, const char *text)
 {
-    struct gi_spec spec;
     fixture_open(s);
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    struct gi *gi = gi_fixture_create(s->gpu, &spec, &s->pose, s->width, s->height);
-    assert_non_null(gi);
-    s->indirect = gi_hook(gi);
+    struct gi *gi = gi_fixture_light(s, text);
     fixture_render(s);
     float *irradiance = fixture_read(s, READ_IRRADIANCE), *depth = fixture_read(s, READ_DEPTH);
     const struct trial_irradiance result = summary(irradiance, depth, s->width * s->height);
     free(irradiance);
     free(depth);
     gi_destroy(gi);
-    gi_spec_finish(&spec);
     return result;
 }
 
@@ -106,4 +102,21 @@ struct trial_irradiance trial_object_irradiance(struct frame_fixture *s, int fir
     free(e);
     free(id);
     return sum;
+}
+
+void trial_object_in_furnace(struct gpu *gpu, const char *gi)
+{
+    struct frame_fixture s;
+    struct baked_fixture run;
+    fixture_init_furnace(&s, gpu, 0.5f, 10);
+    fixture_look(&s, vec3_of(-1.7f, 2.6f, 1.7f), vec3_of(0.2f, 0.8f, -0.2f));
+    const int object =
+        trial_add_movable_box(&s, vec3_of(0.2f, 0.8f, -0.2f), 1.2f, fixture_emissive(&s, 0.5f, 0));
+    baked_fixture_open(&run, &s, gi);
+    const double expected = GLM_PI * 10 / (1 - 0.5);
+    const struct trial_irradiance e = trial_object_irradiance(&s, object);
+    print_message("object in a furnace: %.4f to %.4f of L/(1 - albedo)\n", e.least / expected,
+                  e.most / expected);
+    CHECK(e.least > 0.99 * expected && e.most < 1.01 * expected);
+    baked_fixture_close(&run, &s);
 }
