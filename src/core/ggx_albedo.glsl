@@ -21,7 +21,7 @@ vec2 ggx_albedo_at(float n_v, float roughness)
 {
     float root = sqrt(n_v);
     vec2 t = vec2(root * (1.0 + GGX_ALBEDO_K) / (root + GGX_ALBEDO_K),
-                  sqrt((roughness - GGX_MIN_ROUGHNESS) / (1.0 - GGX_MIN_ROUGHNESS))) *
+                  sqrt(max(roughness - GGX_MIN_ROUGHNESS, 0.0) / (1.0 - GGX_MIN_ROUGHNESS))) *
              float(GGX_ALBEDO_SIZE - 1);
     ivec2 low = min(ivec2(t), ivec2(GGX_ALBEDO_SIZE - 2));
     vec2 part = t - vec2(low);

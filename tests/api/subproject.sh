@@ -1,7 +1,6 @@
 #!/bin/sh
 # subproject.sh SOURCE CC CXX LAUNCHER: add_subdirectory offers the targets of an installed copy, adds no program, test or
-# install rule of the library's own, and builds a module
-# with shaders.
+# install rule of the library's own, and builds a module and a shader.
 set -eu
 export CMAKE_GENERATOR=Ninja
 source=$1 cc=$2 cxx=$3 launcher=$4
@@ -28,7 +27,7 @@ endif()
 END
 cmake -S "$work" -B "$work/build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_C_COMPILER_LAUNCHER="$launcher" \
     -DCMAKE_BUILD_TYPE=Debug >"$work/log"
-cmake --build "$work/build" --target ag_frame --parallel >"$work/log" || { cat "$work/log"; exit 1; }
-ls "$work/build/afterglow/shaders/" | grep -q 'direct.*\.spv'
+cmake --build "$work/build" --target ag_core afterglow/src/frame/generated/composite.comp.inc --parallel 2 >"$work/log" || { cat "$work/log"; exit 1; }
+[ -s "$work/build/afterglow/shaders/composite.comp.spv" ]
 cmake --install "$work/build" --prefix "$work/none" --component Unspecified >/dev/null 2>&1 || true
 [ -z "$(find "$work/none" -type f 2>/dev/null)" ]

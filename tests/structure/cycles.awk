@@ -6,11 +6,26 @@
     if (!(($1, $2) in labels)) {
         targets[$1] = targets[$1] " " $2
         labels[$1, $2] = $3
+        needed_by[$2]++
+        needed_by[$1] += 0
         nodes[$1]
         nodes[$2]
         pairs++
     } else {
         labels[$1, $2] = labels[$1, $2] ", " $3
+    }
+}
+
+# Removes the nodes that no other needs, and then those that only they needed: none is in a cycle.
+function remove_unneeded(    i, k, n, m, queue, next_nodes)
+{
+    for (i in nodes)
+        if (needed_by[i] == 0) queue[++n] = i
+    for (i = 1; i <= n; i++) {
+        m = split(targets[queue[i]], next_nodes, " ")
+        for (k = 1; k <= m; k++)
+            if (--needed_by[next_nodes[k]] == 0) queue[++n] = next_nodes[k]
+        delete nodes[queue[i]]
     }
 }
 
@@ -45,6 +60,7 @@ function print_component(node,    i, k, n, m, members, others, list)
 
 END {
     if (!pairs) { print "no dependencies were found"; exit 1 }
+    remove_unneeded()
     for (node in nodes) { # sorted by insertion, so that the output is the same on every system
         for (i = ++count; i > 1 && sorted[i - 1] > node; i--) sorted[i] = sorted[i - 1]
         sorted[i] = node

@@ -35,10 +35,16 @@ includes() {
 
 # "from to symbol": what object files need of each other. Objects of sources that are gone are left out.
 symbols() {
-    find "$build/src" "$build/app" -name '*.c.o' | sort | while read -r object; do
-        source=$(printf '%s\n' "${object#"$build"/}" | sed 's|CMakeFiles/[^/]*/||; s|\.o$||')
-        if [ -f "$source" ]; then nm -P -g "$object" | sed "s|^|$source |"; fi
-    done | awk '
+    (cd "$build" && find src app -name '*.c.o' | sort | xargs -r nm -A -P -g) | awk '
+        {
+            sub(/CMakeFiles\/[^\/]*\//, "", $1)
+            sub(/\.o:$/, "", $1)
+            if (!($1 in exists)) {
+                exists[$1] = (getline line < $1) > 0
+                close($1)
+            }
+            if (!exists[$1]) next
+        }
         $3 ~ /^[Uwv]$/ { from[++needs] = $1; needed[needs] = $2; next }
         $3 ~ /^[A-Z]$/ { owner[$2] = $1 }
         END { for (i = 1; i <= needs; i++) if (needed[i] in owner) print from[i], owner[needed[i]], needed[i] }'

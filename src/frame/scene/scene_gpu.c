@@ -8,6 +8,8 @@
 #include <stdlib.h>
 
 static const float BLEND_CUTOFF = 0.5f; // blended materials are rendered as masks
+// Interpolation of an alpha of 1, or of the cutoff, may be less by rounding.
+static const float ALPHA_SLACK = 1.0f / 4096.0f;
 
 static bool is_deformed(const struct scene *scene, int instance)
 {
@@ -149,7 +151,8 @@ struct scene_material scene_gpu_pack_material(const struct material *m)
     struct scene_material out = {
         .base_color = m->base_color,
         .emissive = m->emissive,
-        .alpha_cutoff = m->alpha_mode == ALPHA_BLEND ? BLEND_CUTOFF : m->alpha_cutoff,
+        .alpha_cutoff =
+            (m->alpha_mode == ALPHA_BLEND ? BLEND_CUTOFF : m->alpha_cutoff) - ALPHA_SLACK,
         .metallic = m->metallic,
         .roughness = m->roughness,
         .normal_scale = m->normal_scale,

@@ -63,7 +63,9 @@ vec2 intrusion_texel(intrusion i, vec3 to)
     vec3 point = intrusion_point(i, to), from_receiver = point - i.receiver;
     float z = dot(point, i.towards);
     if (!(z > 0.0 && z < i.distance)) return vec2(0.0, NOTHING);
-    bool front = dot(from_receiver, i.normal) > PLANE_SLACK * length(from_receiver);
+    // Within a texel of the receiver the rounding of its position counts, too.
+    float away = max(length(from_receiver), i.distance * (2.0 / float(push.map_size)));
+    bool front = dot(from_receiver, i.normal) > PLANE_SLACK * away;
     return vec2(z, front ? HIDES : BEHIND);
 }
 

@@ -190,7 +190,7 @@ float occlusion_within_radius(gtao_point p, gtao_side side, float jitter)
         if (dot(front, front) < 1.0 && is_above_plane(side, front) && direction.x > horizon.x)
             horizon = direction;
     }
-    return side.whole - cosine_up_to(horizon, side.n);
+    return horizon == side.tangent ? 0.0 : side.whole - cosine_up_to(horizon, side.n);
 }
 
 gtao_point point_of(screen_point at, screen_sphere sphere)

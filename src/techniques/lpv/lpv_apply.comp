@@ -123,7 +123,7 @@ void main()
         if (weight > 0.0)
             result =
                 surface_irradiance(surface, octahedral_decode(texelFetch(normal, pixel, 0).rg));
-        if (weight < 1.0)
+        if (weight < 0.999999) // a finer cascade's 1 leaves the coarser one out
             result = mix(push.coarsest != 0u ? vec3(0.0) : imageLoad(irradiance, pixel).rgb, result,
                          weight);
     }

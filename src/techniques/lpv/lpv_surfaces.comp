@@ -42,9 +42,13 @@ vec2 projected(vec3 v, int axis)
     return vec2(v[(axis + 1) % 3], v[(axis + 2) % 3]);
 }
 
+// Its sign flips exactly where a and b are swapped, so that triangles with a common edge leave no
+// gap.
 float cross_2d(vec2 a, vec2 b)
 {
-    return a.x * b.y - a.y * b.x;
+    precise float left = a.x * b.y, right = a.y * b.x;
+    precise float result = left - right;
+    return result;
 }
 
 vec2 map_uv(uint map, uint vertex)
@@ -127,7 +131,9 @@ void add_line(triangle t, ivec2 line)
          c = projected(t.corners[2], t.axis) - p;
     vec3 weight = vec3(cross_2d(b, c), cross_2d(c, a), cross_2d(a, b));
     if (!all(greaterThanEqual(weight, vec3(0.0))) && !all(lessThanEqual(weight, vec3(0.0)))) return;
-    weight /= weight.x + weight.y + weight.z;
+    float area = weight.x + weight.y + weight.z;
+    if (area == 0.0) return; // parallel to the line
+    weight /= area;
     vec3 position = t.corners * weight;
     if (!scene_triangle_solid(t.vertices, weight)) return; // alpha mask
     vec4 amount =

@@ -103,7 +103,7 @@ uint cut_off(ivec3 cell, int axis)
 // Share of the lines of a cell's light that do not continue.
 float occluded(uint from, uint free)
 {
-    return from == 0u ? 1.0 : 1.0 - float(bitCount(from & free)) / float(bitCount(from));
+    return from == 0u ? 1.0 : float(bitCount(from & ~free)) / float(bitCount(from));
 }
 
 void main()

@@ -20,7 +20,7 @@ layout(constant_id = MRT_CONSTANT_AFFINE) const bool AFFINE = false;
 
 const float MRT_BEYOND = 1.0; // edges: surfaces this far outside belong to the nearest block
 const float MRT_FAR = 8.0;
-const float MRT_CONVERGED = 1e-5;
+const float MRT_CONVERGED = 1e-5, MRT_CLOSE = 1e-3; // the latter for coordinates of few bits
 const int MRT_NEWTON_STEPS = 8;
 
 struct mrt_place {
@@ -56,15 +56,17 @@ bool warp_inverse(uint block, vec3 world, out vec3 cell)
     vec3 way = world - block_table[block].middle;
     for (int a = 0; a < 3; a++) cell[a] = dot(block_table[block].inverse[a], way);
     if (AFFINE) return true;
+    float last = MRT_FAR;
     for (int i = 0; i < MRT_NEWTON_STEPS; i++) {
         mat3 jacobian;
-        if (!(largest_of(cell) < MRT_FAR)) return false;
+        if (any(isnan(cell)) || !(largest_of(cell) < MRT_FAR)) return false;
         vec3 residual = world - warp_point(block, cell, jacobian);
         vec3 advance = inverse(jacobian) * residual;
         cell += advance;
-        if (largest_of(advance) < MRT_CONVERGED) return true;
+        last = largest_of(advance);
+        if (last < MRT_CONVERGED) return true;
     }
-    return false;
+    return last < MRT_CLOSE && !any(isnan(cell));
 }
 
 // False: the point is too far from the block.

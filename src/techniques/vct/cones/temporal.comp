@@ -214,7 +214,7 @@ void main()
             // A held rotation adds nothing to the mean.
             added = set.follow == VCT_FOLLOW_KNOWN && !moves ? 0.0 : 1.0;
         }
-        mean = (old.w * old.rgb + added * mean) / (old.w + added);
+        mean = added == 0.0 ? old.rgb : (old.w * old.rgb + added * mean) / (old.w + added);
         frames = min(old.w + added, set.most);
         stored = vec2(distance_m, packed_normal(n));
     }

@@ -45,7 +45,8 @@ void add_face(vct_lit_face r, inout directional s)
         return;
     }
     for (int axis = 0; axis < 3; axis++) {
-        vec4 part = slopes[axis] / steepest * face;
+        // Opaque faces stay so where a division is not exact.
+        vec4 part = slopes[axis] == steepest ? face : slopes[axis] / steepest * face;
         s.along[2 * axis] += r.normal[axis] < 0.0 ? part : vec4(0.0);
         s.along[2 * axis + 1] += r.normal[axis] < 0.0 ? vec4(0.0) : part;
     }
@@ -58,7 +59,8 @@ void limit_opacity(inout directional s)
         s.along[0] *= s.along[1].a / max(s.along[0].a, 1e-6);
         return;
     }
-    for (int i = 0; i < 6; i++) s.along[i] /= max(s.along[i].a, 1.0);
+    for (int i = 0; i < 6; i++)
+        if (s.along[i].a > 1.0) s.along[i] = vec4(s.along[i].rgb / s.along[i].a, 1.0);
 }
 
 void gather_in_block(ivec3 from, ivec3 at, ivec3 size, out directional s)

@@ -45,6 +45,7 @@ bool find_light(ivec2 pixel, out vec3 light)
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
     light_map_surface s = light_map_surface(position, n, frame_to_viewer(position));
     vec3 place = light_map_place_of(texelFetch(id, pixel, 0).rg, push, s);
+    light = vec3(0.0);
     if (place.z < 0.0) return false;
     light = level.gain * map_irradiance(place, s.normal);
     return true;
