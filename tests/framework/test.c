@@ -162,6 +162,17 @@ const char *test_path(const char *name)
     return path;
 }
 
+const char *test_bake_path(const char *key)
+{
+    static char paths[MAX_PATHS][512];
+    static int next;
+    const char *shared = getenv("AFTERGLOW_TEST_BAKES");
+    if (!shared || !shared[0]) return test_path(key);
+    char *path = paths[next++ % MAX_PATHS];
+    snprintf(path, sizeof paths[0], "%s/%s", shared, key);
+    return path;
+}
+
 const char *test_scene_path(const char *name)
 {
     static char paths[MAX_PATHS][512];

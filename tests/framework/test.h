@@ -68,6 +68,9 @@ const char *test_importer(void);
 
 // A path in a temporary folder that is removed at exit. Static storage, valid for 16 calls.
 const char *test_path(const char *name);
+// The path at which tests keep a bake of that key: in the folder of test_path, or in
+// AFTERGLOW_TEST_BAKES, which ./check makes and removes. Static storage, as of test_path.
+const char *test_bake_path(const char *key);
 // The path of a test scene ("sponza.glb", "odd/truncated.glb"). Reports the running test as skipped
 // where it is absent.
 const char *test_scene_path(const char *name);

@@ -3,6 +3,6 @@
 
 #include "bake/bake.h"
 
-// Runs a bake on all cores, or loads what an equal one wrote before: in this process, or in all
-// with the folder AFTERGLOW_TEST_BAKES, which ./check makes and removes. Not for tests of bakes.
+// Runs a bake on all cores, or loads what an equal one wrote before, see test_bake_path. Not for
+// tests of bakes.
 bool kept_bake_run(struct bake *bake);

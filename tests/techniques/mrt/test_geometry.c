@@ -155,7 +155,7 @@ TEST(the_wall_of_a_texel_is_its_own)
     int n = RESOLUTION * RESOLUTION;
     for (int i = 0; i < l.atlas.texels; i++) {
         const struct mrt_tile *tile = &l.atlas.tiles[i / n];
-        struct wall_point point;
+        struct wall_point point = { 0 };
         CHECK(wall_of_surface(&l.map.blocks[tile->block], l.geometry[i].position,
                               l.geometry[i].normal, 0.25f, &point));
         CHECK(point.face == tile->face);

@@ -74,16 +74,27 @@ static float bend_clearance(float side, vec3s at)
     return TUBE_RADIUS - sqrtf(out * out + at.y * at.y);
 }
 
-static float bisect_wall(float side, vec3s from, vec3s direction, float inside, float outside)
+static const float CLOSE = 1e-5f; // clearance of a point on the wall
+
+// The wall between two distances (x; y: their clearances), by regula falsi with the weights of the
+// Illinois method: three steps on average.
+static float find_wall(float side, vec3s from, vec3s direction, vec2s inside, vec2s outside)
 {
+    float middle = inside.x, last = 0.0f;
     for (int i = 0; i < 16; i++) {
-        float middle = 0.5f * (inside + outside);
-        if (bend_clearance(side, glms_vec3_muladds(direction, middle, from)) > 0.0f)
-            inside = middle;
-        else
-            outside = middle;
+        middle = inside.x + (outside.x - inside.x) * inside.y / (inside.y - outside.y);
+        const float clearance = bend_clearance(side, glms_vec3_muladds(direction, middle, from));
+        if (fabsf(clearance) < CLOSE) break;
+        if (clearance > 0.0f) {
+            inside = (vec2s){ { middle, clearance } };
+            if (last > 0.0f) outside.y *= 0.5f;
+        } else {
+            outside = (vec2s){ { middle, clearance } };
+            if (last < 0.0f) inside.y *= 0.5f;
+        }
+        last = clearance;
     }
-    return inside;
+    return middle;
 }
 
 // Sphere tracing, in which the clearance is a lower bound of the distance up to `limit`. Rays that
@@ -91,11 +102,13 @@ static float bisect_wall(float side, vec3s from, vec3s direction, float inside, 
 // The first step leaves the wall on which the ray may begin.
 static float bend_wall(float side, vec3s from, vec3s direction, float limit)
 {
-    static const float FIRST = 1e-3f, CLOSE = 1e-5f, SECANT = 0.05f;
+    static const float FIRST = 1e-3f, SECANT = 0.05f;
     float t = FIRST, before = 0.0f, clearance_before = 0.0f;
     for (int i = 0; i < 64; i++) {
         float clearance = bend_clearance(side, glms_vec3_muladds(direction, t, from));
-        if (clearance < -CLOSE && i > 0) return bisect_wall(side, from, direction, before, t);
+        if (clearance < -CLOSE && i > 0)
+            return find_wall(side, from, direction, (vec2s){ { before, clearance_before } },
+                             (vec2s){ { t, clearance } });
         if (t >= limit || clearance < CLOSE) break;
         float slope = (clearance_before - clearance) / (t - before);
         before = t;
