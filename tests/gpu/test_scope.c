@@ -51,7 +51,7 @@ TEST_GPU(timings_are_of_the_newest_finished_frame)
 {
     if (!gpu_limits(gpu)->timestamps) test_skip("no timestamps");
     for (int frame = 0; frame < 5; frame++) {
-        char name[16], expected[16];
+        char name[32], expected[32];
         struct gpu_timing t[4];
         snprintf(name, sizeof name, "frame.%d", frame);
         struct gpu_cmd *cmd = gpu_frame_begin(gpu);
