@@ -41,7 +41,8 @@ for name in minimal minimal-cxx minimal-static minimal-static-cxx; do
     "$work/$name" "$work/$name.png"
     cmp "$work/minimal.png" "$work/$name.png"
 done
-"$work/host" "$work/host.png"
+for name in host host-cxx; do "$work/$name" "$work/$name.png"; done
+cmp "$work/host.png" "$work/host-cxx.png"
 for name in minimal minimal-cxx; do readelf -d "$work/$name" | grep -q 'NEEDED.*libafterglow\.so'; done
 for name in minimal-static minimal-static-cxx; do ! readelf -d "$work/$name" | grep -q 'NEEDED.*libafterglow'; done
 

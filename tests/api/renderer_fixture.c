@@ -153,6 +153,13 @@ bool fixture_print_variant(int technique, const struct ag_technique_info *info, 
     return false;
 }
 
+bool fixture_is_software(const struct renderer_fixture *s)
+{
+    struct ag_device_info info;
+    ag_device_get_info(s->device, &info);
+    return info.software;
+}
+
 struct ag_bake *fixture_bake(struct renderer_fixture *s, const char *gi,
                              const struct ag_technique_info *info)
 {

@@ -49,6 +49,8 @@ void fixture_print_base(int technique, const struct ag_technique_info *info, cha
 // The base for index 0; with temporal=true for 1, if it has that option. false: no more.
 bool fixture_print_variant(int technique, const struct ag_technique_info *info, int index,
                            char *out);
+// Whether the fixture's device runs on the CPU.
+bool fixture_is_software(const struct renderer_fixture *s);
 // A complete bake of such a spec for the fixture's scene; NULL if the technique needs none.
 struct ag_bake *fixture_bake(struct renderer_fixture *s, const char *gi,
                              const struct ag_technique_info *info);

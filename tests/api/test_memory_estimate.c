@@ -22,20 +22,10 @@ static uint64_t taken_by(struct ag_renderer *renderer)
     return bytes;
 }
 
-static bool on_hardware(struct ag_context *context)
-{
-    struct ag_device_info info[8];
-    int count = 0;
-    bool hardware = false;
-    assert_int_equal(ag_device_list(context, info, 8, &count), AG_OK);
-    for (int i = 0; i < count && i < 8; i++) hardware |= !info[i].software;
-    return hardware;
-}
-
 static void check_bound(struct renderer_fixture *s, const char *what, const char *gi,
                         uint64_t taken, uint64_t estimate)
 {
-    const double most = on_hardware(s->context) ? 1.5 : 1.01;
+    const double most = fixture_is_software(s) ? 1.01 : 1.5;
     if (getenv("VIEWS_PRINT"))
         printf("%-28s %-18s %8.2f MB, estimate %8.2f\n", gi, what, (double)taken * 1e-6,
                (double)estimate * 1e-6);

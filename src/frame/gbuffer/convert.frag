@@ -62,10 +62,10 @@ vec4 converted_motion(vec4 value, vec2 uv, float depth)
     vec2 moved = value.xy * vec2(from.motion_scale_x, from.motion_scale_y) +
                  vec2(from.motion_offset_x, from.motion_offset_y);
     float change = mix(distance_change(uv, depth), value.z, from.motion_has_distance != 0u);
-    vec3 all = clamp(vec3(moved, change), -HALF_MAX, HALF_MAX);
+    vec3 result = clamp(vec3(moved, change), -HALF_MAX, HALF_MAX);
     // Rounding of a static surface: less than a 4000th of a pixel, or of the distance by 18 bits.
     vec3 least = vec3(2.5e-4 / vec2(frame.width, frame.height), 4e-6);
-    return vec4(mix(all, vec3(0.0), lessThan(abs(all), least)), 1.0);
+    return vec4(mix(result, vec3(0.0), lessThan(abs(result), least)), 1.0);
 }
 #endif
 

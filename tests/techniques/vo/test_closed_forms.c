@@ -81,7 +81,8 @@ TEST_GPU(vo_of_a_plane_is_exactly_half_without_the_normal)
         print_message("slant %2.0f: half to %.1e, an area to %.1e\n", (double)slants[i], most,
                       areas);
         CHECK(most < 1e-4);
-        CHECK(areas < 1e-3); // a quarter of a step of 8 bits: slopes of grazing planes are divided
+        // Hardware divides with an error: a quarter of a step of 8 bits on grazing planes.
+        CHECK(areas < (test_gpu_is_software(gpu) ? 1e-4 : 1e-3));
         fixture_finish(&s);
     }
 }
@@ -112,13 +113,7 @@ TEST_GPU(vo_of_a_plane_is_one_up_to_the_image_border)
 static void crease(struct frame_fixture *s, struct gpu *gpu)
 {
     begin(s, gpu);
-    const int matte = fixture_matte(s, vec3_of(0.5f, 0.5f, 0.5f));
-    fixture_quad(s, vec3_of(0, -20, 0), vec3_of(20, -20, 0), vec3_of(20, 20, 0), vec3_of(0, 20, 0),
-                 matte);
-    fixture_quad(s, vec3_of(0, -20, 20), vec3_of(0, -20, 0), vec3_of(0, 20, 0), vec3_of(0, 20, 20),
-                 matte);
-    fixture_look(s, vec3_of(3, 0, 3), vec3_of(0, 0, 0));
-    fixture_open(s);
+    fixture_open_two_walls(s);
 }
 
 // Volume of the sphere that is on the open side of a plane at the distance a (radii) from its
