@@ -1,5 +1,5 @@
-// Frames and transfers: recording, submission and waiting. Two frames are in flight; one timeline
-// semaphore counts all submissions. Deferred deletion refers to the serial number of recordings.
+// Frames and transfers: recording, submission and waiting. Two frames are in flight. Deferred
+// deletion refers to the serial number of recordings.
 #include "gpu/vk.h"
 
 #include <stdio.h>
@@ -7,12 +7,14 @@
 
 bool cmd_init(struct gpu *gpu, struct gpu_cmd *cmd, bool adopted)
 {
+    const bool frame = adopted || cmd < &gpu->cmds[CMD_TRANSFER];
     cmd->gpu = gpu;
+    cmd->queue = cmd == &gpu->cmds[CMD_UPLOAD] ? &gpu->upload_queue : &gpu->queue;
     cmd->adopted = adopted;
     char name[32];
     snprintf(name, sizeof name, "gpu.commands %d", (int)(cmd - gpu->cmds));
-    if (cmd != &gpu->cmds[CMD_TRANSFER] && !scopes_init(gpu, &cmd->scopes, name)) return false;
-    if (adopted) return true;
+    if (frame && !scopes_init(gpu, &cmd->scopes, name)) return false;
+    if (adopted || !cmd->queue->handle) return true;
     if (!VK_CALL(gpu, CreateCommandPool, gpu->device,
                  &(VkCommandPoolCreateInfo){ .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                              .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
@@ -42,9 +44,12 @@ void cmd_finish(struct gpu *gpu, struct gpu_cmd *cmd)
     *cmd = (struct gpu_cmd){ 0 };
 }
 
-// Resets the state of images that the caller may have used since the previous recording.
-static void reset_shared(struct gpu *gpu)
+// Resets the state of images that the caller may have used since the previous recording. The upload
+// queue uses none of them.
+static void reset_shared(struct gpu_cmd *cmd)
 {
+    struct gpu *gpu = cmd->gpu;
+    if (cmd->queue != &gpu->queue) return;
     for (uint32_t i = 0; i < gpu->images.count; i++) {
         struct image *image = gpu->images.objects[i];
         if (image && image->shared && !image->zero_pending)
@@ -56,6 +61,7 @@ static void reset_shared(struct gpu *gpu)
 static void unify_shared(struct gpu_cmd *cmd)
 {
     struct gpu *gpu = cmd->gpu;
+    if (cmd->queue != &gpu->queue) return;
     hazard_next_op(cmd);
     for (uint32_t i = 0; i < gpu->images.count; i++) {
         struct image *image = gpu->images.objects[i];
@@ -80,7 +86,7 @@ static void start(struct gpu_cmd *cmd)
     cmd->rendering = (struct rendering){ 0 };
     memset(cmd->bound, 0, sizeof cmd->bound);
     gpu->recording = cmd;
-    reset_shared(gpu);
+    reset_shared(cmd);
 }
 
 static bool start_own(struct gpu_cmd *cmd)
@@ -97,35 +103,14 @@ static bool start_own(struct gpu_cmd *cmd)
     return true;
 }
 
-static VkResult submit_locked(struct gpu *gpu, const VkSubmitInfo2 *info)
-{
-    if (gpu->adopt.lock_queue) gpu->adopt.lock_queue(gpu->adopt.user);
-    VkResult result = gpu->vk.QueueSubmit2(gpu->queue, 1, info, VK_NULL_HANDLE);
-    if (gpu->adopt.unlock_queue) gpu->adopt.unlock_queue(gpu->adopt.user);
-    return result;
-}
-
 static bool submit(struct gpu_cmd *cmd)
 {
     struct gpu *gpu = cmd->gpu;
     gpu->recording = NULL;
     cmd->state = CMD_FREE;
     if (!VK_CALL(gpu, EndCommandBuffer, cmd->buffer)) return false;
-    VkSubmitInfo2 info = {
-        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
-        .commandBufferInfoCount = 1,
-        .pCommandBufferInfos =
-            &(VkCommandBufferSubmitInfo){ .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
-                                          .commandBuffer = cmd->buffer },
-        .signalSemaphoreInfoCount = 1,
-        .pSignalSemaphoreInfos =
-            &(VkSemaphoreSubmitInfo){ .sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
-                                      .semaphore = gpu->timeline,
-                                      .value = gpu->submitted + 1,
-                                      .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT },
-    };
-    if (!vk_check(gpu, submit_locked(gpu, &info), "vkQueueSubmit2")) return false;
-    cmd->timeline = ++gpu->submitted;
+    if (!queue_submit(gpu, cmd->queue, cmd->buffer)) return false;
+    cmd->timeline = cmd->queue->submitted;
     cmd->state = CMD_PENDING;
     return true;
 }
@@ -141,7 +126,7 @@ struct gpu_cmd *gpu_frame_begin(struct gpu *gpu)
 {
     if (!may_record(gpu, "frame")) return NULL;
     struct gpu_cmd *cmd = &gpu->cmds[gpu->next_frame];
-    if (cmd->state == CMD_PENDING && !timeline_wait(gpu, cmd->timeline)) return NULL;
+    if (cmd->state == CMD_PENDING && !timeline_wait(gpu, cmd->queue, cmd->timeline)) return NULL;
     deferred_delete_collect(gpu);
     if (!start_own(cmd)) return NULL;
     gpu->next_frame = (gpu->next_frame + 1) % GPU_FRAMES_IN_FLIGHT;
@@ -180,9 +165,10 @@ struct gpu_cmd *gpu_frame_begin_adopted(struct gpu *gpu, void *vk_command_buffer
 {
     if (!may_record(gpu, "adopted frame")) return NULL;
     deferred_delete_collect(gpu);
-    for (int i = CMD_TRANSFER + 1; i < CMD_COUNT; i++) {
+    for (int i = CMD_ADOPTED; i < CMD_COUNT; i++) {
         struct gpu_cmd *cmd = &gpu->cmds[i];
         if (cmd->state != CMD_FREE) continue;
+        if (!queue_join_uploads(gpu)) return NULL; // the caller's submission cannot wait for it
         cmd->buffer = vk_command_buffer;
         start(cmd);
         ring_start(cmd);
@@ -214,24 +200,40 @@ void gpu_frame_adopted_done(struct gpu *gpu, struct gpu_cmd *cmd)
 
 bool gpu_wait(struct gpu *gpu)
 {
-    bool done = gpu->submitted == 0 || timeline_wait(gpu, gpu->submitted);
+    bool done = timeline_wait_all(gpu);
     deferred_delete_collect(gpu);
     return done && !gpu->lost;
 }
 
-struct gpu_cmd *transfer_begin(struct gpu *gpu)
+static struct gpu_cmd *transfer_start(struct gpu *gpu, bool upload_queue)
 {
-    struct gpu_cmd *cmd = &gpu->cmds[CMD_TRANSFER];
+    struct gpu_cmd *cmd = &gpu->cmds[upload_queue ? CMD_UPLOAD : CMD_TRANSFER];
     if (!may_record(gpu, "transfer") || !start_own(cmd)) return NULL;
     hazard_next_op(cmd);
     return cmd;
+}
+
+struct gpu_cmd *transfer_begin(struct gpu *gpu)
+{
+    return transfer_start(gpu, false);
+}
+
+struct gpu_cmd *transfer_begin_image(struct gpu *gpu, const struct image *image)
+{
+    return transfer_start(gpu, upload_queue_takes_image(gpu, image));
+}
+
+struct gpu_cmd *transfer_begin_buffer(struct gpu *gpu, const struct buffer *buffer)
+{
+    return transfer_start(gpu, upload_queue_takes_buffer(gpu, buffer));
 }
 
 bool transfer_end(struct gpu *gpu, struct gpu_cmd *cmd)
 {
     unify_shared(cmd);
     gpu->counters.transfers++;
-    bool done = submit(cmd) && timeline_wait(gpu, cmd->timeline);
+    gpu->counters.upload_queue_transfers += cmd->queue == &gpu->upload_queue;
+    bool done = submit(cmd) && timeline_wait(gpu, cmd->queue, cmd->timeline);
     deferred_delete_collect(gpu);
     return done;
 }

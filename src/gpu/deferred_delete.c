@@ -10,7 +10,7 @@ void deferred_delete_add(struct gpu *gpu, void (*free)(struct gpu *gpu, void *ob
             host_realloc(gpu->host, gpu->deferred, capacity, sizeof *bigger);
         if (!bigger) {
             // No memory for the queue: wait and free now; leak if a recording still uses it.
-            if (gpu->submitted) timeline_wait(gpu, gpu->submitted);
+            timeline_wait_all(gpu);
             deferred_delete_collect(gpu);
             if (timeline_completed_serial(gpu) >= gpu->serial) free(gpu, object);
             return;

@@ -401,7 +401,7 @@ bool device_create(struct gpu *gpu)
                  NULL, &device))
         return false;
     if (!device_use(gpu, device)) return false;
-    gpu->vk.GetDeviceQueue(gpu->device, gpu->queue_family, 0, &gpu->queue);
+    gpu->vk.GetDeviceQueue(gpu->device, gpu->queue_family, 0, &gpu->queue.handle);
     gpu->limits.geometry_shader = use.core.features.geometryShader;
     return true;
 }

@@ -34,7 +34,8 @@ static bool adopt_device(struct gpu *gpu, const struct gpu_adopt *adopt)
     gpu->adopt = *adopt;
     gpu->instance = adopt->instance;
     gpu->physical = adopt->physical_device;
-    gpu->queue = adopt->queue;
+    gpu->queue.handle = adopt->queue;
+    gpu->upload_queue.handle = adopt->upload_queue;
     gpu->queue_family = adopt->queue_family;
     if (adopt->vk_allocation_callbacks) {
         gpu->allocator_copy = *(const VkAllocationCallbacks *)adopt->vk_allocation_callbacks;
@@ -65,20 +66,13 @@ static bool open_device(struct gpu *gpu, const struct gpu_desc *desc)
 
 static bool create_shared(struct gpu *gpu, const struct gpu_desc *desc)
 {
-    VkSemaphoreTypeCreateInfo timeline = {
-        .sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
-        .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE,
-    };
-    if (!VK_CALL(gpu, CreateSemaphore, gpu->device,
-                 &(VkSemaphoreCreateInfo){ .sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
-                                           .pNext = &timeline },
-                 gpu->allocator, &gpu->timeline)) {
+    if (!timeline_create(gpu, &gpu->queue, "gpu.timeline")) return false;
+    if (gpu->upload_queue.handle &&
+        !timeline_create(gpu, &gpu->upload_queue, "gpu.upload_timeline"))
         return false;
-    }
-    VK_NAME(gpu, VK_OBJECT_TYPE_SEMAPHORE, gpu->timeline, "gpu.timeline");
     if (!pipeline_cache_create(gpu, desc->pipeline_cache, desc->pipeline_cache_bytes)) return false;
     for (int i = 0; i < CMD_COUNT; i++) {
-        if (!cmd_init(gpu, &gpu->cmds[i], i > CMD_TRANSFER)) return false;
+        if (!cmd_init(gpu, &gpu->cmds[i], i >= CMD_ADOPTED)) return false;
     }
     return gpu_sampler_get(
         gpu,
@@ -135,7 +129,8 @@ static void free_objects(struct gpu *gpu)
     free_table(gpu, &gpu->buffers, "buffer", offsetof(struct buffer, name), buffer_free);
     samplers_finish(gpu);
     for (int i = 0; i < 2; i++) buffer_free(gpu, gpu->staging[i]);
-    gpu->vk.DestroySemaphore(gpu->device, gpu->timeline, gpu->allocator);
+    gpu->vk.DestroySemaphore(gpu->device, gpu->queue.timeline, gpu->allocator);
+    gpu->vk.DestroySemaphore(gpu->device, gpu->upload_queue.timeline, gpu->allocator);
     gpu->vk.DestroyPipelineCache(gpu->device, gpu->pipeline_cache, gpu->allocator);
 }
 

@@ -69,8 +69,10 @@ struct gpu_memory_callbacks {
 // that gpu_required_features lists. The caller keeps it alive and idles it before gpu_destroy.
 struct gpu_adopt {
     void *instance, *physical_device, *device, *queue;
-    uint32_t queue_family;
-    void (*lock_queue)(void *user), (*unlock_queue)(void *user); // around submissions; or NULL
+    void *upload_queue;    // may be `queue`; NULL: uploads use that
+    uint32_t queue_family; // of both
+    // Around submissions to either queue; or NULL.
+    void (*lock_queue)(void *user), (*unlock_queue)(void *user);
     void *user;
     const void *enabled_features; // VkPhysicalDeviceFeatures2 of vkCreateDevice; NULL: not checked
     struct gpu_memory_callbacks memory;   // zero: the layer allocates
@@ -227,7 +229,9 @@ struct gpu_sampler_desc {
 // Equal descriptions share one sampler; gpu_destroy frees them.
 bool gpu_sampler_get(struct gpu *gpu, const struct gpu_sampler_desc *desc, gpu_sampler *out);
 
-// Blocking transfers for initialisation and for reading results; not for per-frame code.
+// Blocking transfers for initialisation and for reading results; not for per-frame code. They wait
+// for frames in flight; with gpu_adopt.upload_queue, uploads into objects that no frame and no
+// download has used do not.
 // One mip of one layer, or of a whole 3D image.
 bool gpu_image_upload(struct gpu *gpu, gpu_image image, uint32_t mip, uint32_t layer,
                       const void *texels, size_t bytes);
@@ -502,10 +506,11 @@ int gpu_client_memory(const struct gpu *gpu, uint32_t client, struct gpu_memory 
 
 // Events since the creation of the device.
 struct gpu_counters {
-    uint64_t images, buffers;   // created
-    uint64_t pipelines;         // created
-    uint64_t compiled;          // of these, not taken from the pool of destroyed ones
-    uint64_t frames, transfers; // submitted; frames in a caller's command buffer too
-    uint64_t passes;            // scopes begun
+    uint64_t images, buffers;        // created
+    uint64_t pipelines;              // created
+    uint64_t compiled;               // of these, not taken from the pool of destroyed ones
+    uint64_t frames, transfers;      // submitted; frames in a caller's command buffer too
+    uint64_t upload_queue_transfers; // of the transfers
+    uint64_t passes;                 // scopes begun
 };
 const struct gpu_counters *gpu_counters(const struct gpu *gpu);

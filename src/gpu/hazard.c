@@ -7,7 +7,8 @@
 //   write after write   the earlier write is made visible
 //   layout transition   counts as a write, ordered after all of these
 //
-// There is one queue, so the state holds across submissions. Accesses within one operation (a
+// The state holds across submissions, which one queue executes in order; upload_queue.c has the
+// exception. Accesses within one operation (a
 // dispatch, or all draws of a rendering) are not ordered among each other. Memory dependencies are
 // merged into one VkMemoryBarrier2; only layout transitions need separate barriers.
 #include "gpu/vk.h"
@@ -261,6 +262,7 @@ static void zero_buffer(struct gpu_cmd *cmd, struct buffer *buffer)
 void hazard_image(struct gpu_cmd *cmd, struct image *image, const struct range *range,
                   const struct access *access)
 {
+    image->used |= cmd->queue == &cmd->gpu->queue;
     if (image->alias) alias_use(cmd, image);
     if (image->zero_pending) zero_image(cmd, image);
     use_image(cmd, image, range, access);
@@ -269,6 +271,7 @@ void hazard_image(struct gpu_cmd *cmd, struct image *image, const struct range *
 void hazard_buffer(struct gpu_cmd *cmd, struct buffer *buffer, const struct access *access)
 {
     if (buffer->constant) return;
+    buffer->used |= cmd->queue == &cmd->gpu->queue;
     if (buffer->zero_pending) zero_buffer(cmd, buffer);
     use(cmd, &buffer->hazard, NULL, NULL, access);
 }

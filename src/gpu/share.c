@@ -1,11 +1,13 @@
 // Images that a caller's commands use, too: the library's, and the caller's own.
 #include "gpu/vk.h"
 
-// Zeroes a new image; transfer_end brings all shared images into their layout.
+// Zeroes a new image; transfer_end brings all shared images into their layout. The caller's next
+// commands may use the image, also after an upload.
 static bool settle(struct gpu *gpu, struct image *image)
 {
     const VkImageLayout layout = hazard_shader_layout(image);
-    if (!image->zero_pending && image->whole && image->hazards[0].layout == layout) return true;
+    if (!image->zero_pending && image->whole && image->hazards[0].layout == layout)
+        return queue_join_uploads(gpu);
     struct gpu_cmd *cmd = transfer_begin(gpu);
     if (!cmd) return false;
     struct range range = image_whole(image);

@@ -72,7 +72,7 @@ bool gpu_image_upload(struct gpu *gpu, gpu_image handle, uint32_t mip, uint32_t 
     struct image *image = check_image(gpu, handle, mip, layer);
     if (!image || !check_bytes(gpu, image, mip, bytes)) return false;
     struct buffer *stage = staging(gpu, UPLOAD, bytes);
-    struct gpu_cmd *cmd = stage ? transfer_begin(gpu) : NULL;
+    struct gpu_cmd *cmd = stage ? transfer_begin_image(gpu, image) : NULL;
     if (!cmd) return false;
     memcpy(stage->memory.mapped, texels, bytes);
     struct access access = copy_write;
@@ -160,7 +160,7 @@ bool gpu_buffer_upload(struct gpu *gpu, gpu_buffer handle, size_t offset, const 
     struct buffer *buffer = check_buffer(gpu, handle, offset, bytes);
     if (!buffer || !bytes) return buffer != NULL;
     struct buffer *stage = staging(gpu, UPLOAD, bytes);
-    struct gpu_cmd *cmd = stage ? transfer_begin(gpu) : NULL;
+    struct gpu_cmd *cmd = stage ? transfer_begin_buffer(gpu, buffer) : NULL;
     if (!cmd) return false;
     memcpy(stage->memory.mapped, data, bytes);
     if (bytes == buffer->bytes) hazard_overwrite_buffer(buffer);
@@ -230,7 +230,7 @@ bool gpu_image_generate_mips(struct gpu *gpu, gpu_image handle)
 {
     struct image *image = check_image(gpu, handle, 0, 0);
     if (!image || !check_blit(gpu, image)) return false;
-    struct gpu_cmd *cmd = transfer_begin(gpu);
+    struct gpu_cmd *cmd = transfer_begin_image(gpu, image);
     if (!cmd) return false;
     for (uint32_t mip = 1; mip < image->desc.mips; mip++) blit_mip(cmd, image, mip);
     return transfer_end(gpu, cmd);

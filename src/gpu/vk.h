@@ -7,8 +7,10 @@
 #include <vulkan/vulkan.h>
 
 enum {
-    CMD_COUNT = GPU_PENDING_FRAMES + 1, // frames, one for transfers, adopted ones
-    CMD_TRANSFER = GPU_FRAMES_IN_FLIGHT,
+    CMD_TRANSFER = GPU_FRAMES_IN_FLIGHT, // frames are before it
+    CMD_UPLOAD,                          // transfers on the upload queue
+    CMD_ADOPTED,                         // the first of the adopted frames
+    CMD_COUNT = CMD_ADOPTED + GPU_ADOPTED_FRAMES,
     MAX_BINDINGS = 32, // the least maxPushDescriptors that VK_KHR_push_descriptor allows
     MAX_COLORS = 8,
     MAX_STAGES = 2,
@@ -167,6 +169,7 @@ struct image {
     bool wrapped;              // the caller's VkImage
     bool shared;       // the caller may use it between frames: wrapped, or its handle was queried
     bool zero_pending; // not yet cleared
+    bool used;         // by a recording for the main queue
     bool whole;        // hazards[0] is the state of all subresources
     struct hazard *hazards; // [layer × mips + mip]
     struct image_view *views;
@@ -182,6 +185,7 @@ struct buffer {
     size_t bytes;    // as requested
     size_t capacity; // rounded up to whole words, for fills
     bool zero_pending;
+    bool used;     // by a recording for the main queue
     bool constant; // read-only for the GPU: no hazards
     struct hazard hazard;
     struct allocation memory;
@@ -344,8 +348,15 @@ struct scopes {
 
 enum cmd_state { CMD_FREE, CMD_RECORDING, CMD_PENDING };
 
+struct queue {
+    VkQueue handle;       // NULL: there is none
+    VkSemaphore timeline; // counts its submissions
+    uint64_t submitted;   // semaphore value of the newest submission
+};
+
 struct gpu_cmd {
     struct gpu *gpu;
+    struct queue *queue; // that executes the commands
     enum cmd_state state;
     bool adopted;
     bool broken;       // a command could not be recorded: gpu_frame_end fails
@@ -406,8 +417,11 @@ void render_suspend(struct gpu_cmd *cmd); // ends an active rendering; the next 
 
 bool cmd_init(struct gpu *gpu, struct gpu_cmd *cmd, bool adopted);
 void cmd_finish(struct gpu *gpu, struct gpu_cmd *cmd);
-// NULL: a frame is being recorded, or the device is lost.
+// On the main queue. NULL: a frame is being recorded, or the device is lost.
 struct gpu_cmd *transfer_begin(struct gpu *gpu);
+// The same on the upload queue, if it takes the object.
+struct gpu_cmd *transfer_begin_image(struct gpu *gpu, const struct image *image);
+struct gpu_cmd *transfer_begin_buffer(struct gpu *gpu, const struct buffer *buffer);
 bool transfer_end(struct gpu *gpu, struct gpu_cmd *cmd); // submits and waits
 
 bool scopes_init(struct gpu *gpu, struct scopes *scopes, const char *name);
@@ -431,9 +445,23 @@ struct client *client_find(const struct gpu *gpu, uint32_t number); // NULL: non
 // ---- The device ---------------------------------------------------------------------------------
 
 // timeline.c
-bool timeline_wait(struct gpu *gpu, uint64_t value); // false: device lost
+bool timeline_create(struct gpu *gpu, struct queue *queue, const char *name);
+bool timeline_wait(struct gpu *gpu, const struct queue *queue, uint64_t value); // false: lost
+bool timeline_wait_all(struct gpu *gpu); // for all submissions
 // Serial up to which the GPU has completed every recording; returns their commands to CMD_FREE.
 uint64_t timeline_completed_serial(struct gpu *gpu);
+
+// upload_queue.c. Whether it executes the uploads of an object.
+bool upload_queue_takes_image(const struct gpu *gpu, const struct image *image);
+bool upload_queue_takes_buffer(const struct gpu *gpu, const struct buffer *buffer);
+// Whether the main queue has not waited for the newest upload.
+bool upload_queue_is_ahead(const struct gpu *gpu);
+
+// submit.c. Submits the command buffer, or none if it is NULL. The main queue waits for the uploads
+// before.
+bool queue_submit(struct gpu *gpu, struct queue *queue, VkCommandBuffer commands);
+// Makes all uploads visible to what is submitted to the main queue from now on.
+bool queue_join_uploads(struct gpu *gpu);
 
 // deferred_delete.c. An object is freed once the GPU has completed all recordings up to `serial`.
 struct deferred_delete {
@@ -472,8 +500,9 @@ struct gpu {
     // Allocator of all objects of the device: NULL, or a copy of the caller's.
     const VkAllocationCallbacks *allocator;
     VkAllocationCallbacks allocator_copy;
-    VkQueue queue;
-    uint32_t queue_family;
+    struct queue queue, upload_queue; // the main queue, and a caller's second one
+    uint64_t joined;                  // value of upload_queue.timeline that `queue` waited for
+    uint32_t queue_family;            // of both
     bool lost;
 
     VkPipelineCache pipeline_cache;
@@ -488,9 +517,7 @@ struct gpu {
     gpu_sampler default_sampler;
     struct buffer *staging[2]; // upload, download
 
-    VkSemaphore timeline;
-    uint64_t submitted; // semaphore value of the newest submission
-    uint64_t serial;    // of the newest recording
+    uint64_t serial; // of the newest recording
     uint64_t ops;
     struct gpu_cmd cmds[CMD_COUNT];
     uint32_t next_frame;

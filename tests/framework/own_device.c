@@ -2,11 +2,15 @@
 
 #include "framework/test.h"
 
+#include <string.h>
+
 #define CHECK_VK(call) assert_int_equal((call), VK_SUCCESS)
+
+static const char *const validation_layer = "VK_LAYER_KHRONOS_validation";
 
 static void create_instance(struct own_device *own, bool validation)
 {
-    const char *layers[] = { "VK_LAYER_KHRONOS_validation" };
+    const char *layers[] = { validation_layer };
     const char *extensions[] = { "VK_EXT_debug_utils", "VK_EXT_validation_features" };
     const VkValidationFeatureEnableEXT enable =
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
@@ -25,8 +29,21 @@ static void create_instance(struct own_device *own, bool validation)
     CHECK_VK(vkCreateInstance(&info, NULL, &own->instance));
 }
 
+// Synchronization validation of layers before 1.4 does not know timeline semaphores, and reports
+// hazards between queues that they order.
+static bool layer_knows_timelines(void)
+{
+    VkLayerProperties layers[64];
+    uint32_t count = 64;
+    vkEnumerateInstanceLayerProperties(&count, layers);
+    for (uint32_t i = 0; i < count; i++)
+        if (strcmp(layers[i].layerName, validation_layer) == 0)
+            return layers[i].specVersion >= VK_MAKE_API_VERSION(0, 1, 4, 0);
+    return false;
+}
+
 // With the features that ag_device_required_features and gpu_required_features list.
-static void create_device(struct own_device *own, bool push_descriptors)
+static void create_device(struct own_device *own, uint32_t queue_count, bool push_descriptors)
 {
     VkPhysicalDeviceVulkan13Features v13 = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
@@ -55,11 +72,11 @@ static void create_device(struct own_device *own, bool push_descriptors)
                                             .shaderStorageImageExtendedFormats = VK_TRUE,
                                             .shaderStorageImageWriteWithoutFormat = VK_TRUE };
     const char *extension = "VK_KHR_push_descriptor";
-    const float priority = 1;
+    const float priorities[2] = { 1, 1 };
     const VkDeviceQueueCreateInfo queue = { .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                             .queueFamilyIndex = own->family,
-                                            .queueCount = 1,
-                                            .pQueuePriorities = &priority };
+                                            .queueCount = queue_count,
+                                            .pQueuePriorities = priorities };
     const VkDeviceCreateInfo info = { .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                       .pNext = &v11,
                                       .queueCreateInfoCount = 1,
@@ -81,8 +98,12 @@ void own_device_open(struct own_device *own, uint32_t flags)
     vkGetPhysicalDeviceQueueFamilyProperties(own->physical, &count, families);
     while (own->family < count && !(families[own->family].queueFlags & VK_QUEUE_GRAPHICS_BIT))
         own->family++;
-    create_device(own, !(flags & OWN_DEVICE_NO_PUSH_DESCRIPTORS));
+    const bool two = families[own->family].queueCount > 1 &&
+                     (!(flags & OWN_DEVICE_VALIDATION) || layer_knows_timelines());
+    const uint32_t queues = two ? 2 : 1;
+    create_device(own, queues, !(flags & OWN_DEVICE_NO_PUSH_DESCRIPTORS));
     vkGetDeviceQueue(own->device, own->family, 0, &own->queue);
+    vkGetDeviceQueue(own->device, own->family, queues - 1, &own->upload_queue);
     const VkCommandPoolCreateInfo pool = { .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                            .queueFamilyIndex = own->family };
     CHECK_VK(vkCreateCommandPool(own->device, &pool, NULL, &own->pool));

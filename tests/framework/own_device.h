@@ -10,6 +10,8 @@ struct own_device {
     VkPhysicalDevice physical;
     VkDevice device;
     VkQueue queue;
+    // The second queue of the family. `queue` if there is none, or if validation cannot follow two.
+    VkQueue upload_queue;
     VkCommandPool pool;
     uint32_t family;
     bool validation;
