@@ -55,8 +55,8 @@ struct ag_memory_callbacks {
 /// must stay valid until the device is destroyed (ag_device_destroy).
 struct ag_device_adopt {
     void *instance, *physical_device, *device, *queue;
-    uint32_t queue_family;
-    void (*lock_queue)(void *user);   ///< called before each submission; may be NULL
+    uint32_t queue_family;            ///< of both queues
+    void (*lock_queue)(void *user);   ///< called before each submission to either; may be NULL
     void (*unlock_queue)(void *user); ///< called after it; may be NULL
     void *user;
     /// VkPhysicalDeviceFeatures2 that vkCreateDevice was given, with its chain: a required feature
@@ -70,7 +70,9 @@ struct ag_device_adopt {
     /// with a loader of its own; the functions must stay valid as long as the handles. NULL: the
     /// loader that the library is linked with.
     void (*get_instance_proc_addr)(void);
-    uint64_t reserved[1]; ///< 0; see ABI in types.h
+    /// A second VkQueue of the same family: uploads of new objects go there, and do not wait for
+    /// frames in flight. It may be `queue`, which saves no wait. NULL: uploads go to `queue`.
+    void *upload_queue;
 };
 
 struct ag_device_desc {
@@ -110,11 +112,12 @@ AG_API enum ag_result ag_device_pipeline_cache(struct ag_device *device, void *o
 /// Counts of objects created and work submitted on a device so far.
 struct ag_device_counters {
     uint64_t images, buffers, pipelines; ///< created
-    uint64_t compiled;    ///< of the pipelines: compiled, not reused after their destruction
-    uint64_t frames;      ///< recorded
-    uint64_t transfers;   ///< blocking uploads and downloads
-    uint64_t passes;      ///< of frames, recorded
-    uint64_t reserved[7]; ///< 0; see ABI in types.h
+    uint64_t compiled;  ///< of the pipelines: compiled, not reused after their destruction
+    uint64_t frames;    ///< recorded
+    uint64_t transfers; ///< blocking uploads and downloads
+    uint64_t passes;    ///< of frames, recorded
+    uint64_t upload_queue_transfers; ///< of the transfers: on ag_device_adopt.upload_queue
+    uint64_t reserved[6];            ///< 0; see ABI in types.h
 };
 /// Thread: the context's.
 AG_API void ag_device_get_counters(const struct ag_device *device, struct ag_device_counters *out);

@@ -32,8 +32,8 @@ AG_API void ag_vulkan_requirements_get_with(VkInstance instance, VkPhysicalDevic
                                             PFN_vkGetInstanceProcAddr get_instance_proc_addr,
                                             struct ag_vulkan_requirements *out);
 
-/// ag_device_adopt with the linked loader and without a queue lock. requirements: those that the
-/// device was created with.
+/// ag_device_adopt with the linked loader, without a queue lock and an upload queue. requirements:
+/// those that the device was created with.
 static inline struct ag_device_adopt
 ag_vulkan_adopt(VkInstance instance, VkPhysicalDevice physical_device, VkDevice device,
                 VkQueue queue, uint32_t queue_family,

@@ -82,6 +82,7 @@ static struct gpu_adopt lent_device(struct ag_device *device, const struct ag_de
                              .physical_device = lent->physical_device,
                              .device = lent->device,
                              .queue = lent->queue,
+                             .upload_queue = lent->upload_queue,
                              .queue_family = lent->queue_family,
                              .lock_queue = lent->lock_queue,
                              .unlock_queue = lent->unlock_queue,
@@ -101,7 +102,6 @@ static enum ag_result adopt_check(const char *function, struct ag_context *conte
                                   const struct ag_device_adopt *lent)
 {
     if (!lent) return AG_OK;
-    AG_REQUIRE_KNOWN(function, context, lent);
     AG_REQUIRE_FOR(function, context, adopt_is_whole(lent),
                    "an adopted device needs instance, physical_device, device and queue");
     if (!lent->memory) return AG_OK;
@@ -234,4 +234,5 @@ void ag_device_get_counters(const struct ag_device *device, struct ag_device_cou
     out->frames = counters->frames;
     out->transfers = counters->transfers;
     out->passes = counters->passes;
+    out->upload_queue_transfers = counters->upload_queue_transfers;
 }
