@@ -49,10 +49,23 @@ struct ag_renderer_desc fixture_renderer_desc(const char *gi)
     return desc;
 }
 
-struct renderer_fixture fixture_open(const char *gi, const struct ag_device_adopt *adopt)
+// The device of all tests of a program, one after the other: it keeps its pipelines.
+static struct {
+    struct ag_context *context;
+    struct ag_device *device;
+    bool used; // also by a test that failed
+    int messages;
+} kept;
+
+static bool kept_end(void)
 {
-    test_gpu_require();
-    struct renderer_fixture s = { .context = fixture_context() };
+    ag_device_destroy(kept.device);
+    ag_context_destroy(kept.context);
+    return true;
+}
+
+static void open_device(struct renderer_fixture *s, const struct ag_device_adopt *adopt)
+{
     // Hazards between submissions, which the layer leaves out unless told otherwise.
     setenv("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",
            0);
@@ -60,7 +73,33 @@ struct renderer_fixture fixture_open(const char *gi, const struct ag_device_adop
     ag_device_desc_default(&device);
     device.validation = !adopt || ((const struct own_device *)adopt->user)->validation;
     device.adopt = adopt;
-    assert_int_equal(ag_device_create(s.context, &device, &s.device), AG_OK);
+    s->context = fixture_context();
+    assert_int_equal(ag_device_create(s->context, &device, &s->device), AG_OK);
+}
+
+static void open_kept_device(struct renderer_fixture *s)
+{
+    if (!kept.device) {
+        open_device(s, NULL);
+        kept.context = s->context;
+        kept.device = s->device;
+        test_register_end(kept_end);
+    }
+    kept.used = true;
+    kept.messages = ag_device_validation_messages(kept.device);
+    s->context = kept.context;
+    s->device = kept.device;
+}
+
+static struct renderer_fixture open_fixture(const char *gi, const struct ag_device_adopt *adopt,
+                                            bool keep)
+{
+    test_gpu_require();
+    struct renderer_fixture s = { 0 };
+    if (keep && !kept.used)
+        open_kept_device(&s);
+    else
+        open_device(&s, adopt);
     assert_int_equal(ag_scene_load(s.context, "@cornell:light=point", &s.scene), AG_OK);
     struct ag_renderer_desc desc = fixture_renderer_desc(gi);
     if (ag_renderer_create(s.device, s.scene, &desc, &s.renderer) != AG_OK)
@@ -70,12 +109,25 @@ struct renderer_fixture fixture_open(const char *gi, const struct ag_device_adop
     return s;
 }
 
+struct renderer_fixture fixture_open(const char *gi, const struct ag_device_adopt *adopt)
+{
+    return open_fixture(gi, adopt, !adopt);
+}
+
+struct renderer_fixture fixture_open_alone(const char *gi)
+{
+    return open_fixture(gi, NULL, false);
+}
+
 void fixture_close(struct renderer_fixture *s)
 {
+    const bool keep = s->device == kept.device;
     ag_renderer_destroy(s->renderer);
-    if (ag_device_validation_messages(s->device))
+    if (ag_device_validation_messages(s->device) > (keep ? kept.messages : 0))
         fail_msg("validation says: %s", fixture_last_warning);
     ag_scene_destroy(s->scene);
+    if (keep) kept.used = false;
+    if (keep) return;
     ag_device_destroy(s->device);
     ag_context_destroy(s->context);
 }

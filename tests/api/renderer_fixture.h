@@ -31,8 +31,10 @@ struct ag_device_adopt fixture_lend(struct own_device *own);
 struct ag_context *fixture_context(void);
 struct ag_renderer_desc fixture_renderer_desc(const char *gi);
 // Before the first frame. Uses the device in `adopt` (validated if the struct own_device of
-// fixture_lend is), or a new one if NULL.
+// fixture_lend is); if NULL, one that later tests of the program use, too.
 struct renderer_fixture fixture_open(const char *gi, const struct ag_device_adopt *adopt);
+// With a device and a context of its own, which the test may destroy.
+struct renderer_fixture fixture_open_alone(const char *gi);
 // Fails the test if validation logged a message.
 void fixture_close(struct renderer_fixture *fixture);
 // The caller destroys it.

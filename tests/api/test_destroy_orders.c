@@ -309,7 +309,7 @@ TEST(objects_of_the_gpu)
 
 TEST(a_renderer_shows_the_same_without_the_handles_of_its_scene_device_and_context)
 {
-    struct renderer_fixture s = fixture_open("lpv:probes=true,dim=16", NULL);
+    struct renderer_fixture s = fixture_open_alone("lpv:probes=true,dim=16");
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     struct ag_image *before = fixture_read(&s, "color");
     struct ag_probes *probes = NULL;
