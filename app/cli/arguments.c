@@ -87,11 +87,11 @@ static enum status check_together(const struct command *command, const struct ar
 
 static struct arguments defaults_of(const struct command *command)
 {
-    bool compare = command->bit == COMPARE;
+    const int frames = command->bit == COMPARE ? 8 : command->bit == VIEW ? 0 : 1;
     return (struct arguments){ .gi = "none",
                                .width = 1280,
                                .height = 720,
-                               .frames = compare ? 8 : 1,
+                               .frames = frames,
                                .fov_deg = 60.0,
                                .spp = 64,
                                .scene_scale = 1.0f,

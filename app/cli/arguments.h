@@ -16,7 +16,8 @@ enum command_bit {
     REFERENCE = 16,
     COMPARE = 32,
     BAKE = 64,
-    CACHE = 128
+    CACHE = 128,
+    VIEW = 256
 };
 // In the order of ag_difference.
 #define METRIC_NAMES "mae mse relmse ssim flip flip_hdr"
@@ -76,6 +77,9 @@ struct arguments {
     const char *reference; // an EXR; NULL: traced
     bool no_cache;
     double max_flip, max_relmse, max_ms; // below 0: no bound
+    // view
+    const char *split, *script, *screenshot; // NULL: none
+    float scale;                             // of the image; 0: chosen by the device
     // diff
     const char *layer, *map;
     enum ag_difference metric; // of the map

@@ -6,10 +6,10 @@
 #include <stddef.h>
 #include <string.h>
 
-static const struct command *const commands[] = { &command_render,  &command_reference,
-                                                  &command_compare, &command_bake,
-                                                  &command_info,    &command_list,
-                                                  &command_diff,    &command_cache };
+static const struct command *const commands[] = {
+    &command_render, &command_view, &command_reference, &command_compare, &command_bake,
+    &command_info,   &command_list, &command_diff,      &command_cache
+};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 _Static_assert(sizeof commands / sizeof commands[0] <= (size_t)MAX_COMMANDS, "main lists fewer");
 

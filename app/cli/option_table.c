@@ -57,6 +57,9 @@ TEXT(stats, stats)
 TEXT(device, device)
 TEXT(report, report)
 TEXT(layer, layer)
+TEXT(split, split)
+TEXT(script, script)
+TEXT(screenshot, screenshot)
 
 // ---- checked values
 
@@ -95,6 +98,15 @@ static bool set_size(struct arguments *a, const char *value, const char **why)
 {
     *why = "it must be WxH, each 1 to 16384";
     return value_size(value, &a->width, &a->height);
+}
+
+static bool set_scale(struct arguments *a, const char *value, const char **why)
+{
+    double scale;
+    *why = "it must be 0.1 to 2";
+    if (!value_number(value, &scale) || scale < 0.1 || scale > 2.0) return false;
+    a->scale = (float)scale;
+    return true;
 }
 
 static bool set_eye(struct arguments *a, const char *value, const char **why)

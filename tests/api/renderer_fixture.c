@@ -55,12 +55,12 @@ static struct {
     struct ag_device *device;
     bool used; // also by a test that failed
     int messages;
-} kept;
+} shared_device;
 
 static bool kept_end(void)
 {
-    ag_device_destroy(kept.device);
-    ag_context_destroy(kept.context);
+    ag_device_destroy(shared_device.device);
+    ag_context_destroy(shared_device.context);
     return true;
 }
 
@@ -79,16 +79,16 @@ static void open_device(struct renderer_fixture *s, const struct ag_device_adopt
 
 static void open_kept_device(struct renderer_fixture *s)
 {
-    if (!kept.device) {
+    if (!shared_device.device) {
         open_device(s, NULL);
-        kept.context = s->context;
-        kept.device = s->device;
+        shared_device.context = s->context;
+        shared_device.device = s->device;
         test_register_end(kept_end);
     }
-    kept.used = true;
-    kept.messages = ag_device_validation_messages(kept.device);
-    s->context = kept.context;
-    s->device = kept.device;
+    shared_device.used = true;
+    shared_device.messages = ag_device_validation_messages(shared_device.device);
+    s->context = shared_device.context;
+    s->device = shared_device.device;
 }
 
 static struct renderer_fixture open_fixture(const char *gi, const struct ag_device_adopt *adopt,
@@ -96,7 +96,7 @@ static struct renderer_fixture open_fixture(const char *gi, const struct ag_devi
 {
     test_gpu_require();
     struct renderer_fixture s = { 0 };
-    if (keep && !kept.used)
+    if (keep && !shared_device.used)
         open_kept_device(&s);
     else
         open_device(&s, adopt);
@@ -121,12 +121,12 @@ struct renderer_fixture fixture_open_alone(const char *gi)
 
 void fixture_close(struct renderer_fixture *s)
 {
-    const bool keep = s->device == kept.device;
+    const bool keep = s->device == shared_device.device;
     ag_renderer_destroy(s->renderer);
-    if (ag_device_validation_messages(s->device) > (keep ? kept.messages : 0))
+    if (ag_device_validation_messages(s->device) > (keep ? shared_device.messages : 0))
         fail_msg("validation says: %s", fixture_last_warning);
     ag_scene_destroy(s->scene);
-    if (keep) kept.used = false;
+    if (keep) shared_device.used = false;
     if (keep) return;
     ag_device_destroy(s->device);
     ag_context_destroy(s->context);

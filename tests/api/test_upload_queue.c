@@ -1,9 +1,9 @@
-// An upload queue of the program changes no picture. It is a second queue where the device has one.
+// An upload queue of the program changes no image. It is a second queue where the device has one.
 #include "api/renderer_fixture.h"
 
 #include <string.h>
 
-enum { PICTURES = 4, BYTES = FIXTURE_WIDTH * FIXTURE_HEIGHT * 3 * sizeof(float) };
+enum { IMAGES = 4, BYTES = FIXTURE_WIDTH * FIXTURE_HEIGHT * 3 * sizeof(float) };
 
 struct way {
     bool upload_queue;
@@ -15,7 +15,7 @@ struct session {
     struct way way;
     struct own_device own;
     struct renderer_fixture s;
-    float pictures[PICTURES][FIXTURE_WIDTH * FIXTURE_HEIGHT * 3];
+    float images[IMAGES][FIXTURE_WIDTH * FIXTURE_HEIGHT * 3];
     int count;
 };
 
@@ -64,7 +64,7 @@ static void keep_picture(struct session *o, uint64_t number)
         assert_int_equal(ag_renderer_recorded_done(o->s.renderer, number), AG_OK);
     }
     struct ag_image *color = fixture_read(&o->s, "color");
-    memcpy(o->pictures[o->count++], color->pixels, BYTES);
+    memcpy(o->images[o->count++], color->pixels, BYTES);
     ag_image_destroy(o->s.context, color);
 }
 
@@ -162,7 +162,7 @@ static void render_changes(struct session *o, struct way way)
     assert_true(counters(o).transfers == before.transfers + 1);
     assert_true(counters(o).upload_queue_transfers == before.upload_queue_transfers);
     close_session(o);
-    assert_int_equal(o->count, PICTURES);
+    assert_int_equal(o->count, IMAGES);
 }
 
 TEST(an_upload_queue_changes_no_picture)
@@ -176,10 +176,10 @@ TEST(an_upload_queue_changes_no_picture)
         { .upload_queue = true, .recorded = true, .unchecked = true },
     };
     render_changes(&plain, (struct way){ 0 });
-    CHECK(memcmp(plain.pictures[0], plain.pictures[1], BYTES) != 0);
+    CHECK(memcmp(plain.images[0], plain.images[1], BYTES) != 0);
     for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
         render_changes(&other, ways[i]);
-        CHECK(memcmp(plain.pictures, other.pictures, sizeof plain.pictures) == 0);
+        CHECK(memcmp(plain.images, other.images, sizeof plain.images) == 0);
     }
 }
 
@@ -223,6 +223,6 @@ TEST(a_switch_to_a_technique_with_a_bake_uploads_on_the_upload_queue)
     render_bake(&plain, (struct way){ 0 });
     for (int recorded = 0; recorded < 2; recorded++) {
         render_bake(&other, (struct way){ .upload_queue = true, .recorded = recorded });
-        CHECK(memcmp(plain.pictures, other.pictures, sizeof plain.pictures) == 0);
+        CHECK(memcmp(plain.images, other.images, sizeof plain.images) == 0);
     }
 }

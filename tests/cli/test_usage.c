@@ -39,7 +39,10 @@ TEST(wrong_commands_and_arguments_are_wrong_usage)
     static const struct wrong cases[] = {
         { "", "--help" },
         { "rendr @cornell", "render" },
-        { "view @cornell", "view" },
+        { "vieww @cornell", "view" },
+        { "view", "SCENE" },
+        { "view @cornell --screenshot a.png", "--frames" },
+        { "view @cornell --scale 9 --frames 1", "--scale" },
         { "reference @cornell @cornell", "@cornell" },
         { "render", "SCENE" },
         { "render @cornell @cornell", "@cornell" },

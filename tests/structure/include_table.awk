@@ -76,7 +76,7 @@ function code_of(line,    out, c, two, i, n)
 
 function check_identifiers(code)
 {
-    if (FILENAME !~ /^(src\/gpu\/|examples\/(host|engine|embed_3))/ && code ~ /(^|[^A-Za-z0-9_])vk[A-Z]/)
+    if (FILENAME !~ /^(src\/gpu\/|examples\/(host|engine|embed_3)|app\/viewer\/)/ && code ~ /(^|[^A-Za-z0-9_])vk[A-Z]/)
         complain("a Vulkan function outside src/gpu")
     if (FILENAME !~ /^(src\/trace\/|bench\/rays\.c)/ && code ~ /(^|[^A-Za-z0-9_])rtc[A-Z]/)
         complain("an Embree function outside src/trace")

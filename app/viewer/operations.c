@@ -1,0 +1,147 @@
+#include "operations.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+enum { SETTLE_FRAMES = 24, SIDEBAR_UNITS = 360, LEAST_SIZE = 16 };
+static const double MESSAGE_S = 8.0;
+
+const char *const viewer_layers[] = {
+    "color",  "direct",     "indirect", "irradiance", "specular",
+    "albedo", "visibility", "normal",   "depth",      "emissive"
+};
+const int viewer_layer_count = sizeof viewer_layers / sizeof *viewer_layers;
+
+// ---- messages
+
+static void say(struct viewer *v, bool warns, const char *format, va_list arguments)
+{
+    vsnprintf(v->message, sizeof v->message, format, arguments);
+    v->message_until_s = window_seconds() + MESSAGE_S;
+    v->message_warns = warns;
+}
+
+void viewer_say(struct viewer *v, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    say(v, false, format, arguments);
+    va_end(arguments);
+}
+
+void viewer_warn(struct viewer *v, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    say(v, true, format, arguments);
+    va_end(arguments);
+}
+
+bool viewer_check(struct viewer *v, enum ag_result result)
+{
+    if (result != AG_OK) viewer_warn(v, "%s", ag_context_last_error(v->desc->context));
+    return result == AG_OK;
+}
+
+// ---- the image
+
+void viewer_touch(struct viewer *v)
+{
+    v->dirty = SETTLE_FRAMES;
+}
+
+struct region viewer_region(const struct viewer *v)
+{
+    const float sidebar = SIDEBAR_UNITS * window_scale(v->window);
+    const float width = (float)v->swapchain.width, height = (float)v->swapchain.height;
+    return (struct region){ 0, 0, fmaxf(width - sidebar, 0.25f * width), height };
+}
+
+void viewer_image_size(const struct viewer *v, int *width, int *height)
+{
+    const struct region r = viewer_region(v);
+    *width = (int)(v->scale * (r.x1 - r.x0) + 0.5f);
+    *height = (int)(v->scale * (r.y1 - r.y0) + 0.5f);
+    if (*width < LEAST_SIZE) *width = LEAST_SIZE;
+    if (*height < LEAST_SIZE) *height = LEAST_SIZE;
+}
+
+bool viewer_open_rendering(struct viewer *v, const char *gi, struct rendering *out)
+{
+    struct rendering_desc desc = { .gpu = &v->gpu,
+                                   .context = v->desc->context,
+                                   .device = v->device,
+                                   .scene = v->desc->scene,
+                                   .gi = gi,
+                                   .frame_options = v->desc->frame_options };
+    viewer_image_size(v, &desc.width, &desc.height);
+    const enum ag_result result = rendering_open(out, &desc);
+    if (result == AG_OK && v->layer > 0)
+        ag_renderer_set_display(out->renderer, viewer_layers[v->layer]);
+    return viewer_check(v, result);
+}
+
+bool viewer_set_gi(struct viewer *v, const char *gi)
+{
+    if (!viewer_check(v, ag_renderer_set_gi(v->main.renderer, gi, NULL, 0))) return false;
+    snprintf(v->gi, sizeof v->gi, "%s", gi);
+    method_parse(&v->method, ag_renderer_gi(v->main.renderer));
+    v->debug_view = -1;
+    viewer_touch(v);
+    return true;
+}
+
+bool viewer_set_split(struct viewer *v, const char *gi)
+{
+    viewer_touch(v);
+    if (!gi) {
+        rendering_close(&v->other);
+        v->split = false;
+        return true;
+    }
+    if (v->split && !viewer_check(v, ag_renderer_set_gi(v->other.renderer, gi, NULL, 0)))
+        return false;
+    if (!v->split && !viewer_open_rendering(v, gi, &v->other)) return false;
+    v->split = true;
+    snprintf(v->other_gi, sizeof v->other_gi, "%s", gi);
+    method_parse(&v->other_method, ag_renderer_gi(v->other.renderer));
+    return true;
+}
+
+void viewer_set_layer(struct viewer *v, int layer)
+{
+    const char *name = layer > 0 ? viewer_layers[layer] : NULL;
+    if (!viewer_check(v, ag_renderer_set_display(v->main.renderer, name))) return;
+    if (v->other.renderer) viewer_check(v, ag_renderer_set_display(v->other.renderer, name));
+    v->layer = layer;
+    viewer_touch(v);
+}
+
+static float scene_size(struct viewer *v)
+{
+    struct ag_scene_info info;
+    if (ag_scene_get_info(v->desc->scene, v->desc->animation, v->time_s, &info) != AG_OK ||
+        info.triangles == 0)
+        return 1.0f;
+    float sum = 0;
+    for (int i = 0; i < 3; i++) {
+        const float side = info.bounds_max[i] - info.bounds_min[i];
+        sum += side * side;
+    }
+    return sqrtf(sum);
+}
+
+void viewer_set_camera(struct viewer *v, int scene_camera)
+{
+    const char *name = ag_scene_camera_name(v->desc->scene, scene_camera);
+    struct ag_camera camera = v->given;
+    if (scene_camera >= 0 &&
+        !viewer_check(
+            v, ag_scene_camera(v->desc->scene, name, v->desc->animation, v->time_s, &camera)))
+        return;
+    v->scene_camera = scene_camera;
+    v->camera = camera;
+    look_from_camera(&v->look, &camera, scene_size(v));
+    viewer_touch(v);
+}

@@ -1,0 +1,110 @@
+// Milliseconds by pass over time, and bytes by owner.
+#include "panel.h"
+#include "operations.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const uint32_t colors[] = { 0x4e79a7ff, 0xf28e2bff, 0xe15759ff, 0x76b7b2ff, 0x59a14fff,
+                                   0xedc948ff, 0xb07aa1ff, 0xff9da7ff, 0x9c755fff, 0xbab0acff };
+
+static float most_ms(const struct times *times)
+{
+    float most = 1.0f;
+    for (int i = 0; i < VIEWER_HISTORY; i++)
+        if (times->frame_ms[i] > most) most = times->frame_ms[i];
+    return most;
+}
+
+// Stacked columns, the newest at the right.
+static void plot(const struct times *times, float budget_ms, float height)
+{
+    const struct ui_area area = ui_area(height);
+    const float most = 1.1f * (most_ms(times) > budget_ms ? most_ms(times) : budget_ms);
+    const float column = area.width / (float)VIEWER_HISTORY, unit = area.height / most;
+    char text[64];
+    ui_area_box(area.x, area.y, area.x + area.width, area.y + area.height, 0x18181aff);
+    for (int i = 0; i < times->frames; i++) {
+        const int at = (times->newest - i + VIEWER_HISTORY) % VIEWER_HISTORY;
+        const float right = area.x + area.width - (float)i * column;
+        float y = area.y + area.height;
+        for (int k = 0; k < times->count; k++) {
+            const float ms = times->ms[k][at];
+            if (ms <= 0) continue;
+            ui_area_box(right - column, y - ms * unit, right, y,
+                        colors[k % (int)(sizeof colors / sizeof *colors)]);
+            y -= ms * unit;
+        }
+    }
+    const float line = area.y + area.height - budget_ms * unit;
+    ui_area_stroke(area.x, line, area.x + area.width, line, 0xffffffa0, 1.0f);
+    snprintf(text, sizeof text, "%.1f ms", (double)budget_ms);
+    ui_area_text(area.x + 4.0f, line - 15.0f, 0xffffffff, text);
+    snprintf(text, sizeof text, "%.0f ms", (double)most);
+    ui_area_text(area.x + 4.0f, area.y + 2.0f, 0xffffff80, text);
+}
+
+static void list_passes(const struct times *times)
+{
+    for (int k = 0; k < times->count; k++) {
+        const float ms = times->ms[k][times->newest];
+        if (ms <= 0) continue;
+        const struct ui_area area = ui_area(16.0f);
+        char text[64];
+        ui_area_box(area.x, area.y + 3.0f, area.x + 10.0f, area.y + 13.0f,
+                    colors[k % (int)(sizeof colors / sizeof *colors)]);
+        ui_area_text(area.x + 16.0f, area.y + 1.0f, 0xe0e0e0ff, times->names[k]);
+        snprintf(text, sizeof text, "%8.3f ms", (double)ms);
+        ui_area_text(area.x + area.width - ui_label_width(text), area.y + 1.0f, 0xe0e0e0ff, text);
+    }
+}
+
+static void list_memory(struct viewer *v)
+{
+    struct ag_memory owners[64];
+    const int count = ag_renderer_memory(v->main.renderer, owners, 64);
+    uint64_t sum = 0;
+    for (int i = 0; i < count && i < 64; i++) {
+        sum += owners[i].bytes;
+        const struct ui_area area = ui_area(16.0f);
+        char text[64];
+        ui_area_text(area.x, area.y + 1.0f, 0xe0e0e0ff, owners[i].owner);
+        snprintf(text, sizeof text, "%10.2f MB", (double)owners[i].bytes * 1e-6);
+        ui_area_text(area.x + area.width - ui_label_width(text), area.y + 1.0f, 0xe0e0e0ff, text);
+    }
+    ui_text("in all %.2f MB", (double)sum * 1e-6);
+}
+
+static void save_csv(struct viewer *v, const char *path)
+{
+    FILE *file = fopen(path, "w");
+    const struct times *times = &v->times;
+    if (!file) {
+        viewer_warn(v, "cannot write %s", path);
+        return;
+    }
+    fprintf(file, "frame,frame_ms");
+    for (int k = 0; k < times->count; k++) fprintf(file, ",%s", times->names[k]);
+    for (int i = times->frames - 1; i >= 0; i--) {
+        const int at = (times->newest - i + VIEWER_HISTORY) % VIEWER_HISTORY;
+        fprintf(file, "\n%d,%.6g", times->frames - i, (double)times->frame_ms[at]);
+        for (int k = 0; k < times->count; k++) fprintf(file, ",%.6g", (double)times->ms[k][at]);
+    }
+    fprintf(file, "\n");
+    if (fclose(file) == 0)
+        viewer_say(v, "written: %s", path);
+    else
+        viewer_warn(v, "cannot write %s", path);
+}
+
+void panel_cost(struct viewer *v)
+{
+    static float budget_ms = 16.7f;
+    ui_text("%s", v->device_info.name);
+    ui_text("%.2f ms on the GPU", (double)v->times.frame_ms[v->times.newest]);
+    plot(&v->times, budget_ms, 180.0f);
+    ui_number("budget (ms)", &budget_ms, 1.0f, 200.0f, "%.1f", true);
+    if (ui_button("Save as CSV")) save_csv(v, "afterglow-times.csv");
+    if (ui_section("Passes", true)) list_passes(&v->times);
+    if (ui_section("Memory", true)) list_memory(v);
+}

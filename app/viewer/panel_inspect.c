@@ -1,0 +1,65 @@
+// The surface under the mouse: its instance, mesh and material.
+#include "panel.h"
+#include "operations.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static void edit_material(struct viewer *v, int index)
+{
+    struct ag_material_info info;
+    if (ag_scene_get_material(v->desc->scene, index, &info) != AG_OK) return;
+    struct ag_material_desc *m = &info.material;
+    ui_text("material %d %s", index, info.name ? info.name : "");
+    bool changed = ui_color("base color", m->base_color);
+    changed |= ui_number("roughness", &m->roughness, 0, 1, "%.3f", false);
+    changed |= ui_number("metallic", &m->metallic, 0, 1, "%.3f", false);
+    changed |= ui_numbers("emissive (cd/m²)", m->emissive, 3, 1.0f, "%.1f");
+    for (int i = 0; i < 3; i++)
+        if (m->emissive[i] < 0) m->emissive[i] = 0;
+    if (info.base_color_map) ui_faint("base color multiplies a texture");
+    if (!changed) return;
+    viewer_check(v, ag_scene_set_material(v->desc->scene, index, m));
+    v->materials_changed = true;
+    viewer_touch(v);
+}
+
+static void move_instance(struct viewer *v, int index, const struct ag_instance_info *instance)
+{
+    float world[16];
+    memcpy(world, instance->world_from_mesh, sizeof world);
+    if (!ui_numbers("position (m)", world + 12, 3, 0.01f * v->look.speed, "%.3f")) return;
+    viewer_check(v, ag_scene_set_instance_transform(v->desc->scene, index, world));
+    v->instances_changed = true;
+    viewer_touch(v);
+}
+
+static void show_instance(struct viewer *v, int index)
+{
+    struct ag_instance_info instance;
+    struct ag_mesh_info mesh;
+    if (ag_scene_get_instance(v->desc->scene, index, v->desc->animation, v->time_s, &instance) !=
+            AG_OK ||
+        ag_scene_get_mesh(v->desc->scene, instance.mesh, &mesh) != AG_OK)
+        return;
+    ui_text("instance %d %s", index, instance.name ? instance.name : "");
+    ui_faint("mesh %d %s, %u triangles, %s", instance.mesh, mesh.name ? mesh.name : "",
+             mesh.index_count / 3, instance.mobility == AG_MOBILITY_MOVABLE ? "movable" : "static");
+    if (!instance.skinned) move_instance(v, index, &instance);
+    if (mesh.material >= 0) edit_material(v, mesh.material);
+}
+
+void panel_inspect(struct viewer *v)
+{
+    struct ag_pick pick;
+    if (ag_renderer_picked(v->main.renderer, &pick) == AG_OK && pick.frame > 0 &&
+        pick.instance >= 0)
+        ui_faint("under the mouse: instance %d, triangle %d", pick.instance, pick.triangle);
+    else
+        ui_faint("under the mouse: no surface");
+    ui_separator();
+    if (v->picked_instance < 0)
+        ui_text("Click a surface in the image.");
+    else
+        show_instance(v, v->picked_instance);
+}

@@ -1,0 +1,158 @@
+// Lights, sky and materials.
+#include "panel.h"
+#include "operations.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const float DEGREES = 57.29578f;
+static const char *const type_names[] = { "sun", "point", "spot" };
+static const char *const units[] = { "lux", "cd", "cd" };
+
+static float largest(const float rgb[3])
+{
+    return fmaxf(fmaxf(rgb[0], rgb[1]), rgb[2]);
+}
+
+// Linear Rec. 709 colour of a black body, its largest component 1: Kim et al. 2002, the cubic
+// approximation of the Planckian locus, 1667 K to 25000 K.
+static void black_body(float kelvin, float rgb[3])
+{
+    const float t = 1000.0f / kelvin;
+    const float x = kelvin < 4000.0f
+                        ? ((-0.2661239f * t - 0.2343589f) * t + 0.8776956f) * t + 0.179910f
+                        : ((-3.0258469f * t + 2.1070379f) * t + 0.2226347f) * t + 0.240390f;
+    const float y =
+        kelvin < 2222.0f   ? ((-1.1063814f * x - 1.34811020f) * x + 2.18555832f) * x - 0.20219683f
+        : kelvin < 4000.0f ? ((-0.9549476f * x - 1.37418593f) * x + 2.09137015f) * x - 0.16748867f
+                           : ((3.0817580f * x - 5.87338670f) * x + 3.75112997f) * x - 0.37001483f;
+    const float X = x / y, Z = (1.0f - x - y) / y;
+    rgb[0] = fmaxf(3.2404542f * X - 1.5371385f - 0.4985314f * Z, 0.0f);
+    rgb[1] = fmaxf(-0.9692660f * X + 1.8760108f + 0.0415560f * Z, 0.0f);
+    rgb[2] = fmaxf(0.0556434f * X - 0.2040259f + 1.0572252f * Z, 0.0f);
+    const float most = largest(rgb);
+    for (int i = 0; i < 3; i++) rgb[i] /= most;
+}
+
+// Intensity and colour of a light; the colour's largest component is 1.
+static bool edit_intensity(float rgb[3], const char *unit, float most)
+{
+    float level = largest(rgb), color[3] = { 1, 1, 1 };
+    char label[32];
+    for (int i = 0; i < 3 && level > 0; i++) color[i] = rgb[i] / level;
+    snprintf(label, sizeof label, "intensity (%s)", unit);
+    bool changed = ui_number(label, &level, 0.0f, most, "%.4g", true);
+    if (ui_color("color", color)) {
+        const float scale = largest(color);
+        for (int i = 0; i < 3 && scale > 0; i++) color[i] /= scale;
+        changed = true;
+    }
+    float kelvin = 6500.0f;
+    if (ui_number("temperature (K)", &kelvin, 1700.0f, 15000.0f, "set to %.0f", true)) {
+        black_body(kelvin, color);
+        changed = true;
+    }
+    ui_tooltip("Sets the colour to that of a black body.");
+    for (int i = 0; i < 3 && changed; i++) rgb[i] = level * color[i];
+    return changed;
+}
+
+// Elevation and azimuth of where the light comes from; azimuth 0 is −z, positive to +x.
+static bool edit_direction(float direction[3])
+{
+    const float length = sqrtf(direction[0] * direction[0] + direction[1] * direction[1] +
+                               direction[2] * direction[2]);
+    if (!(length > 0)) return false;
+    float elevation = asinf(fminf(fmaxf(-direction[1] / length, -1.0f), 1.0f)) * DEGREES;
+    float azimuth = atan2f(-direction[0], direction[2]) * DEGREES;
+    bool changed = ui_number("elevation (°)", &elevation, -90.0f, 90.0f, "%.1f", false);
+    changed |= ui_number("azimuth (°)", &azimuth, -180.0f, 180.0f, "%.1f", false);
+    if (!changed) return false;
+    const float e = elevation / DEGREES, a = azimuth / DEGREES;
+    direction[0] = -cosf(e) * sinf(a);
+    direction[1] = -sinf(e);
+    direction[2] = cosf(e) * cosf(a);
+    return true;
+}
+
+static bool edit_cone(struct ag_light_desc *light)
+{
+    float inner = light->inner_rad * DEGREES, outer = light->outer_rad * DEGREES;
+    bool changed = ui_number("inner angle (°)", &inner, 0.0f, 89.0f, "%.1f", false);
+    changed |= ui_number("outer angle (°)", &outer, 1.0f, 89.9f, "%.1f", false);
+    if (!changed) return false;
+    light->outer_rad = outer / DEGREES;
+    light->inner_rad = fminf(inner, outer - 0.01f) / DEGREES;
+    return true;
+}
+
+static void edit_light(struct viewer *v, int index)
+{
+    struct ag_light_info info;
+    char label[160];
+    if (ag_scene_get_light(v->desc->scene, index, v->desc->animation, v->time_s, &info) != AG_OK)
+        return;
+    struct ag_light_desc *light = &info.light;
+    snprintf(label, sizeof label, "%d %s %.100s", index, type_names[light->type],
+             info.name ? info.name : "");
+    ui_push(index);
+    bool changed = false;
+    if (ui_section(label, index < 2)) {
+        changed |= ui_switch("on", &light->enabled);
+        changed |= edit_intensity(light->intensity, units[light->type],
+                                  light->type == AG_LIGHT_SUN ? 2e5f : 1e5f);
+        if (light->type != AG_LIGHT_SUN)
+            changed |=
+                ui_numbers("position (m)", light->position, 3, 0.01f * v->look.speed, "%.3f");
+        if (light->type != AG_LIGHT_POINT) changed |= edit_direction(light->direction);
+        if (light->type == AG_LIGHT_SPOT) changed |= edit_cone(light);
+    }
+    ui_pop();
+    if (!changed || !viewer_check(v, ag_scene_set_light(v->desc->scene, index, light))) return;
+    v->lights_changed = true;
+    viewer_touch(v);
+}
+
+// At the target of the camera for points, as bright as a lamp there; a high sun.
+static void add_light(struct viewer *v, enum ag_light_type type)
+{
+    struct ag_light_desc light;
+    ag_light_desc_default(&light, type);
+    for (int i = 0; i < 3; i++) light.position[i] = v->look.eye[i];
+    look_forward(&v->look, light.direction);
+    if (type == AG_LIGHT_SUN) {
+        light.direction[0] = 0.4f;
+        light.direction[1] = -1.0f;
+        light.direction[2] = 0.3f;
+    }
+    for (int i = 0; i < 3; i++) light.intensity[i] = type == AG_LIGHT_SUN ? 5e4f : 1000.0f;
+    if (!viewer_check(v, ag_scene_add_light(v->desc->scene, &light, NULL))) return;
+    v->lights_changed = true;
+    viewer_touch(v);
+}
+
+static void edit_sky(struct viewer *v)
+{
+    struct ag_scene_info info;
+    if (ag_scene_get_info(v->desc->scene, v->desc->animation, v->time_s, &info) != AG_OK ||
+        !ui_section("Sky", false))
+        return;
+    if (!edit_intensity(info.sky, "cd/m²", 5e4f)) return;
+    if (!viewer_check(v, ag_scene_set_sky(v->desc->scene, info.sky))) return;
+    v->lights_changed = true;
+    viewer_touch(v);
+}
+
+void panel_light(struct viewer *v)
+{
+    struct ag_scene_info info = { 0 };
+    ag_scene_get_info(v->desc->scene, v->desc->animation, v->time_s, &info);
+    ui_text("add");
+    for (int i = 0; i < 3; i++) {
+        ui_same_line();
+        if (ui_small_button(type_names[i])) add_light(v, (enum ag_light_type)i);
+    }
+    for (int i = 0; i < info.lights && i < VIEWER_LIGHTS; i++) edit_light(v, i);
+    edit_sky(v);
+}

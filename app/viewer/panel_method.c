@@ -1,0 +1,223 @@
+// The method: techniques of the catalogue, their options, presets and debug views.
+#include "panel.h"
+#include "operations.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_NAMES = METHOD_TECHNIQUES + 1 };
+
+// Ranges of decades that begin above 0 get a logarithmic slider.
+static bool is_wide(const struct ag_option_info *option)
+{
+    return option->min > 0 && option->max / option->min > 100.0;
+}
+
+static bool edit_number(const struct ag_option_info *option, const char *label, char *value)
+{
+    if (strcmp(option->type, "int") == 0) {
+        int number = (int)method_number(value);
+        if (!ui_integer(label, &number, (int)option->min, (int)option->max)) return false;
+        snprintf(value, METHOD_VALUE, "%d", number);
+    } else {
+        float number = (float)method_number(value);
+        if (!ui_number(label, &number, (float)option->min, (float)option->max, "%.4g",
+                       is_wide(option)))
+            return false;
+        snprintf(value, METHOD_VALUE, "%.6g", (double)number);
+    }
+    return true;
+}
+
+static bool edit_value(const struct ag_option_info *option, const char *label, char *value)
+{
+    if (strcmp(option->type, "bool") == 0) {
+        bool on = strcmp(value, "true") == 0;
+        if (!ui_switch(label, &on)) return false;
+        snprintf(value, METHOD_VALUE, "%s", on ? "true" : "false");
+        return true;
+    }
+    if (strcmp(option->type, "choice") == 0) {
+        char buffer[512];
+        const char *names[64];
+        const int count = method_choices(option, buffer, sizeof buffer, names, 64);
+        int index = method_choice(option, value);
+        if (!ui_choice(label, &index, names, count)) return false;
+        snprintf(value, METHOD_VALUE, "%s", names[index]);
+        return true;
+    }
+    return strcmp(option->type, "text") == 0 ? ui_line(label, value, METHOD_VALUE)
+                                             : edit_number(option, label, value);
+}
+
+static bool is_live(const struct ag_option_info *option)
+{
+    return strcmp(option->effect, "live") == 0 || strcmp(option->effect, "invalidate") == 0;
+}
+
+// Returns whether the method is to be run: changes of options that create objects wait until the
+// slider is let go.
+static bool edit_option(struct method *method, int technique, int k)
+{
+    struct ag_option_info option;
+    char label[96], help[1024], initial[METHOD_VALUE];
+    char *value = method->values[technique][k];
+    ag_technique_option_get(technique, k, &option);
+    const bool unit =
+        option.unit[0] && strcmp(option.type, "choice") != 0 && strcmp(option.type, "text") != 0;
+    snprintf(label, sizeof label, unit ? "%s (%s)" : "%s", option.name, option.unit);
+    ui_push(k);
+    const bool changed = edit_value(&option, label, value);
+    const bool numeric = strcmp(option.type, "int") == 0 || strcmp(option.type, "float") == 0;
+    bool run = numeric && !is_live(&option) ? ui_released() : changed;
+    method_default(&option, initial);
+    snprintf(help, sizeof help, "%s\ndefault %s; a change is %s", option.help,
+             initial[0] ? initial : "empty",
+             is_live(&option)                       ? "immediate"
+             : strcmp(option.effect, "rebake") == 0 ? "a new bake"
+                                                    : "a short wait: objects are created");
+    ui_tooltip(help);
+    if (strcmp(value, initial) != 0) {
+        ui_same_line();
+        if (ui_small_button("x")) {
+            snprintf(value, METHOD_VALUE, "%s", initial);
+            run = true;
+        }
+        ui_tooltip("Back to the default");
+    }
+    ui_pop();
+    return run;
+}
+
+static bool choose_preset(struct method *method, int technique,
+                          const struct ag_technique_info *info)
+{
+    bool changed = false;
+    for (int i = 0; i < info->preset_count; i++) {
+        const char *name, *options;
+        if (!ag_technique_preset_get(technique, i, &name, &options)) break;
+        if (i > 0) ui_same_line();
+        if (ui_small_button(name)) {
+            method_set_preset(method, technique, i);
+            changed = true;
+        }
+        ui_tooltip(options[0] ? options : "the defaults");
+    }
+    return changed;
+}
+
+static bool edit_technique(struct method *method, int technique)
+{
+    struct ag_technique_info info;
+    struct ag_option_info option;
+    bool changed = false, expert = false;
+    if (!ag_technique_get(technique, &info) || info.option_count == 0) return false;
+    ui_push(technique);
+    if (ui_section(info.name, true)) {
+        ui_faint("%s", info.title);
+        changed |= choose_preset(method, technique, &info);
+        for (int k = 0; k < METHOD_OPTIONS && ag_technique_option_get(technique, k, &option); k++) {
+            expert |= option.expert;
+            if (!option.expert) changed |= edit_option(method, technique, k);
+        }
+        char label[64];
+        snprintf(label, sizeof label, "for experts##%s", info.name);
+        if (expert && ui_section(label, false))
+            for (int k = 0; k < METHOD_OPTIONS && ag_technique_option_get(technique, k, &option);
+                 k++)
+                if (option.expert) changed |= edit_option(method, technique, k);
+    }
+    ui_pop();
+    return changed;
+}
+
+static bool choose_technique(struct method *method, enum method_role role)
+{
+    const char *names[MAX_NAMES];
+    int techniques[MAX_NAMES], count = 0, index = -1;
+    struct ag_technique_info info;
+    if (role != ROLE_SOURCE) {
+        names[count] = "(none)";
+        techniques[count++] = -1;
+    }
+    for (int i = 0; ag_technique_get(i, &info) && count < MAX_NAMES; i++) {
+        if (strcmp(info.role, method_roles[role]) != 0) continue;
+        names[count] = info.name;
+        techniques[count++] = i;
+    }
+    for (int i = 0; i < count; i++)
+        if (techniques[i] == method->chosen[role]) index = i;
+    if (!ui_choice(method_roles[role], &index, names, count)) return false;
+    method->chosen[role] = techniques[index];
+    return true;
+}
+
+// A failure leaves the running method as it is, and shows that again.
+static void edit_method(struct viewer *v, struct method *method, bool other)
+{
+    char gi[METHOD_SPEC];
+    bool changed = false;
+    for (int i = 0; i < ROLE_COUNT; i++) changed |= choose_technique(method, (enum method_role)i);
+    for (int i = 0; i < ROLE_COUNT; i++)
+        if (method->chosen[i] >= 0) changed |= edit_technique(method, method->chosen[i]);
+    if (!changed) return;
+    method_print(method, gi);
+    const bool done = other ? viewer_set_split(v, gi) : viewer_set_gi(v, gi);
+    if (!done) method_parse(method, ag_renderer_gi(other ? v->other.renderer : v->main.renderer));
+}
+
+static void choose_debug_view(struct viewer *v)
+{
+    const char *names[64] = { "(none)" }, *help[64] = { "" };
+    int count = 1, index = v->debug_view + 1;
+    for (int i = 0; i < ROLE_COUNT; i++) {
+        const int technique = v->method.chosen[i];
+        for (int k = 0; technique >= 0 && count < 64 &&
+                        ag_technique_debug_view_get(technique, k, &names[count], &help[count]);
+             k++)
+            count++;
+    }
+    if (count == 1) return;
+    if (!ui_choice("debug view", &index, names, count)) return;
+    if (!viewer_check(v, ag_renderer_set_debug_view(v->main.renderer, index ? names[index] : NULL)))
+        return;
+    viewer_check(v,
+                 ag_renderer_set_display(v->main.renderer, index          ? "debug"
+                                                           : v->layer > 0 ? viewer_layers[v->layer]
+                                                                          : NULL));
+    v->debug_view = index - 1;
+    if (index) viewer_say(v, "%s: %s", names[index], help[index]);
+    viewer_touch(v);
+}
+
+static void show_bytes(struct viewer *v)
+{
+    struct ag_renderer_desc desc;
+    struct ag_scene_info info = { 0 };
+    uint64_t bytes;
+    ag_scene_get_info(v->desc->scene, v->desc->animation, v->time_s, &info);
+    ag_renderer_desc_default(&desc);
+    desc.width = v->main.width;
+    desc.height = v->main.height;
+    desc.gi = v->gi;
+    desc.frame_options = v->desc->frame_options;
+    desc.indirect_layer = desc.id_layer = true;
+    if (ag_renderer_estimate_memory(v->desc->context, &desc, info.lights, &bytes) == AG_OK)
+        ui_faint("%.1f MB on the GPU, without the scene", (double)bytes * 1e-6);
+}
+
+void panel_method(struct viewer *v)
+{
+    bool split = v->split;
+    edit_method(v, &v->method, false);
+    choose_debug_view(v);
+    show_bytes(v);
+    ui_separator();
+    if (ui_switch("compare with another method", &split))
+        viewer_set_split(v, split ? "none" : NULL);
+    ui_tooltip("A line in the image divides both: drag it.");
+    if (!v->split) return;
+    ui_push(1000);
+    edit_method(v, &v->other_method, true);
+    ui_pop();
+}

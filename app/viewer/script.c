@@ -1,0 +1,379 @@
+#include "script.h"
+
+#include "command.h"
+#include "operations.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LINE_SIZE = 4096 };
+
+struct script {
+    FILE *file;
+    const char *path;
+    int line;
+    int waits;    // further frames
+    bool settles; // until the image is complete
+    float click_x, click_y;
+    int click; // steps of a click that are left: down, up
+    uint64_t random;
+    int random_left;
+    char error[1024]; // "": none
+};
+
+struct script *script_open(const char *path, char error[1024])
+{
+    struct script *script = calloc(1, sizeof *script);
+    FILE *file = script ? fopen(path, "r") : NULL;
+    if (!file) {
+        snprintf(error, 1024, "cannot read %s: %s", path, script ? strerror(errno) : "no memory");
+        free(script);
+        return NULL;
+    }
+    script->file = file;
+    script->path = path;
+    return script;
+}
+
+void script_close(struct script *script)
+{
+    if (!script) return;
+    fclose(script->file);
+    free(script);
+}
+
+bool script_failed(const struct script *script, char error[1024])
+{
+    if (script->error[0]) snprintf(error, 1024, "%s", script->error);
+    return script->error[0] != 0;
+}
+
+static bool wrong(struct script *script, const char *what, const char *text)
+{
+    snprintf(script->error, sizeof script->error, "%.250s:%d: %.350s %.350s", script->path,
+             script->line, what, text);
+    return false;
+}
+
+// ---- commands: false after a failure
+
+struct words {
+    struct viewer *v;
+    struct script *script;
+    struct event_queue *queue;
+    const char *name;
+    char *rest; // of the line, after the name
+};
+
+static bool is(const struct words *w, const char *name)
+{
+    return strcmp(w->name, name) == 0;
+}
+
+static bool done(const struct words *w, bool success)
+{
+    return success || wrong(w->script, w->v->message, "");
+}
+
+static bool run_mouse(const struct words *w)
+{
+    struct event event = { .kind = is(w, "mouse") ? EVENT_MOUSE : EVENT_SCROLL };
+    if (sscanf(w->rest, "%f %f", &event.x, &event.y) != 2)
+        return wrong(w->script, "two numbers expected:", w->rest);
+    event_push(w->queue, &event);
+    return true;
+}
+
+static bool run_button(const struct words *w)
+{
+    static const char *const buttons[] = { "left", "right", "middle" };
+    char name[16] = "", state[16] = "";
+    struct event event = { .kind = EVENT_BUTTON, .code = -1 };
+    sscanf(w->rest, "%15s %15s", name, state);
+    for (int i = 0; i < 3; i++)
+        if (strcmp(name, buttons[i]) == 0) event.code = i;
+    event.down = strcmp(state, "down") == 0;
+    if (event.code < 0) return wrong(w->script, "unknown button", name);
+    event_push(w->queue, &event);
+    return true;
+}
+
+static bool run_key(const struct words *w)
+{
+    char name[32] = "", state[16] = "";
+    sscanf(w->rest, "%31s %15s", name, state);
+    struct event event = { .kind = EVENT_KEY, .code = event_key_code(name) };
+    if (!event.code) return wrong(w->script, "unknown key", name);
+    event.down = is(w, "press") || strcmp(state, "down") == 0;
+    event_push(w->queue, &event);
+    if (!is(w, "press")) return true;
+    event.down = false;
+    event_push(w->queue, &event);
+    return true;
+}
+
+static bool run_text(const struct words *w)
+{
+    for (const char *c = w->rest; *c; c++)
+        event_push(w->queue, &(struct event){ .kind = EVENT_TEXT, .code = (unsigned char)*c });
+    return true;
+}
+
+static bool run_click(const struct words *w)
+{
+    struct script *script = w->script;
+    if (!interface_find(w->rest, &script->click_x, &script->click_y))
+        return wrong(script, "no element is shown with the label", w->rest);
+    event_push(w->queue,
+               &(struct event){ .kind = EVENT_MOUSE, .x = script->click_x, .y = script->click_y });
+    script->click = 2;
+    return true;
+}
+
+static bool run_tab(const struct words *w)
+{
+    static const char *const tabs[] = { "View", "Light", "Method", "Cost", "Inspect" };
+    for (int i = 0; i < (int)(sizeof tabs / sizeof *tabs); i++)
+        if (strcmp(tabs[i], w->rest) == 0) {
+            w->v->show_tab = i;
+            w->script->waits = 2;
+            return true;
+        }
+    return wrong(w->script, "unknown tab", w->rest);
+}
+
+static bool run_size(const struct words *w)
+{
+    int width, height;
+    if (sscanf(w->rest, "%dx%d", &width, &height) != 2 || width < 1 || height < 1 ||
+        width > 16384 || height > 16384)
+        return wrong(w->script, "a size is WxH:", w->rest);
+    window_resize(w->v->window, width, height);
+    return true;
+}
+
+static bool run_layer(const struct words *w)
+{
+    for (int i = 0; i < viewer_layer_count; i++)
+        if (strcmp(viewer_layers[i], w->rest) == 0) {
+            viewer_set_layer(w->v, i);
+            return true;
+        }
+    return wrong(w->script, "unknown layer", w->rest);
+}
+
+static bool run_exposure(const struct words *w)
+{
+    w->v->auto_exposure = strcmp(w->rest, "auto") == 0;
+    if (!w->v->auto_exposure) w->v->exposure_ev = strtof(w->rest, NULL);
+    viewer_touch(w->v);
+    return true;
+}
+
+static bool run_scale(const struct words *w)
+{
+    const float scale = strtof(w->rest, NULL);
+    if (!(scale >= 0.1f && scale <= 2.0f)) return wrong(w->script, "scale is 0.1 to 2:", w->rest);
+    w->v->scale = scale;
+    viewer_touch(w->v);
+    return true;
+}
+
+static bool run_camera(const struct words *w)
+{
+    const struct ag_scene *scene = w->v->desc->scene;
+    const int count = ag_scene_camera_count(scene);
+    for (int i = 0; i < count; i++)
+        if (strcmp(ag_scene_camera_name(scene, i), w->rest) == 0) {
+            viewer_set_camera(w->v, i);
+            return true;
+        }
+    if (strcmp(w->rest, "given") != 0) return wrong(w->script, "unknown camera", w->rest);
+    viewer_set_camera(w->v, -1);
+    return true;
+}
+
+static bool run_look(const struct words *w)
+{
+    struct ag_camera camera = w->v->camera;
+    float *e = camera.eye, *t = camera.target;
+    if (sscanf(w->rest, "%f,%f,%f %f,%f,%f", e, e + 1, e + 2, t, t + 1, t + 2) != 6)
+        return wrong(w->script, "look takes X,Y,Z X,Y,Z:", w->rest);
+    const float speed = w->v->look.speed;
+    look_from_camera(&w->v->look, &camera, 0);
+    w->v->look.speed = speed;
+    w->v->look.moved = true;
+    viewer_touch(w->v);
+    return true;
+}
+
+static bool run_light(const struct words *w)
+{
+    int light = -1, on = 0;
+    struct ag_light_info info;
+    sscanf(w->rest, "%d %d", &light, &on);
+    if (!viewer_check(w->v, ag_scene_get_light(w->v->desc->scene, light, w->v->desc->animation,
+                                               w->v->time_s, &info)))
+        return done(w, false);
+    info.light.enabled = on != 0;
+    w->v->lights_changed = true;
+    viewer_touch(w->v);
+    return done(w, viewer_check(w->v, ag_scene_set_light(w->v->desc->scene, light, &info.light)));
+}
+
+static bool run_command(const struct words *w)
+{
+    char command[METHOD_SPEC];
+    if (!viewer_command(w->v, command, sizeof command)) return done(w, false);
+    FILE *file = fopen(w->rest, "w");
+    if (!file) return wrong(w->script, "cannot write", w->rest);
+    fprintf(file, "%s\n", command);
+    return fclose(file) == 0 || wrong(w->script, "cannot write", w->rest);
+}
+
+static bool run_screenshot(const struct words *w)
+{
+    snprintf(w->v->screenshot, sizeof w->v->screenshot, "%s", w->rest);
+    w->script->waits = 1;
+    return true;
+}
+
+static bool run_random(const struct words *w)
+{
+    unsigned long seed = 0;
+    if (sscanf(w->rest, "%lu %d", &seed, &w->script->random_left) != 2)
+        return wrong(w->script, "random takes SEED N:", w->rest);
+    w->script->random = seed * 0x9e3779b97f4a7c15u + 1;
+    return true;
+}
+
+static bool run(const struct words *w)
+{
+    struct viewer *v = w->v;
+    if (is(w, "wait")) {
+        w->script->waits = atoi(w->rest);
+        return true;
+    }
+    if (is(w, "settle")) return w->script->settles = true;
+    if (is(w, "mouse") || is(w, "scroll")) return run_mouse(w);
+    if (is(w, "button")) return run_button(w);
+    if (is(w, "key") || is(w, "press")) return run_key(w);
+    if (is(w, "text")) return run_text(w);
+    if (is(w, "click")) return run_click(w);
+    if (is(w, "tab")) return run_tab(w);
+    if (is(w, "size")) return run_size(w);
+    if (is(w, "gi")) return done(w, viewer_set_gi(v, w->rest));
+    if (is(w, "split"))
+        return done(w, viewer_set_split(v, strcmp(w->rest, "off") == 0 ? NULL : w->rest));
+    if (is(w, "layer")) return run_layer(w);
+    if (is(w, "exposure")) return run_exposure(w);
+    if (is(w, "scale")) return run_scale(w);
+    if (is(w, "camera")) return run_camera(w);
+    if (is(w, "look")) return run_look(w);
+    if (is(w, "light")) return run_light(w);
+    if (is(w, "save")) return done(w, viewer_write(v, w->rest));
+    if (is(w, "screenshot")) return run_screenshot(w);
+    if (is(w, "command")) return run_command(w);
+    if (is(w, "random")) return run_random(w);
+    if (is(w, "quit")) return v->quit = true;
+    return wrong(w->script, "unknown command", w->name);
+}
+
+// ---- random events
+
+static uint32_t draw(struct script *script, uint32_t below)
+{
+    script->random = script->random * 6364136223846793005u + 1442695040888963407u;
+    return (uint32_t)(script->random >> 33) % below;
+}
+
+static void push_random(struct script *script, struct viewer *v, struct event_queue *queue)
+{
+    static const char *const names[] = { "w",      "a",    "s",    "d",     "q",
+                                         "e",      "f",    "tab",  "enter", "space",
+                                         "escape", "home", "down", "up",    "backspace" };
+    struct event event = { .kind = EVENT_MOUSE };
+    switch (draw(script, 8)) {
+    case 0:
+    case 1:
+    case 2:
+        event.x = (float)draw(script, v->swapchain.width + 1);
+        event.y = (float)draw(script, v->swapchain.height + 1);
+        break;
+    case 3:
+    case 4:
+    case 5:
+        event.kind = EVENT_BUTTON;
+        event.code = draw(script, 8) ? 0 : (int)draw(script, 3);
+        event.down = draw(script, 2);
+        break;
+    case 6:
+        event.kind = EVENT_KEY;
+        event.code = event_key_code(names[draw(script, sizeof names / sizeof *names)]);
+        event.down = draw(script, 2);
+        break;
+    case 7:
+        event.kind = draw(script, 2) ? EVENT_SCROLL : EVENT_TEXT;
+        event.y = (float)draw(script, 5) - 2.0f;
+        event.code = (int)draw(script, 95) + 32;
+        break;
+    default:
+        break;
+    }
+    event_push(queue, &event);
+}
+
+// ---- lines
+
+static bool read_line(struct script *script, char line[LINE_SIZE])
+{
+    while (fgets(line, LINE_SIZE, script->file)) {
+        script->line++;
+        line[strcspn(line, "\r\n#")] = 0;
+        size_t length = strlen(line);
+        while (length > 0 && line[length - 1] == ' ') line[--length] = 0;
+        if (line[strspn(line, " \t")]) return true;
+    }
+    return false;
+}
+
+static bool run_line(struct script *script, struct viewer *v, struct event_queue *queue, char *line)
+{
+    char *name = line + strspn(line, " \t"), *rest = name + strcspn(name, " \t");
+    if (*rest) *rest++ = 0;
+    rest += strspn(rest, " \t");
+    return run(&(struct words){ v, script, queue, name, rest });
+}
+
+// What a line began and goes on for more frames.
+static bool goes_on(struct script *script, struct viewer *v, struct event_queue *queue)
+{
+    if (script->click > 0) {
+        event_push(queue, &(struct event){ .kind = EVENT_BUTTON, .down = script->click == 2 });
+        script->click--;
+        return true;
+    }
+    if (script->random_left > 0) {
+        script->random_left--;
+        push_random(script, v, queue);
+        return true;
+    }
+    if (script->waits > 0) {
+        script->waits--;
+        return true;
+    }
+    script->settles = script->settles && v->dirty > 0;
+    return script->settles;
+}
+
+bool script_step(struct script *script, struct viewer *v, struct event_queue *queue)
+{
+    char line[LINE_SIZE];
+    while (!goes_on(script, v, queue)) {
+        if (!read_line(script, line)) return false;
+        if (!run_line(script, v, queue, line)) return false;
+    }
+    return true;
+}

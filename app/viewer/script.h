@@ -1,0 +1,36 @@
+// Scripts: events and commands of a text file, a line each, replayed with frames of 1/60 s. Words
+// are separated by spaces; the last may have some. '#' begins a comment.
+//
+//   wait N                       frames pass
+//   settle                       frames pass until the image is complete
+//   mouse X Y                    pixels of the window
+//   button left|right|middle down|up
+//   scroll X Y                   steps
+//   key NAME down|up             w, f, space, escape, left …
+//   press NAME                   a key, down and up
+//   text WORDS                   characters
+//   click LABEL                  moves the mouse to an element of the panels and clicks
+//   tab NAME                     shows View, Light, Method, Cost or Inspect
+//   size WxH                     of the window
+//   gi SPEC · split SPEC|off · layer NAME · exposure EV|auto · scale F
+//   camera NAME|given · look X,Y,Z X,Y,Z
+//   light N X                    switches light N on (1) or off (0)
+//   save FILE · screenshot FILE  the image (.png, .exr); the window (.png)
+//   command FILE                 the command that renders this view
+//   random SEED N                N random events
+//   quit
+//
+// A line that fails ends the script: viewer_run returns its sentence.
+#pragma once
+
+#include "event.h"
+
+struct script;
+struct viewer;
+
+// NULL with a sentence in `error`.
+struct script *script_open(const char *path, char error[1024]);
+void script_close(struct script *script); // accepts NULL
+// Runs lines until one waits, and appends events. False: the script has ended.
+bool script_step(struct script *script, struct viewer *v, struct event_queue *queue);
+bool script_failed(const struct script *script, char error[1024]);

@@ -1,0 +1,70 @@
+// What the viewer holds, for its own files.
+#pragma once
+
+#include "interface.h"
+#include "look.h"
+#include "method.h"
+#include "rendering.h"
+#include "viewer.h"
+
+enum { VIEWER_LIGHTS = 128, VIEWER_PASSES = 96, VIEWER_HISTORY = 180, VIEWER_MESSAGE = 1024 };
+
+// The part of the window that shows the image, in pixels.
+struct region {
+    float x0, y0, x1, y1;
+};
+
+// Milliseconds of passes, and the last frames of each for the plot.
+struct times {
+    int count, newest, frames; // passes; column of the newest frame; columns that are filled
+    char names[VIEWER_PASSES][48];
+    float ms[VIEWER_PASSES][VIEWER_HISTORY];
+    float frame_ms[VIEWER_HISTORY];
+    uint64_t frame; // number of the newest frame that was added
+};
+
+struct viewer {
+    const struct viewer_desc *desc;
+    struct window *window;
+    struct gpu gpu;
+    struct swapchain swapchain;
+    struct ag_device *device;
+    struct ag_device_info device_info;
+    struct rendering main, other; // other: of a split screen, without a renderer if there is none
+
+    struct method method, other_method;
+    char gi[METHOD_SPEC], other_gi[METHOD_SPEC]; // running
+    bool split;
+    float split_at; // 0…1 of the region
+
+    struct look look;
+    struct ag_camera camera; // of the next frame
+    int scene_camera;        // its index while it is shown unchanged; -1: not of the scene
+    struct ag_camera given;  // of the command line
+    bool turning, orbiting, dragging_split;
+    float mouse_x, mouse_y;
+    bool keys[512];
+
+    bool auto_exposure;
+    float exposure_ev;
+    int layer, debug_view; // indices of layer_names and of the techniques' debug views; -1: none
+    float scale;           // of the image
+    bool playing;
+    double time_s;
+    bool lights_changed, materials_changed, instances_changed; // since the scene was loaded
+
+    struct ag_pick pick; // surface under the mouse
+    int picked_instance; // chosen by a click; -1: none
+
+    struct times times;
+    int dirty; // further frames to render, until what accumulates has settled
+    bool quit;
+    uint64_t frame;               // frames of the window so far
+    float frame_s;                // smoothed duration of a frame of the window
+    char message[VIEWER_MESSAGE]; // shown in the status line
+    double message_until_s;
+    bool message_warns;
+    char screenshot[1024]; // to be written with the next frame; "": none
+    int show_tab;          // to be shown by the next frame; -1: the user's
+    struct script *script;
+};

@@ -1,0 +1,304 @@
+// The viewer's life: opening, frames, closing.
+#include "command.h"
+#include "controls.h"
+#include "operations.h"
+#include "panels.h"
+#include "script.h"
+#include "times.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const float PI = 3.14159265f;
+static const double IDLE_WAIT_S = 0.1;
+
+// ---- the image
+
+// The camera of the scene follows its animation until the user moves it.
+static void update_camera(struct viewer *v)
+{
+    float target[3];
+    if (!v->look.moved) {
+        const char *name = ag_scene_camera_name(v->desc->scene, v->scene_camera);
+        if (v->scene_camera >= 0 && v->playing)
+            ag_scene_camera(v->desc->scene, name, v->desc->animation, v->time_s, &v->camera);
+        return;
+    }
+    look_target(&v->look, target);
+    ag_scene_look_at(v->desc->scene, v->look.eye, target,
+                     (float)((double)v->look.fov_deg * (double)PI / 180.0), &v->camera);
+}
+
+static bool render(struct viewer *v)
+{
+    struct ag_frame_desc frame;
+    const int mouse[2] = { (int)(v->scale * v->mouse_x), (int)(v->scale * v->mouse_y) };
+    update_camera(v);
+    ag_frame_desc_default(&frame);
+    frame.camera = v->camera;
+    frame.time_s = v->time_s;
+    frame.animation = v->desc->animation;
+    frame.auto_exposure = v->auto_exposure;
+    frame.exposure_ev = v->exposure_ev;
+    if (mouse[0] >= 0 && mouse[1] >= 0 && mouse[0] < v->main.width && mouse[1] < v->main.height)
+        frame.pick = mouse;
+    enum ag_result result = rendering_render(&v->main, &frame);
+    if (result == AG_OK && v->split) {
+        // Both are exposed alike.
+        frame.pick = NULL;
+        if (v->auto_exposure) {
+            struct ag_finished_frame finished;
+            ag_renderer_finished(v->main.renderer, &finished);
+            frame.auto_exposure = finished.frame == 0;
+            frame.exposure_ev = finished.exposure_ev;
+        }
+        result = rendering_render(&v->other, &frame);
+    }
+    if (v->dirty > 0) v->dirty--;
+    times_add(v);
+    return viewer_check(v, result);
+}
+
+static bool fit_renderings(struct viewer *v)
+{
+    int width, height;
+    viewer_image_size(v, &width, &height);
+    if (width == v->main.width && height == v->main.height) return true;
+    viewer_touch(v);
+    return viewer_check(v, rendering_resize(&v->main, width, height)) &&
+           (!v->split || viewer_check(v, rendering_resize(&v->other, width, height)));
+}
+
+static void draw_renderings(struct viewer *v)
+{
+    const struct region r = viewer_region(v);
+    const float rectangle[4] = { r.x0, r.y0, r.x1, r.y1 };
+    swapchain_clear(&v->swapchain);
+    rendering_draw(&v->main, &v->swapchain, rectangle, 0.0f, v->split ? v->split_at : 1.0f);
+    if (v->split) rendering_draw(&v->other, &v->swapchain, rectangle, v->split_at, 1.0f);
+}
+
+// ---- a frame of the window
+
+static bool write_screenshot(struct viewer *v, const struct gpu_mapped *mapped, const char *path)
+{
+    const int width = (int)v->swapchain.width, height = (int)v->swapchain.height;
+    const bool bgr = v->swapchain.format.format == VK_FORMAT_B8G8R8A8_UNORM;
+    const unsigned char *bytes = mapped->bytes;
+    struct ag_image *image = NULL;
+    enum ag_result result = ag_image_create(v->desc->context, width, height, 3, &image);
+    for (int i = 0; result == AG_OK && i < width * height; i++)
+        for (int c = 0; c < 3; c++) {
+            const float s = (float)bytes[4 * i + (bgr ? 2 - c : c)] / 255.0f;
+            image->pixels[3 * i + c] =
+                s <= 0.04045f ? s / 12.92f : powf((s + 0.055f) / 1.055f, 2.4f);
+        }
+    if (result == AG_OK) result = ag_image_write_png(v->desc->context, path, image);
+    ag_image_destroy(v->desc->context, image);
+    return viewer_check(v, result);
+}
+
+static bool draw(struct viewer *v)
+{
+    VkCommandBuffer commands;
+    struct gpu_mapped copy = { 0 };
+    bool alive = swapchain_begin(&v->swapchain, &commands);
+    const bool copies =
+        alive && commands && v->screenshot[0] &&
+        gpu_mapped_open(&v->gpu, (VkDeviceSize)v->swapchain.width * v->swapchain.height * 4, &copy);
+    if (!commands) {
+        interface_skip();
+        return alive;
+    }
+    draw_renderings(v);
+    swapchain_pass_begin(&v->swapchain);
+    interface_end(commands);
+    swapchain_pass_end(&v->swapchain);
+    if (copies) swapchain_copy(&v->swapchain, copy.buffer);
+    alive = swapchain_end(&v->swapchain);
+    if (copies) {
+        alive = vkQueueWaitIdle(v->gpu.queue) == VK_SUCCESS && alive;
+        if (alive) write_screenshot(v, &copy, v->screenshot);
+        v->screenshot[0] = 0;
+        gpu_mapped_close(&v->gpu, &copy);
+    }
+    return alive;
+}
+
+static bool fit_window(struct viewer *v)
+{
+    int width, height;
+    window_pixels(v->window, &width, &height);
+    if (width == 0 || height == 0) return true;
+    if (!v->swapchain.stale && (uint32_t)width == v->swapchain.width &&
+        (uint32_t)height == v->swapchain.height)
+        return true;
+    return swapchain_resize(&v->swapchain, width, height);
+}
+
+static bool is_idle(const struct viewer *v)
+{
+    return v->dirty == 0 && !v->playing && !v->script && v->desc->frames == 0 && !v->turning;
+}
+
+static void handle_events(struct viewer *v, bool waits)
+{
+    struct event_queue queue = { .count = 0 };
+    window_poll(v->window, waits ? IDLE_WAIT_S : 0.0, &queue);
+    if (v->script) queue.count = 0; // a script alone has the window
+    if (v->script && !script_step(v->script, v, &queue)) v->quit = true;
+    for (int i = 0; i < queue.count; i++) {
+        interface_event(&queue.events[i]);
+        controls_event(v, &queue.events[i]);
+    }
+}
+
+static bool step(struct viewer *v, float seconds)
+{
+    handle_events(v, is_idle(v));
+    controls_step(v, seconds);
+    if (v->playing) v->time_s += (double)seconds;
+    if (!fit_window(v)) return false;
+    const bool shown = v->swapchain.handle != VK_NULL_HANDLE;
+    if (shown && fit_renderings(v) && (v->dirty > 0 || v->playing)) render(v);
+    if (!shown) return true;
+    interface_begin((int)v->swapchain.width, (int)v->swapchain.height, seconds);
+    panels_draw(v);
+    return draw(v);
+}
+
+static bool is_last(const struct viewer *v)
+{
+    return v->desc->frames > 0 && v->frame + 1 == (uint64_t)v->desc->frames;
+}
+
+static bool loop(struct viewer *v, char error[1024])
+{
+    double last = window_seconds();
+    while (!v->quit && !window_should_close(v->window) &&
+           (v->desc->frames == 0 || v->frame < (uint64_t)v->desc->frames)) {
+        const double now = window_seconds();
+        const float seconds = v->script ? 1.0f / 60.0f : fminf((float)(now - last), 0.25f);
+        v->frame_s += 0.1f * ((float)(now - last) - v->frame_s);
+        last = now;
+        if (v->desc->screenshot && is_last(v))
+            snprintf(v->screenshot, sizeof v->screenshot, "%s", v->desc->screenshot);
+        if (v->desc->interrupted(v->desc->user)) break;
+        if (!step(v, seconds)) {
+            snprintf(error, 1024,
+                     "the Vulkan device was lost or gives no more images: begin again "
+                     "with a smaller --size or --scale");
+            return false;
+        }
+        v->frame++;
+    }
+    return true;
+}
+
+// ---- opening and closing
+
+static const char *clipboard(void *window)
+{
+    return window_clipboard(window);
+}
+
+static void set_clipboard(void *window, const char *text)
+{
+    window_set_clipboard(window, text);
+}
+
+static bool open(struct viewer *v, char error[1024])
+{
+    const struct viewer_desc *desc = v->desc;
+    char why[512], title[300];
+    snprintf(title, sizeof title, "%.255s · Afterglow", desc->scene_name);
+    v->window = window_open(title, desc->width, desc->height, why);
+    int width, height;
+    if (v->window) window_pixels(v->window, &width, &height);
+    if (!v->window || !gpu_open(&v->gpu, v->window, desc->device, desc->validate, why)) {
+        snprintf(error, 1024, "%s", why);
+        return false;
+    }
+    const struct interface_desc interface = {
+        .gpu = &v->gpu,
+        .swapchain = &v->swapchain,
+        .scale = window_scale(v->window),
+        .user = v->window,
+        .clipboard = clipboard,
+        .set_clipboard = set_clipboard,
+    };
+    if (gpu_lend(&v->gpu, desc->context, &v->device) != AG_OK) {
+        snprintf(error, 1024, "%s", ag_context_last_error(desc->context));
+        return false;
+    }
+    if (!swapchain_open(&v->swapchain, &v->gpu, width, height) || !interface_open(&interface)) {
+        snprintf(error, 1024,
+                 "cannot show images in the window: the Vulkan device gives none that "
+                 "the viewer supports; use afterglow render");
+        return false;
+    }
+    ag_device_get_info(v->device, &v->device_info);
+    v->scale = desc->scale > 0 ? desc->scale : v->device_info.software ? 0.5f : 1.0f;
+    return true;
+}
+
+static bool begin(struct viewer *v, char error[1024])
+{
+    const struct viewer_desc *desc = v->desc;
+    method_init(&v->method);
+    method_init(&v->other_method);
+    if (!viewer_open_rendering(v, desc->gi, &v->main) ||
+        (desc->split && !viewer_set_split(v, desc->split))) {
+        snprintf(error, 1024, "%s", ag_context_last_error(desc->context));
+        return false;
+    }
+    snprintf(v->gi, sizeof v->gi, "%s", desc->gi);
+    method_parse(&v->method, ag_renderer_gi(v->main.renderer));
+    viewer_set_camera(v, -1);
+    v->script = desc->script ? script_open(desc->script, error) : NULL;
+    return !desc->script || v->script;
+}
+
+static void close(struct viewer *v)
+{
+    if (v->gpu.device) vkDeviceWaitIdle(v->gpu.device);
+    script_close(v->script);
+    rendering_close(&v->other);
+    rendering_close(&v->main);
+    interface_close();
+    swapchain_close(&v->swapchain);
+    ag_device_destroy(v->device);
+}
+
+bool viewer_run(const struct viewer_desc *desc, char error[1024])
+{
+    struct viewer *v = calloc(1, sizeof *v);
+    if (!v) {
+        snprintf(error, 1024, "cannot open the viewer: out of memory");
+        return false;
+    }
+    v->desc = desc;
+    v->split_at = 0.5f;
+    v->scene_camera = -1;
+    v->given = desc->camera;
+    v->auto_exposure = !desc->has_exposure;
+    v->exposure_ev = desc->exposure_ev;
+    v->debug_view = v->picked_instance = v->show_tab = -1;
+    v->time_s = desc->time_s;
+    v->pick.instance = -1;
+    bool done = open(v, error) && begin(v, error) && loop(v, error);
+    if (done && v->script && script_failed(v->script, error)) done = false;
+    close(v);
+    if (done && v->gpu.messages > 0) {
+        snprintf(error, 1024, "Vulkan validation logged %d messages, the first: %s",
+                 v->gpu.messages, v->gpu.message);
+        done = false;
+    }
+    gpu_close(&v->gpu);
+    if (v->window) window_close(v->window);
+    free(v);
+    return done;
+}

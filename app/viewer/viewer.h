@@ -1,0 +1,35 @@
+// afterglow view: a window in which a scene is looked at and lit, and methods are chosen, compared
+// and measured. It uses the library as any other program does.
+#pragma once
+
+#include <afterglow/afterglow.h>
+
+struct viewer_desc {
+    struct ag_context *context;
+    struct ag_scene *scene; // lit; the viewer changes it
+    const char *scene_name; // as on the command line
+    const char *gi, *frame_options, *device;
+    const char *scene_words;  // options of the command line that load the scene so
+    const char *light_words;  // likewise those that light it, and
+    const char *camera_words; // those of its camera
+    struct ag_camera camera;
+    int animation;
+    double time_s;
+    bool has_exposure;
+    float exposure_ev;
+    int width, height;      // of the window
+    float scale;            // of the image's width and height; 0: chosen by the device
+    const char *split;      // a GI spec to compare with; NULL: none
+    const char *script;     // a file, see script.h; NULL: none
+    const char *screenshot; // a .png of the last frame's window; NULL: none
+    int frames;             // ends after so many; 0: when the window is closed
+    bool validate;          // with the validation layers
+    void *user;             // of the functions
+    // Writes the newest frame of a renderer as afterglow render does.
+    bool (*write)(void *user, struct ag_renderer *renderer, const char *layer, const char *path);
+    // The bakes that a GI spec needs, from the cache; false: one is missing.
+    bool (*interrupted)(void *user);
+};
+
+// False with a sentence in `error`: no display, no device, or a file that cannot be used.
+bool viewer_run(const struct viewer_desc *desc, char error[1024]);
