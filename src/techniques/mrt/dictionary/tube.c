@@ -63,71 +63,112 @@ static float straight_wall(vec3s from, vec3s direction)
     float b = from.x * direction.x + from.y * direction.y;
     float c = from.x * from.x + from.y * from.y - TUBE_RADIUS * TUBE_RADIUS;
     if (a < 1e-12f) return INFINITY;
-    return (-b + sqrtf(fmaxf(b * b - a * c, 0.0f))) / a;
+    return (-b + sqrtf(glm_max(b * b - a * c, 0.0f))) / a;
 }
 
-// Distance from a point inside a bend to its wall.
-static float bend_clearance(float side, vec3s at)
+// A bend is a part of the torus (q² + R² − r²)² = 4R² (x² + z²) around the edge of the cell. Along
+// a ray the difference of both sides is a quartic, negative inside.
+struct quartic {
+    double of[5]; // coefficient of each power of the distance
+};
+
+// Rounding may set a point of the wall outside: the torus through that point is taken then.
+static struct quartic bend_quartic(float side, vec3s from, vec3s direction)
 {
-    float x = at.x - side * 0.5f, z = at.z + 0.5f;
-    float out = sqrtf(x * x + z * z) - BEND_RADIUS;
-    return TUBE_RADIUS - sqrtf(out * out + at.y * at.y);
+    const double axis = (double)BEND_RADIUS, tube = (double)TUBE_RADIUS, k = 4.0 * axis * axis;
+    const double x = (double)from.x - (double)side * axis, y = (double)from.y,
+                 z = (double)from.z + axis;
+    const double dx = (double)direction.x, dy = (double)direction.y, dz = (double)direction.z;
+    const double a = dx * dx + dy * dy + dz * dz, b = x * dx + y * dy + z * dz,
+                 c = x * x + y * y + z * z + axis * axis - tube * tube;
+    const double start = c * c - k * (x * x + z * z);
+    return (struct quartic){ { start < 0.0 ? start : 0.0, 4.0 * b * c - 2.0 * k * (x * dx + z * dz),
+                               4.0 * b * b + 2.0 * a * c - k * (dx * dx + dz * dz), 4.0 * a * b,
+                               a * a } };
 }
 
-static const float CLOSE = 1e-5f; // clearance of a point on the wall
-
-// The wall between two distances (x; y: their clearances), by regula falsi with the weights of the
-// Illinois method: three steps on average.
-static float find_wall(float side, vec3s from, vec3s direction, vec2s inside, vec2s outside)
+static double quartic_value(const struct quartic *f, double t)
 {
-    float middle = inside.x, last = 0.0f;
-    for (int i = 0; i < 16; i++) {
-        middle = inside.x + (outside.x - inside.x) * inside.y / (inside.y - outside.y);
-        const float clearance = bend_clearance(side, glms_vec3_muladds(direction, middle, from));
-        if (fabsf(clearance) < CLOSE) break;
-        if (clearance > 0.0f) {
-            inside = (vec2s){ { middle, clearance } };
-            if (last > 0.0f) outside.y *= 0.5f;
-        } else {
-            outside = (vec2s){ { middle, clearance } };
-            if (last < 0.0f) inside.y *= 0.5f;
-        }
-        last = clearance;
+    return f->of[0] + t * (f->of[1] + t * (f->of[2] + t * (f->of[3] + t * f->of[4])));
+}
+
+static double quartic_slope(const struct quartic *f, double t)
+{
+    return f->of[1] + t * (2.0 * f->of[2] + t * (3.0 * f->of[3] + t * 4.0 * f->of[4]));
+}
+
+static const double CONVERGED = 1e-6; // step of Newton's method; the error is its square
+
+// The zero where a convex part that begins at 0 or below becomes positive. Newton's method
+// approaches it from above and cannot pass it.
+static bool rises_convex(const struct quartic *f, double begin, double end, double *zero)
+{
+    double t = end, step = INFINITY;
+    if (!(quartic_value(f, end) > 0.0)) return false;
+    for (int i = 0; i < 64 && t > begin && step > CONVERGED; i++) {
+        step = quartic_value(f, t) / quartic_slope(f, t);
+        t -= step;
     }
-    return middle;
+    *zero = t > begin ? t : begin;
+    return true;
 }
 
-// Sphere tracing, in which the clearance is a lower bound of the distance up to `limit`. Rays that
-// graze the wall would take hundreds of steps: near it the secant of the last two points leads on.
-// The first step leaves the wall on which the ray may begin.
+// The zero where a concave part becomes positive, approached from below. The maximum may be below
+// 0.
+static bool rises_concave(const struct quartic *f, double begin, double end, double *zero)
+{
+    double t = begin, step = INFINITY;
+    for (int i = 0; i < 64 && step > CONVERGED; i++) {
+        const double slope = quartic_slope(f, t);
+        if (!(slope > 0.0)) return false;
+        step = -quartic_value(f, t) / slope;
+        t += step;
+        if (t > end) return false;
+    }
+    *zero = t;
+    return true;
+}
+
+// Points of inflection, in order; the quartic is concave between them. Equal where there are none.
+static void inflections(const struct quartic *f, double out[2])
+{
+    const double a = 6.0 * f->of[4], b = 1.5 * f->of[3], c = f->of[2];
+    const double root = sqrt(b * b > a * c ? b * b - a * c : 0.0);
+    out[0] = (-b - root) / a;
+    out[1] = (-b + root) / a;
+}
+
+static double clamped(double x, double least, double most)
+{
+    return x < least ? least : x > most ? most : x;
+}
+
+// The first place where the quartic becomes positive, or `limit`. Parts of one curvature have one
+// such place at most. A start on the wall is a zero too, but there the quartic falls.
 static float bend_wall(float side, vec3s from, vec3s direction, float limit)
 {
-    static const float FIRST = 1e-3f, SECANT = 0.05f;
-    float t = FIRST, before = 0.0f, clearance_before = 0.0f;
-    for (int i = 0; i < 64; i++) {
-        float clearance = bend_clearance(side, glms_vec3_muladds(direction, t, from));
-        if (clearance < -CLOSE && i > 0)
-            return find_wall(side, from, direction, (vec2s){ { before, clearance_before } },
-                             (vec2s){ { t, clearance } });
-        if (t >= limit || clearance < CLOSE) break;
-        float slope = (clearance_before - clearance) / (t - before);
-        before = t;
-        clearance_before = clearance;
-        t = fminf(t + (slope > 0.0f && clearance < SECANT ? clearance / slope : clearance), limit);
-    }
-    return t;
+    static const float FAR = 2.0f; // more than any chord of the torus
+    const struct quartic f = bend_quartic(side, from, direction);
+    const double end = (double)glm_min(limit, FAR);
+    double part[2], zero;
+    inflections(&f, part);
+    for (int i = 0; i < 2; i++) part[i] = clamped(part[i], 0.0, end);
+    if (rises_convex(&f, 0.0, part[0], &zero) || rises_concave(&f, part[0], part[1], &zero) ||
+        rises_convex(&f, part[1], end, &zero))
+        return (float)zero;
+    return (float)end;
 }
 
 enum tube_exit tube_trace(enum tube_bend bend, vec3s from, vec3s direction, float *distance)
 {
     float side = side_of(bend), begin = INFINITY, end = INFINITY;
-    if (direction.z < 0.0f) begin = fmaxf((-0.5f - from.z) / direction.z, 0.0f);
+    if (direction.z < 0.0f) begin = glm_max((-0.5f - from.z) / direction.z, 0.0f);
     if (bend == TUBE_STRAIGHT && direction.z > 0.0f) end = (0.5f - from.z) / direction.z;
     if (bend != TUBE_STRAIGHT && side * direction.x > 0.0f)
         end = (side * 0.5f - from.x) / direction.x;
-    float limit = fminf(begin, fmaxf(end, 0.0f));
+    float limit = glm_min(begin, glm_max(end, 0.0f));
     float wall = bend == TUBE_STRAIGHT ? straight_wall(from, direction)
                                        : bend_wall(side, from, direction, limit);
-    *distance = fminf(wall, limit);
+    *distance = glm_min(wall, limit);
     return wall < limit ? TUBE_WALL : begin < end ? TUBE_BEGIN : TUBE_END;
 }
