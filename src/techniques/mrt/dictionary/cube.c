@@ -23,35 +23,25 @@ vec3s cube_face_point(int face, float s, float t)
     return glms_mat3_mulv(cube_from_face(face), vec3_of(s - 0.5f, t - 0.5f, 0.5f));
 }
 
-// The axis of the nearest slab in the ray's direction, and the distance to it.
-static int exit_axis(vec3s from, vec3s direction, float *distance)
+// The distance to the plane ahead on one axis.
+static float slab_distance(float from, float direction)
 {
-    int axis = 0;
-    *distance = INFINITY;
-    for (int a = 0; a < 3; a++) {
-        if (direction.raw[a] == 0.0f) continue;
-        float d = (copysignf(0.5f, direction.raw[a]) - from.raw[a]) / direction.raw[a];
-        if (d >= *distance) continue;
-        *distance = d;
-        axis = a;
-    }
-    return axis;
+    return direction == 0.0f ? INFINITY : (copysignf(0.5f, direction) - from) / direction;
 }
 
-static float unit_clamp(float x)
-{
-    return fminf(fmaxf(x, 0.0f), 1.0f);
-}
-
+// Which slab is nearest is as random as the rays: it is selected by values, not by branches.
 struct cube_exit cube_trace(vec3s from, vec3s direction)
 {
-    float distance;
-    int axis = exit_axis(from, direction, &distance);
-    int face = 2 * axis + (direction.raw[axis] > 0.0f);
-    vec3s p = glms_vec3_muladds(direction, distance, from);
-    // The signs of u = v × n: y × x = −z, z × y = −x, y × z = x.
-    float sign = axis == 2 ? 1.0f : -1.0f;
-    if (!(face & 1)) sign = -sign;
-    float u = sign * p.raw[axis == 0 ? 2 : 0], v = p.raw[axis == 1 ? 2 : 1];
-    return (struct cube_exit){ face, unit_clamp(0.5f + u), unit_clamp(0.5f + v), distance };
+    // Axes, and the sign of u = v × n by face: y × x = −z, z × y = −x, y × z = x.
+    static const unsigned char U[] = { 2, 0, 0 }, V[] = { 1, 2, 1 };
+    static const float SIGN[] = { 1.0f, -1.0f, 1.0f, -1.0f, -1.0f, 1.0f };
+    const float x = slab_distance(from.x, direction.x), y = slab_distance(from.y, direction.y),
+                z = slab_distance(from.z, direction.z);
+    const float nearer = glm_min(y, x), distance = glm_min(z, nearer);
+    const int axis = z < nearer ? 2 : y < x, a = U[axis], b = V[axis];
+    const int face = 2 * axis + (direction.raw[axis] > 0.0f);
+    const float u = SIGN[face] * (from.raw[a] + direction.raw[a] * distance),
+                v = from.raw[b] + direction.raw[b] * distance;
+    return (struct cube_exit){ face, glm_clamp(0.5f + u, 0.0f, 1.0f),
+                               glm_clamp(0.5f + v, 0.0f, 1.0f), distance };
 }

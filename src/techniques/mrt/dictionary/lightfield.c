@@ -50,7 +50,7 @@ struct blend {
 
 static struct blend blend_of(float x, int n)
 {
-    float place = fminf(fmaxf(x * (float)n - 0.5f, 0.0f), (float)(n - 1));
+    float place = glm_clamp(x * (float)n - 0.5f, 0.0f, (float)(n - 1));
     int low = (int)place, high = low + 1 < n ? low + 1 : low;
     float part = place - (float)low;
     return (struct blend){ { (size_t)low, (size_t)high }, { 1.0f - part, part } };

@@ -91,7 +91,7 @@ static struct mrt_prior_light *add_corner(int a, int b, struct mrt_prior_light *
 // The lattice of a tube: on the disk and along it; beyond its ends the tube goes on straight.
 static vec3s tube_light(enum tube_bend bend, int i, float along)
 {
-    float within = fminf(fmaxf(along, 0.0f), 1.0f);
+    float within = glm_clamp(along, 0.0f, 1.0f);
     vec3s at = vec3_of(0.5f + lattice(i % LATTICE), 0.5f + lattice(i / LATTICE), within);
     return glms_vec3_muladds(tube_axis(bend, within).forward, along - within,
                              tube_inside(bend, at));
@@ -158,7 +158,7 @@ static float visible_share(const struct mrt_shape *shape, struct mrt_point at,
         vec2s d = glms_vec2_scale(disk[i], reach);
         vec3s ray = glms_vec3_scale(axis, sqrtf(1.0f - glms_vec2_norm2(d)));
         ray = glms_vec3_muladds(t, d.x, glms_vec3_muladds(b, d.y, ray));
-        float cosine = fmaxf(glms_vec3_dot(ray, at.frame.col[2]), 0.0f);
+        float cosine = glm_max(glms_vec3_dot(ray, at.frame.col[2]), 0.0f);
         all += cosine;
         if (!light.inside && !points_at_opening(shape, at.position, ray)) continue;
         mrt_shape_trace(shape, at.position, ray, &hit);

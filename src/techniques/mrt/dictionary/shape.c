@@ -40,8 +40,8 @@ int mrt_shape_texels(const struct mrt_shape *shape)
 // Faces that are present follow each other in ascending order.
 static int first_texel(const struct mrt_shape *shape, int face)
 {
-    int before = 0;
-    for (int f = 0; f < face; f++) before += !mrt_shape_is_open(shape, f);
+    int before = face;
+    for (unsigned f = shape->missing & ((1u << face) - 1u); f; f &= f - 1u) before--;
     return before * shape->resolution * shape->resolution;
 }
 
@@ -88,7 +88,7 @@ int mrt_shape_texel_near(const struct mrt_shape *shape, vec3s point)
     int n = shape->resolution;
     if (shape->kind != MRT_CUBE) {
         struct tube_place place = tube_locate(bend_of(shape), point);
-        return cell_of(fmaxf(place.along, 0.0f), n) * n + cell_of(place.around, n);
+        return cell_of(glm_max(place.along, 0.0f), n) * n + cell_of(place.around, n);
     }
     struct cube_exit at = cube_trace(vec3_of(0, 0, 0), point);
     if (mrt_shape_is_open(shape, at.face)) return -1;
@@ -110,7 +110,7 @@ int mrt_shape_patch(const struct mrt_shape *shape, int texel)
 // The two texel centres around x (0…1) of n, and the weight of the second.
 static float between(float x, int n, int *low, int *high)
 {
-    float place = fminf(fmaxf(x * (float)n - 0.5f, 0.0f), (float)(n - 1));
+    float place = glm_clamp(x * (float)n - 0.5f, 0.0f, (float)(n - 1));
     *low = (int)place;
     *high = *low + 1 < n ? *low + 1 : *low;
     return place - (float)*low;
