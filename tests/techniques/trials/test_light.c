@@ -9,7 +9,9 @@
 #define RADIOSITY "radiosity:texels=16384"
 #define ORT       "ort:texels=4096,offsets=400,coordinates=charts"
 #define PRT       "prt:texels=16384,rays=256"
-#define ORT_FINE  "ort:texels=16384,offsets=400,coordinates=charts"
+#define ORT_FINE  "ort:texels=8192,offsets=400,coordinates=charts"
+// A scene of few surfaces; coarser texels would rather mix the light of both sides of a wall.
+#define RADIOSITY_COARSE "radiosity:texels=4096"
 // Both have one dictionary. FINE, also of ort: a patch of 0.5 m is seen by texels of less than
 // that.
 #define DICTIONARY(texels)                                                                         \
@@ -230,13 +232,14 @@ TEST_GPU(a_hidden_surface_does_not_dilute_the_colour_before_it)
     const struct {
         const char *gi;
         double tolerance;
-    } cases[] = { { "lpv", 0.3 }, { "holpv", 0.15 }, { "vct", 0.03 }, { RADIOSITY, 0.02 },
+    } cases[] = { { "lpv", 0.3 }, { "holpv", 0.15 }, { "vct", 0.03 }, { RADIOSITY_COARSE, 0.02 },
                   { ORT, 0.02 },  { MRT, 0.01 },     { DRT, 0.01 } };
+    const double expected = red_over_green(gpu, NULL, 0.02f);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const double alone = red_over_green(gpu, cases[i].gi, 0),
                      hidden = red_over_green(gpu, cases[i].gi, 0.02f);
         print_message("%s: red over green %.3f, with a white slab behind %.3f; reference %.3f\n",
-                      cases[i].gi, alone, hidden, red_over_green(gpu, NULL, 0.02f));
+                      cases[i].gi, alone, hidden, expected);
         CHECK_RELATIVE(alone, hidden, cases[i].tolerance);
     }
 }
