@@ -26,6 +26,30 @@ static bool write_image(void *user, struct ag_renderer *renderer, const char *la
     return output_write(&viewing->session, renderer, &output, path) == DONE;
 }
 
+static bool open_copy(void *user, struct ag_context **context, struct ag_scene **scene,
+                      char error[512])
+{
+    const struct viewing *viewing = user;
+    struct session copy;
+    enum status status = session_begin(&copy, viewing->arguments);
+    if (status == DONE)
+        status =
+            session_load(&copy, viewing->arguments->positional[0], viewing->arguments->scene_scale);
+    if (status == DONE) status = session_light(&copy);
+    *context = copy.context;
+    *scene = copy.scene;
+    ag_environment_destroy(copy.environment);
+    if (status == DONE) return true;
+    snprintf(error, 512, "cannot load %.400s a second time", viewing->arguments->positional[0]);
+    return false;
+}
+
+static bool bake_path(void *user, const char *key, char path[4096])
+{
+    (void)user;
+    return cache_file(CACHE_BAKE, key, path, NULL);
+}
+
 static bool interrupted(void *user)
 {
     (void)user;
@@ -47,7 +71,8 @@ static enum status check_usage(const struct arguments *a)
     enum ag_result result = ag_context_create(NULL, &context);
     for (int i = 0; i < 2 && result == AG_OK; i++) {
         desc.gi = i == 0 ? a->gi : a->split;
-        if (desc.gi) result = ag_renderer_estimate_memory(context, &desc, 1, &bytes);
+        if (desc.gi && strcmp(desc.gi, "reference") != 0)
+            result = ag_renderer_estimate_memory(context, &desc, 1, &bytes);
     }
     const enum status status = result == AG_OK ? DONE : fail_library(context, result);
     ag_context_destroy(context);
@@ -108,6 +133,8 @@ static void describe(struct viewing *viewing)
     desc->validate = validation && strcmp(validation, "1") == 0;
     desc->user = viewing;
     desc->write = write_image;
+    desc->open_copy = open_copy;
+    desc->bake_path = bake_path;
     desc->interrupted = interrupted;
 }
 

@@ -86,7 +86,7 @@ static void add_lights(struct words *w, const struct viewer *v)
 {
     struct ag_scene_info info = { 0 };
     struct ag_light_info light;
-    if (!v->lights_changed) {
+    if (!v->edits.lights_changed) {
         if (v->desc->light_words[0]) add(w, " %s", v->desc->light_words);
         return;
     }
@@ -102,9 +102,9 @@ static void add_lights(struct words *w, const struct viewer *v)
 bool viewer_command(struct viewer *v, char *out, size_t size)
 {
     struct words w = { out, size, 0 };
-    if (v->materials_changed || v->instances_changed) {
+    if (v->edits.material_count > 0 || v->edits.instance_count > 0) {
         viewer_warn(v, "there is no option for a changed %s: the command cannot render this view",
-                    v->materials_changed ? "material" : "place of an object");
+                    v->edits.material_count > 0 ? "material" : "place of an object");
         return false;
     }
     add(&w, "afterglow render");

@@ -3,6 +3,7 @@
 
 #include "command.h"
 #include "operations.h"
+#include "running.h"
 
 #include <GLFW/glfw3.h>
 
@@ -23,7 +24,8 @@ static bool in_image(const struct viewer *v)
 static bool on_split(const struct viewer *v)
 {
     const struct region r = viewer_region(v);
-    return v->split && fabsf(v->mouse_x - (r.x0 + v->split_at * (r.x1 - r.x0))) < SPLIT_PIXELS;
+    return running_is_divided(v) &&
+           fabsf(v->mouse_x - (r.x0 + v->split_at * (r.x1 - r.x0))) < SPLIT_PIXELS;
 }
 
 static void move_mouse(struct viewer *v, float x, float y)
@@ -32,17 +34,14 @@ static void move_mouse(struct viewer *v, float x, float y)
     const struct region r = viewer_region(v);
     v->mouse_x = x;
     v->mouse_y = y;
-    if (v->dragging_split) {
-        v->split_at = fminf(fmaxf((x - r.x0) / (r.x1 - r.x0), 0.0f), 1.0f);
-        viewer_touch(v);
-    }
+    if (v->dragging_split) v->split_at = fminf(fmaxf((x - r.x0) / (r.x1 - r.x0), 0.0f), 1.0f);
     if (!v->turning && !v->orbiting) return;
     const float scale = RADIANS_PER_PIXEL / window_scale(v->window);
     if (v->orbiting)
         look_orbit(&v->look, -scale * dx, -scale * dy);
     else
         look_turn(&v->look, -scale * dx, -scale * dy);
-    viewer_touch(v);
+    viewer_change(v);
 }
 
 static void press(struct viewer *v, int button, bool down)
@@ -98,7 +97,7 @@ static void focus(struct viewer *v)
                                world[4 * i + 2] * world[4 * i + 2]));
     }
     look_focus(&v->look, centre, scale * sqrtf(radius));
-    viewer_touch(v);
+    viewer_change(v);
 }
 
 static void press_key(struct viewer *v, int key, bool down)
@@ -129,7 +128,7 @@ void controls_event(struct viewer *v, const struct event *event)
             v->look.speed *= powf(1.2f, event->y);
         else
             look_zoom(&v->look, event->y);
-        viewer_touch(v);
+        viewer_change(v);
         break;
     case EVENT_FOCUS:
         if (event->down) break;
@@ -154,5 +153,5 @@ void controls_step(struct viewer *v, float seconds)
     if (!right && !up && !forward) return;
     const float metres = v->look.speed * seconds * (keys[GLFW_KEY_LEFT_SHIFT] ? 4.0f : 1.0f);
     look_move(&v->look, metres * (float)right, metres * (float)up, metres * (float)forward);
-    viewer_touch(v);
+    viewer_change(v);
 }

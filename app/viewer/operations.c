@@ -49,6 +49,13 @@ bool viewer_check(struct viewer *v, enum ag_result result)
 void viewer_touch(struct viewer *v)
 {
     v->dirty = SETTLE_FRAMES;
+    v->offered = false;
+}
+
+void viewer_change(struct viewer *v)
+{
+    v->changed = true;
+    viewer_touch(v);
 }
 
 struct region viewer_region(const struct viewer *v)
@@ -67,46 +74,13 @@ void viewer_image_size(const struct viewer *v, int *width, int *height)
     if (*height < LEAST_SIZE) *height = LEAST_SIZE;
 }
 
-bool viewer_open_rendering(struct viewer *v, const char *gi, struct rendering *out)
+void viewer_runs(struct viewer *v, bool other, const char *gi)
 {
-    struct rendering_desc desc = { .gpu = &v->gpu,
-                                   .context = v->desc->context,
-                                   .device = v->device,
-                                   .scene = v->desc->scene,
-                                   .gi = gi,
-                                   .frame_options = v->desc->frame_options };
-    viewer_image_size(v, &desc.width, &desc.height);
-    const enum ag_result result = rendering_open(out, &desc);
-    if (result == AG_OK && v->layer > 0)
-        ag_renderer_set_display(out->renderer, viewer_layers[v->layer]);
-    return viewer_check(v, result);
-}
-
-bool viewer_set_gi(struct viewer *v, const char *gi)
-{
-    if (!viewer_check(v, ag_renderer_set_gi(v->main.renderer, gi, NULL, 0))) return false;
-    snprintf(v->gi, sizeof v->gi, "%s", gi);
-    method_parse(&v->method, ag_renderer_gi(v->main.renderer));
-    v->debug_view = -1;
+    struct rendering *rendering = other ? &v->other : &v->main;
+    snprintf(other ? v->other_gi : v->gi, METHOD_SPEC, "%s", gi);
+    method_parse(other ? &v->other_method : &v->method, ag_renderer_gi(rendering->renderer));
+    if (!other) v->debug_view = -1;
     viewer_touch(v);
-    return true;
-}
-
-bool viewer_set_split(struct viewer *v, const char *gi)
-{
-    viewer_touch(v);
-    if (!gi) {
-        rendering_close(&v->other);
-        v->split = false;
-        return true;
-    }
-    if (v->split && !viewer_check(v, ag_renderer_set_gi(v->other.renderer, gi, NULL, 0)))
-        return false;
-    if (!v->split && !viewer_open_rendering(v, gi, &v->other)) return false;
-    v->split = true;
-    snprintf(v->other_gi, sizeof v->other_gi, "%s", gi);
-    method_parse(&v->other_method, ag_renderer_gi(v->other.renderer));
-    return true;
 }
 
 void viewer_set_layer(struct viewer *v, int layer)
@@ -143,5 +117,5 @@ void viewer_set_camera(struct viewer *v, int scene_camera)
     v->scene_camera = scene_camera;
     v->camera = camera;
     look_from_camera(&v->look, &camera, scene_size(v));
-    viewer_touch(v);
+    viewer_change(v);
 }

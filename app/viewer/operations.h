@@ -12,12 +12,12 @@ void viewer_warn(struct viewer *v, const char *format, ...) __attribute__((forma
 bool viewer_check(struct viewer *v, enum ag_result result);
 // The image changes: it is rendered until what accumulates over frames has settled.
 void viewer_touch(struct viewer *v);
-// Runs another method from the next frame on; false, with a message, if it cannot.
-bool viewer_set_gi(struct viewer *v, const char *gi);
-bool viewer_set_split(struct viewer *v, const char *gi); // NULL: ends the split screen
+// Scene or camera differ: also the reference begins again.
+void viewer_change(struct viewer *v);
+// Takes note of the spec that a rendering runs now.
+void viewer_runs(struct viewer *v, bool other, const char *gi);
 void viewer_set_layer(struct viewer *v, int layer);
 void viewer_set_camera(struct viewer *v, int scene_camera); // -1: that of the command line
 struct region viewer_region(const struct viewer *v);
 // The size in pixels that the image is to have.
 void viewer_image_size(const struct viewer *v, int *width, int *height);
-bool viewer_open_rendering(struct viewer *v, const char *gi, struct rendering *out);

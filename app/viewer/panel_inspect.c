@@ -19,9 +19,8 @@ static void edit_material(struct viewer *v, int index)
         if (m->emissive[i] < 0) m->emissive[i] = 0;
     if (info.base_color_map) ui_faint("base color multiplies a texture");
     if (!changed) return;
-    viewer_check(v, ag_scene_set_material(v->desc->scene, index, m));
-    v->materials_changed = true;
-    viewer_touch(v);
+    viewer_check(v, edits_set_material(&v->edits, v->desc->scene, index, m));
+    viewer_change(v);
 }
 
 static void move_instance(struct viewer *v, int index, const struct ag_instance_info *instance)
@@ -29,9 +28,8 @@ static void move_instance(struct viewer *v, int index, const struct ag_instance_
     float world[16];
     memcpy(world, instance->world_from_mesh, sizeof world);
     if (!ui_numbers("position (m)", world + 12, 3, 0.01f * v->look.speed, "%.3f")) return;
-    viewer_check(v, ag_scene_set_instance_transform(v->desc->scene, index, world));
-    v->instances_changed = true;
-    viewer_touch(v);
+    viewer_check(v, edits_move(&v->edits, v->desc->scene, index, world));
+    viewer_change(v);
 }
 
 static void show_instance(struct viewer *v, int index)

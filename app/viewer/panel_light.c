@@ -110,8 +110,8 @@ static void edit_light(struct viewer *v, int index)
     }
     ui_pop();
     if (!changed || !viewer_check(v, ag_scene_set_light(v->desc->scene, index, light))) return;
-    v->lights_changed = true;
-    viewer_touch(v);
+    edits_take_lights(&v->edits, v->desc->scene, v->desc->animation, v->time_s);
+    viewer_change(v);
 }
 
 // At the target of the camera for points, as bright as a lamp there; a high sun.
@@ -128,8 +128,8 @@ static void add_light(struct viewer *v, enum ag_light_type type)
     }
     for (int i = 0; i < 3; i++) light.intensity[i] = type == AG_LIGHT_SUN ? 5e4f : 1000.0f;
     if (!viewer_check(v, ag_scene_add_light(v->desc->scene, &light, NULL))) return;
-    v->lights_changed = true;
-    viewer_touch(v);
+    edits_take_lights(&v->edits, v->desc->scene, v->desc->animation, v->time_s);
+    viewer_change(v);
 }
 
 static void edit_sky(struct viewer *v)
@@ -140,8 +140,8 @@ static void edit_sky(struct viewer *v)
         return;
     if (!edit_intensity(info.sky, "cd/m²", 5e4f)) return;
     if (!viewer_check(v, ag_scene_set_sky(v->desc->scene, info.sky))) return;
-    v->lights_changed = true;
-    viewer_touch(v);
+    edits_take_lights(&v->edits, v->desc->scene, v->desc->animation, v->time_s);
+    viewer_change(v);
 }
 
 void panel_light(struct viewer *v)

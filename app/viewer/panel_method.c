@@ -1,6 +1,8 @@
 // The method: techniques of the catalogue, their options, presets and debug views.
 #include "panel.h"
+#include "bakes.h"
 #include "operations.h"
+#include "running.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -153,8 +155,9 @@ static bool choose_technique(struct method *method, enum method_role role)
 }
 
 // A failure leaves the running method as it is, and shows that again.
-static void edit_method(struct viewer *v, struct method *method, bool other)
+void panel_edit_method(struct viewer *v, bool other)
 {
+    struct method *method = other ? &v->other_method : &v->method;
     char gi[METHOD_SPEC];
     bool changed = false;
     for (int i = 0; i < ROLE_COUNT; i++) changed |= choose_technique(method, (enum method_role)i);
@@ -206,18 +209,21 @@ static void show_bytes(struct viewer *v)
         ui_faint("%.1f MB on the GPU, without the scene", (double)bytes * 1e-6);
 }
 
+static void show_bake(struct viewer *v)
+{
+    char stage[64], text[128];
+    double seconds_left = 0;
+    if (!bakes_running(v)) return;
+    const double done = bakes_progress(v, stage, &seconds_left);
+    snprintf(text, sizeof text, "bake: %s, %.0f s left", stage, seconds_left);
+    ui_progress(done, text);
+    if (ui_button("Cancel bake")) bakes_cancel(v);
+}
+
 void panel_method(struct viewer *v)
 {
-    bool split = v->split;
-    edit_method(v, &v->method, false);
+    show_bake(v);
+    panel_edit_method(v, false);
     choose_debug_view(v);
     show_bytes(v);
-    ui_separator();
-    if (ui_switch("compare with another method", &split))
-        viewer_set_split(v, split ? "none" : NULL);
-    ui_tooltip("A line in the image divides both: drag it.");
-    if (!v->split) return;
-    ui_push(1000);
-    edit_method(v, &v->other_method, true);
-    ui_pop();
 }

@@ -33,7 +33,7 @@ static void edit_camera(struct viewer *v)
     }
     changed |= ui_number("field of view (°)", &look->fov_deg, 5.0f, 150.0f, "%.1f", false);
     if (changed) look->moved = true;
-    if (changed) viewer_touch(v);
+    if (changed) viewer_change(v);
     ui_number("speed (m/s)", &look->speed, 0.01f, 1000.0f, "%.2f", true);
     if (look->moved && ui_button("Reset camera")) viewer_set_camera(v, v->scene_camera);
 }
@@ -74,7 +74,7 @@ static void edit_time(struct viewer *v)
         while (time_s > (float)info.duration_s) time_s -= (float)info.duration_s;
         if (ui_number("time (s)", &time_s, 0, (float)info.duration_s, "%.3f", false)) {
             v->time_s = (double)time_s;
-            viewer_touch(v);
+            viewer_change(v);
         }
     }
 }
@@ -107,7 +107,7 @@ void panel_view(struct viewer *v)
     if (ui_section("Image", true)) {
         choose_layer(v);
         edit_exposure(v);
-        if (ui_number("render scale", &v->scale, 0.1f, 2.0f, "%.2f", false)) viewer_touch(v);
+        if (ui_number("render scale", &v->scale, 0.1f, 2.0f, "%.2f", false)) viewer_change(v);
         ui_tooltip("Pixels that are rendered for each pixel of the window, along each side. "
                    "Smaller is faster.");
     }

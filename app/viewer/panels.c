@@ -3,6 +3,7 @@
 
 #include "operations.h"
 #include "panel.h"
+#include "running.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -10,11 +11,8 @@
 static const struct {
     const char *label;
     void (*draw)(struct viewer *v);
-} tabs[] = { { "View", panel_view },
-             { "Light", panel_light },
-             { "Method", panel_method },
-             { "Cost", panel_cost },
-             { "Inspect", panel_inspect } };
+} tabs[] = { { "View", panel_view },       { "Light", panel_light }, { "Method", panel_method },
+             { "Compare", panel_compare }, { "Cost", panel_cost },   { "Inspect", panel_inspect } };
 
 static void draw_status(struct viewer *v)
 {
@@ -36,11 +34,14 @@ static void draw_split_labels(struct viewer *v)
 {
     const struct region r = viewer_region(v);
     const float x = r.x0 + v->split_at * (r.x1 - r.x0), scale = window_scale(v->window);
-    if (!v->split) return;
+    if (!running_is_divided(v)) return;
     ui_stroke(x, r.y0, x, r.y1, 0xffffffc0, 2.0f);
     char left[128], right[128];
     snprintf(left, sizeof left, "%.120s", v->gi);
-    snprintf(right, sizeof right, "%.120s", v->other_gi);
+    snprintf(right, sizeof right, "%.120s",
+             !v->truth       ? v->other_gi
+             : v->difference ? "difference to the reference"
+                             : "reference");
     const float width = ui_label_width(left);
     ui_box(x - width - 14.0f * scale, r.y0, x, r.y0 + 20.0f * scale, 0x101012b0);
     ui_label(x - width - 8.0f * scale, r.y0 + 3.0f * scale, 0xffffffff, left);

@@ -1,7 +1,9 @@
 #include "script.h"
 
+#include "bakes.h"
 #include "command.h"
 #include "operations.h"
+#include "running.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -16,6 +18,7 @@ struct script {
     int line;
     int waits;    // further frames
     bool settles; // until the image is complete
+    int samples;  // until the reference has so many
     float click_x, click_y;
     int click; // steps of a click that are left: down, up
     uint64_t random;
@@ -134,7 +137,7 @@ static bool run_click(const struct words *w)
 
 static bool run_tab(const struct words *w)
 {
-    static const char *const tabs[] = { "View", "Light", "Method", "Cost", "Inspect" };
+    static const char *const tabs[] = { "View", "Light", "Method", "Compare", "Cost", "Inspect" };
     for (int i = 0; i < (int)(sizeof tabs / sizeof *tabs); i++)
         if (strcmp(tabs[i], w->rest) == 0) {
             w->v->show_tab = i;
@@ -154,6 +157,22 @@ static bool run_size(const struct words *w)
     return true;
 }
 
+static bool run_split(const struct words *w)
+{
+    struct viewer *v = w->v;
+    const bool reference = strcmp(w->rest, "reference") == 0;
+    const bool off = strcmp(w->rest, "off") == 0;
+    if (reference) return done(w, viewer_set_reference(v, true));
+    if (!off) return done(w, viewer_set_split(v, w->rest));
+    return done(w, viewer_set_reference(v, false) && viewer_set_split(v, NULL));
+}
+
+static bool run_samples(const struct words *w)
+{
+    w->script->samples = atoi(w->rest);
+    return w->v->truth || wrong(w->script, "the reference is not shown:", "split reference");
+}
+
 static bool run_layer(const struct words *w)
 {
     for (int i = 0; i < viewer_layer_count; i++)
@@ -168,7 +187,7 @@ static bool run_exposure(const struct words *w)
 {
     w->v->auto_exposure = strcmp(w->rest, "auto") == 0;
     if (!w->v->auto_exposure) w->v->exposure_ev = strtof(w->rest, NULL);
-    viewer_touch(w->v);
+    viewer_change(w->v);
     return true;
 }
 
@@ -177,7 +196,7 @@ static bool run_scale(const struct words *w)
     const float scale = strtof(w->rest, NULL);
     if (!(scale >= 0.1f && scale <= 2.0f)) return wrong(w->script, "scale is 0.1 to 2:", w->rest);
     w->v->scale = scale;
-    viewer_touch(w->v);
+    viewer_change(w->v);
     return true;
 }
 
@@ -205,7 +224,7 @@ static bool run_look(const struct words *w)
     look_from_camera(&w->v->look, &camera, 0);
     w->v->look.speed = speed;
     w->v->look.moved = true;
-    viewer_touch(w->v);
+    viewer_change(w->v);
     return true;
 }
 
@@ -218,9 +237,11 @@ static bool run_light(const struct words *w)
                                                w->v->time_s, &info)))
         return done(w, false);
     info.light.enabled = on != 0;
-    w->v->lights_changed = true;
-    viewer_touch(w->v);
-    return done(w, viewer_check(w->v, ag_scene_set_light(w->v->desc->scene, light, &info.light)));
+    if (!viewer_check(w->v, ag_scene_set_light(w->v->desc->scene, light, &info.light)))
+        return done(w, false);
+    edits_take_lights(&w->v->edits, w->v->desc->scene, w->v->desc->animation, w->v->time_s);
+    viewer_change(w->v);
+    return true;
 }
 
 static bool run_command(const struct words *w)
@@ -265,8 +286,8 @@ static bool run(const struct words *w)
     if (is(w, "tab")) return run_tab(w);
     if (is(w, "size")) return run_size(w);
     if (is(w, "gi")) return done(w, viewer_set_gi(v, w->rest));
-    if (is(w, "split"))
-        return done(w, viewer_set_split(v, strcmp(w->rest, "off") == 0 ? NULL : w->rest));
+    if (is(w, "split")) return run_split(w);
+    if (is(w, "samples")) return run_samples(w);
     if (is(w, "layer")) return run_layer(w);
     if (is(w, "exposure")) return run_exposure(w);
     if (is(w, "scale")) return run_scale(w);
@@ -347,6 +368,16 @@ static bool run_line(struct script *script, struct viewer *v, struct event_queue
     return run(&(struct words){ v, script, queue, name, rest });
 }
 
+static bool lacks_samples(struct script *script, struct viewer *v)
+{
+    struct truth_state state = { 0 };
+    if (script->samples == 0 || !v->truth) return false;
+    truth_get(v->truth, &state);
+    if (state.error[0]) wrong(script, state.error, "");
+    if (state.samples >= script->samples && state.measured) script->samples = 0;
+    return script->samples > 0;
+}
+
 // What a line began and goes on for more frames.
 static bool goes_on(struct script *script, struct viewer *v, struct event_queue *queue)
 {
@@ -364,8 +395,8 @@ static bool goes_on(struct script *script, struct viewer *v, struct event_queue 
         script->waits--;
         return true;
     }
-    script->settles = script->settles && v->dirty > 0;
-    return script->settles;
+    script->settles = script->settles && (v->dirty > 0 || bakes_running(v));
+    return script->settles || lacks_samples(script, v);
 }
 
 bool script_step(struct script *script, struct viewer *v, struct event_queue *queue)

@@ -3,6 +3,7 @@
 //
 //   wait N                       frames pass
 //   settle                       frames pass until the image is complete
+//   samples N                    frames pass until the reference has so many a pixel
 //   mouse X Y                    pixels of the window
 //   button left|right|middle down|up
 //   scroll X Y                   steps
@@ -10,9 +11,9 @@
 //   press NAME                   a key, down and up
 //   text WORDS                   characters
 //   click LABEL                  moves the mouse to an element of the panels and clicks
-//   tab NAME                     shows View, Light, Method, Cost or Inspect
+//   tab NAME                     shows View, Light, Method, Compare, Cost or Inspect
 //   size WxH                     of the window
-//   gi SPEC · split SPEC|off · layer NAME · exposure EV|auto · scale F
+//   gi SPEC · split SPEC|reference|off · layer NAME · exposure EV|auto · scale F
 //   camera NAME|given · look X,Y,Z X,Y,Z
 //   light N X                    switches light N on (1) or off (0)
 //   save FILE · screenshot FILE  the image (.png, .exr); the window (.png)

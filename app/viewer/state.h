@@ -2,9 +2,12 @@
 #pragma once
 
 #include "interface.h"
+#include "edits.h"
+#include "host_image.h"
 #include "look.h"
 #include "method.h"
 #include "rendering.h"
+#include "truth.h"
 #include "viewer.h"
 
 enum { VIEWER_LIGHTS = 128, VIEWER_PASSES = 96, VIEWER_HISTORY = 180, VIEWER_MESSAGE = 1024 };
@@ -51,7 +54,14 @@ struct viewer {
     float scale;           // of the image
     bool playing;
     double time_s;
-    bool lights_changed, materials_changed, instances_changed; // since the scene was loaded
+    struct edits edits;
+
+    struct bake_job *bake_job;     // NULL: none runs
+    struct truth *truth;           // NULL: no comparison with the reference
+    struct host_image truth_image; // the newest one
+    bool difference;               // shows the errors instead
+    bool changed;                  // since the reference began
+    bool offered;                  // the reference has the image of this method
 
     struct ag_pick pick; // surface under the mouse
     int picked_instance; // chosen by a click; -1: none

@@ -3,6 +3,7 @@
 #include "controls.h"
 #include "operations.h"
 #include "panels.h"
+#include "running.h"
 #include "script.h"
 #include "times.h"
 
@@ -67,7 +68,7 @@ static bool fit_renderings(struct viewer *v)
     int width, height;
     viewer_image_size(v, &width, &height);
     if (width == v->main.width && height == v->main.height) return true;
-    viewer_touch(v);
+    viewer_change(v);
     return viewer_check(v, rendering_resize(&v->main, width, height)) &&
            (!v->split || viewer_check(v, rendering_resize(&v->other, width, height)));
 }
@@ -77,7 +78,9 @@ static void draw_renderings(struct viewer *v)
     const struct region r = viewer_region(v);
     const float rectangle[4] = { r.x0, r.y0, r.x1, r.y1 };
     swapchain_clear(&v->swapchain);
-    rendering_draw(&v->main, &v->swapchain, rectangle, 0.0f, v->split ? v->split_at : 1.0f);
+    const float at = running_is_divided(v) ? v->split_at : 1.0f;
+    rendering_draw(&v->main, &v->swapchain, rectangle, 0.0f, at);
+    if (v->truth) host_image_draw(&v->truth_image, &v->swapchain, rectangle, at, 1.0f);
     if (v->split) rendering_draw(&v->other, &v->swapchain, rectangle, v->split_at, 1.0f);
 }
 
@@ -161,9 +164,11 @@ static bool step(struct viewer *v, float seconds)
     handle_events(v, is_idle(v));
     controls_step(v, seconds);
     if (v->playing) v->time_s += (double)seconds;
+    if (v->playing) viewer_change(v);
     if (!fit_window(v)) return false;
     const bool shown = v->swapchain.handle != VK_NULL_HANDLE;
     if (shown && fit_renderings(v) && (v->dirty > 0 || v->playing)) render(v);
+    running_step(v);
     if (!shown) return true;
     interface_begin((int)v->swapchain.width, (int)v->swapchain.height, seconds);
     panels_draw(v);
@@ -250,13 +255,13 @@ static bool begin(struct viewer *v, char error[1024])
     const struct viewer_desc *desc = v->desc;
     method_init(&v->method);
     method_init(&v->other_method);
-    if (!viewer_open_rendering(v, desc->gi, &v->main) ||
-        (desc->split && !viewer_set_split(v, desc->split))) {
+    if (!running_begin(v, desc->gi) ||
+        (desc->split && strcmp(desc->split, "reference") == 0 && !viewer_set_reference(v, true)) ||
+        (desc->split && strcmp(desc->split, "reference") != 0 &&
+         !viewer_set_split(v, desc->split))) {
         snprintf(error, 1024, "%s", ag_context_last_error(desc->context));
         return false;
     }
-    snprintf(v->gi, sizeof v->gi, "%s", desc->gi);
-    method_parse(&v->method, ag_renderer_gi(v->main.renderer));
     viewer_set_camera(v, -1);
     v->script = desc->script ? script_open(desc->script, error) : NULL;
     return !desc->script || v->script;
@@ -266,8 +271,7 @@ static void close(struct viewer *v)
 {
     if (v->gpu.device) vkDeviceWaitIdle(v->gpu.device);
     script_close(v->script);
-    rendering_close(&v->other);
-    rendering_close(&v->main);
+    running_end(v);
     interface_close();
     swapchain_close(&v->swapchain);
     ag_device_destroy(v->device);

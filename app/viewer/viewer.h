@@ -19,7 +19,7 @@ struct viewer_desc {
     float exposure_ev;
     int width, height;      // of the window
     float scale;            // of the image's width and height; 0: chosen by the device
-    const char *split;      // a GI spec to compare with; NULL: none
+    const char *split;      // a GI spec or "reference" to compare with; NULL: none
     const char *script;     // a file, see script.h; NULL: none
     const char *screenshot; // a .png of the last frame's window; NULL: none
     int frames;             // ends after so many; 0: when the window is closed
@@ -27,8 +27,12 @@ struct viewer_desc {
     void *user;             // of the functions
     // Writes the newest frame of a renderer as afterglow render does.
     bool (*write)(void *user, struct ag_renderer *renderer, const char *layer, const char *path);
-    // The bakes that a GI spec needs, from the cache; false: one is missing.
-    bool (*interrupted)(void *user);
+    // On any thread: another context, with the scene as it was loaded and lit at first.
+    bool (*open_copy)(void *user, struct ag_context **context, struct ag_scene **scene,
+                      char error[512]);
+    // On any thread: where the bake with that key is kept; false: nowhere.
+    bool (*bake_path)(void *user, const char *key, char path[4096]);
+    bool (*interrupted)(void *user); // the program is to end
 };
 
 // False with a sentence in `error`: no display, no device, or a file that cannot be used.

@@ -1,0 +1,196 @@
+#include "bakes.h"
+
+#include "operations.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct bake_job {
+    const struct viewer_desc *desc;
+    char gi[METHOD_SPEC];
+    bool other; // for the right part of a split screen
+    struct edits edits;
+    pthread_t thread;
+    pthread_mutex_t mutex;
+    // under the mutex
+    double done, seconds_left;
+    char stage[64], error[512];
+    // ended is set last
+    atomic_bool cancelled, ended;
+    bool failed;
+};
+
+// ---- the thread
+
+static bool progress(void *user, const struct ag_bake_progress *p)
+{
+    struct bake_job *job = user;
+    pthread_mutex_lock(&job->mutex);
+    job->done = p->done;
+    job->seconds_left = p->seconds_left;
+    snprintf(job->stage, sizeof job->stage, "%.60s", p->stage ? p->stage : "");
+    pthread_mutex_unlock(&job->mutex);
+    return !job->cancelled;
+}
+
+static bool fail(struct bake_job *job, const struct ag_context *context)
+{
+    pthread_mutex_lock(&job->mutex);
+    snprintf(job->error, sizeof job->error, "%s", ag_context_last_error(context));
+    pthread_mutex_unlock(&job->mutex);
+    return false;
+}
+
+static bool run_one(struct bake_job *job, struct ag_context *context, struct ag_scene *scene,
+                    const char *technique)
+{
+    struct ag_bake_desc desc;
+    struct ag_bake_info info;
+    struct ag_bake *bake = NULL;
+    char path[4096];
+    ag_bake_desc_default(&desc);
+    desc.technique = technique;
+    bool done = ag_bake_create(scene, job->gi, &desc, &bake) == AG_OK &&
+                ag_bake_get_info(bake, &info) == AG_OK &&
+                job->desc->bake_path(job->desc->user, info.key, path) &&
+                (ag_bake_load(bake, path) == AG_OK || (ag_bake_run(bake, progress, job) == AG_OK &&
+                                                       ag_bake_save(bake, path, true) == AG_OK));
+    if (!done) fail(job, context);
+    ag_bake_destroy(bake);
+    return done;
+}
+
+static void *run(void *user)
+{
+    struct bake_job *job = user;
+    struct ag_context *context = NULL;
+    struct ag_scene *scene = NULL;
+    bool done = job->desc->open_copy(job->desc->user, &context, &scene, job->error) &&
+                (edits_apply(&job->edits, scene) == AG_OK || fail(job, context));
+    for (int i = 0; done; i++) {
+        const char *technique = NULL;
+        if (ag_bake_technique(context, job->gi, i, &technique) != AG_OK) done = fail(job, context);
+        if (!done || !technique) break;
+        done = run_one(job, context, scene, technique);
+    }
+    ag_scene_destroy(scene);
+    ag_context_destroy(context);
+    job->failed = !done;
+    job->ended = true;
+    window_wake();
+    return NULL;
+}
+
+// ---- the viewer's thread
+
+static bool start(struct viewer *v, const char *gi, bool other)
+{
+    struct bake_job *job = calloc(1, sizeof *job);
+    if (!job) return false;
+    job->desc = v->desc;
+    job->other = other;
+    job->edits = v->edits;
+    snprintf(job->gi, sizeof job->gi, "%s", gi);
+    pthread_mutex_init(&job->mutex, NULL);
+    if (pthread_create(&job->thread, NULL, run, job) != 0) {
+        pthread_mutex_destroy(&job->mutex);
+        free(job);
+        return false;
+    }
+    v->bake_job = job;
+    viewer_say(v, "baking %s; the old method is shown meanwhile", gi);
+    return true;
+}
+
+static void end(struct viewer *v)
+{
+    pthread_join(v->bake_job->thread, NULL);
+    pthread_mutex_destroy(&v->bake_job->mutex);
+    free(v->bake_job);
+    v->bake_job = NULL;
+}
+
+// The bakes that the method needs, as far as there are files; true: all.
+static bool load(struct viewer *v, const char *gi, struct ag_bake *bakes[VIEWER_BAKES], int *count)
+{
+    bool all = true;
+    for (int i = 0; i < VIEWER_BAKES; i++) {
+        const char *technique = NULL;
+        struct ag_bake_desc desc;
+        struct ag_bake_info info;
+        char path[4096];
+        if (ag_bake_technique(v->desc->context, gi, i, &technique) != AG_OK || !technique) break;
+        ag_bake_desc_default(&desc);
+        desc.technique = technique;
+        const int at = (*count)++;
+        all = ag_bake_create(v->desc->scene, gi, &desc, &bakes[at]) == AG_OK &&
+              ag_bake_get_info(bakes[at], &info) == AG_OK &&
+              v->desc->bake_path(v->desc->user, info.key, path) &&
+              ag_bake_load(bakes[at], path) == AG_OK && all;
+    }
+    return all;
+}
+
+static bool set_gi(struct viewer *v, struct rendering *rendering, const char *gi, bool may_bake)
+{
+    struct ag_bake *bakes[VIEWER_BAKES] = { NULL };
+    int count = 0;
+    const bool all = load(v, gi, bakes, &count);
+    enum ag_result result = AG_OK;
+    if (all)
+        result = ag_renderer_set_gi(rendering->renderer, gi, (const struct ag_bake *const *)bakes,
+                                    count);
+    for (int i = 0; i < count; i++) ag_bake_destroy(bakes[i]);
+    if (!all && may_bake) {
+        if (v->bake_job) bakes_cancel(v);
+        if (start(v, gi, rendering == &v->other)) return false;
+    }
+    if (!all) viewer_warn(v, "%s needs a bake that does not fit the scene as it is now", gi);
+    return all && viewer_check(v, result);
+}
+
+bool bakes_set_gi(struct viewer *v, struct rendering *rendering, const char *gi)
+{
+    return set_gi(v, rendering, gi, true);
+}
+
+bool bakes_running(const struct viewer *v)
+{
+    return v->bake_job != NULL;
+}
+
+double bakes_progress(struct viewer *v, char stage[64], double *seconds_left)
+{
+    struct bake_job *job = v->bake_job;
+    pthread_mutex_lock(&job->mutex);
+    const double done = job->done;
+    *seconds_left = job->seconds_left;
+    snprintf(stage, 64, "%s", job->stage);
+    pthread_mutex_unlock(&job->mutex);
+    return done;
+}
+
+void bakes_cancel(struct viewer *v)
+{
+    if (!v->bake_job) return;
+    v->bake_job->cancelled = true;
+    end(v);
+}
+
+void bakes_step(struct viewer *v)
+{
+    struct bake_job *job = v->bake_job;
+    char gi[METHOD_SPEC];
+    if (!job || !job->ended) return;
+    const bool failed = job->failed, other = job->other;
+    if (failed) viewer_warn(v, "%s", job->error);
+    snprintf(gi, sizeof gi, "%s", job->gi);
+    end(v);
+    if (failed || (other && !v->split)) return;
+    if (!set_gi(v, other ? &v->other : &v->main, gi, false)) return;
+    viewer_runs(v, other, gi);
+    viewer_say(v, "%s is shown", gi);
+}

@@ -1,0 +1,18 @@
+// The methods that run: that of the whole image, another one in the right part of a split screen,
+// and the reference.
+#pragma once
+
+#include "state.h"
+
+// Opens the first rendering.
+bool running_begin(struct viewer *v, const char *gi);
+// Runs another method from the next frame on, or when its bake is there; false, with a message, if
+// it cannot.
+bool viewer_set_gi(struct viewer *v, const char *gi);
+bool viewer_set_split(struct viewer *v, const char *gi); // NULL: ends the split screen
+bool viewer_set_reference(struct viewer *v, bool on);    // the reference in the right part
+// After a frame: gives the reference its view and takes its image.
+void running_step(struct viewer *v);
+// The right part of the window's image is not the first method's.
+bool running_is_divided(const struct viewer *v);
+void running_end(struct viewer *v);
