@@ -1,3 +1,8 @@
+# AFTERGLOW_SPIRV_FROM: folder of the .spv files that another build of the same sources compiled, which are taken over. Builds for sanitizers
+# need not compile them again.
+set(AFTERGLOW_SPIRV_FROM "" CACHE PATH "Folder with the SPIR-V of another build of these sources; empty: compile")
+add_custom_target(shaders)
+
 # ag_shaders(module header [folder…])
 #
 # Compiles every *.comp, *.vert and *.frag below the current folder, but for some of its folders, to SPIR-V and embeds it in ag_<module>:
@@ -88,11 +93,17 @@ function(ag_shaders_for target header folder)
     set(inc ${generated}/${name}.inc)
     set(spv ${PROJECT_BINARY_DIR}/shaders/${name}.spv)
     # The words of the .spv file, as text for the C compiler.
-    add_custom_command(OUTPUT ${inc} ${spv}
-      COMMAND ${GLSLC} -fshader-stage=${stage} --target-env=vulkan1.3 -Werror -DAG_GLSL=1 ${defines}
-              -I${PROJECT_SOURCE_DIR}/src -MD -MF ${inc}.d -MT ${inc} -o ${spv} ${shader}
-      COMMAND od -An -v -tx4 -w64 ${spv} | sed "s/ \\([0-9a-f]*\\)/0x\\1,/g" > ${inc}
-      DEPENDS ${shader} DEPFILE ${inc}.d COMMENT "GLSL ${name}" VERBATIM)
+    set(write_words od -An -v -tx4 -w64 ${spv} | sed "s/ \\([0-9a-f]*\\)/0x\\1,/g" > ${inc})
+    if(AFTERGLOW_SPIRV_FROM)
+      add_custom_command(OUTPUT ${inc} ${spv}
+        COMMAND ${CMAKE_COMMAND} -E copy ${AFTERGLOW_SPIRV_FROM}/${name}.spv ${spv}
+        COMMAND ${write_words} DEPENDS ${AFTERGLOW_SPIRV_FROM}/${name}.spv COMMENT "SPIR-V ${name}" VERBATIM)
+    else()
+      add_custom_command(OUTPUT ${inc} ${spv}
+        COMMAND ${GLSLC} -fshader-stage=${stage} --target-env=vulkan1.3 -Werror -DAG_GLSL=1 ${defines}
+                -I${PROJECT_SOURCE_DIR}/src -MD -MF ${inc}.d -MT ${inc} -o ${spv} ${shader}
+        COMMAND ${write_words} DEPENDS ${shader} DEPFILE ${inc}.d COMMENT "GLSL ${name}" VERBATIM)
+    endif()
     list(APPEND words ${inc})
     list(APPEND spirv ${spv})
     string(APPEND declarations "extern const struct gpu_shader shader_${symbol};\n")
@@ -104,6 +115,9 @@ function(ag_shaders_for target header folder)
   file(CONFIGURE OUTPUT ${generated}/${header} CONTENT "${declarations}" @ONLY)
   file(CONFIGURE OUTPUT ${generated}/${target}_shaders.c CONTENT "${definitions}" @ONLY)
   set_property(TARGET ${target} PROPERTY AFTERGLOW_SPIRV ${spirv})
+  add_custom_target(${target}_spirv DEPENDS ${spirv})
+  add_dependencies(${target} ${target}_spirv)
+  add_dependencies(shaders ${target}_spirv)
   set_source_files_properties(${generated}/${target}_shaders.c PROPERTIES OBJECT_DEPENDS "${words}")
   target_sources(${target} PRIVATE ${generated}/${target}_shaders.c)
   target_include_directories(${target} PUBLIC ${generated})

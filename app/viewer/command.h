@@ -1,4 +1,4 @@
-// What is taken away of a view: its command line, its image.
+// A view taken away: as a command line, as an image.
 #pragma once
 
 #include "state.h"

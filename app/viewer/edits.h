@@ -1,4 +1,4 @@
-// What the user has changed in the scene, for copies of it on other threads.
+// Changes that the user made to the scene, for copies of it on other threads.
 #pragma once
 
 #include <afterglow/afterglow.h>

@@ -18,7 +18,7 @@ void look_target(const struct look *look, float out[3]);
 void look_forward(const struct look *look, float out[3]);
 // right, up, forward: metres along the axes of the view.
 void look_move(struct look *look, float right, float up, float forward);
-void look_turn(struct look *look, float yaw, float pitch);  // around the eye
+void look_turn(struct look *look, float yaw, float pitch);  // around the camera
 void look_orbit(struct look *look, float yaw, float pitch); // around the target
 void look_zoom(struct look *look, float steps);             // towards the target
 // Looks at a point from a distance at which a sphere of this radius fills most of the image.

@@ -1,4 +1,4 @@
-// What panels, controls and scripts do to the viewer.
+// Operations of panels, controls and scripts.
 #pragma once
 
 #include "state.h"

@@ -1,6 +1,6 @@
 #include "rendering.h"
 
-#include "blit.h"
+#include "viewer/window/blit.h"
 
 enum ag_result rendering_open(struct rendering *rendering, const struct rendering_desc *desc)
 {

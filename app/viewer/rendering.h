@@ -1,7 +1,7 @@
 // A image of the scene by one method: a renderer, and how its image comes into the window.
 #pragma once
 
-#include "swapchain.h"
+#include "viewer/window/swapchain.h"
 
 #include <afterglow/afterglow.h>
 

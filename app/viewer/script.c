@@ -18,7 +18,7 @@ struct script {
     int line;
     int waits;    // further frames
     bool settles; // until the image is complete
-    int samples;  // until the reference has so many
+    int samples;  // until the reference has N; 0: none
     float click_x, click_y;
     int click; // steps of a click that are left: down, up
     uint64_t random;
@@ -378,7 +378,7 @@ static bool lacks_samples(struct script *script, struct viewer *v)
     return script->samples > 0;
 }
 
-// What a line began and goes on for more frames.
+// A line goes on for further frames.
 static bool goes_on(struct script *script, struct viewer *v, struct event_queue *queue)
 {
     if (script->click > 0) {

@@ -3,7 +3,7 @@
 //
 //   wait N                       frames pass
 //   settle                       frames pass until the image is complete
-//   samples N                    frames pass until the reference has so many a pixel
+//   samples N                    frames pass until the reference has N a pixel
 //   mouse X Y                    pixels of the window
 //   button left|right|middle down|up
 //   scroll X Y                   steps
@@ -24,7 +24,7 @@
 // A line that fails ends the script: viewer_run returns its sentence.
 #pragma once
 
-#include "event.h"
+#include "viewer/window/event.h"
 
 struct script;
 struct viewer;

@@ -1,9 +1,9 @@
-// What the viewer holds, for its own files.
+// The state of the viewer, for its own files.
 #pragma once
 
-#include "interface.h"
+#include "viewer/window/interface.h"
 #include "edits.h"
-#include "host_image.h"
+#include "viewer/window/host_image.h"
 #include "look.h"
 #include "method.h"
 #include "rendering.h"

@@ -1,6 +1,6 @@
 #include "truth.h"
 
-#include "window.h"
+#include "viewer/window/window.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

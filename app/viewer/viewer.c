@@ -2,7 +2,7 @@
 #include "command.h"
 #include "controls.h"
 #include "operations.h"
-#include "panels.h"
+#include "viewer/panels/panels.h"
 #include "running.h"
 #include "script.h"
 #include "times.h"

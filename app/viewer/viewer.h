@@ -22,7 +22,7 @@ struct viewer_desc {
     const char *split;      // a GI spec or "reference" to compare with; NULL: none
     const char *script;     // a file, see script.h; NULL: none
     const char *screenshot; // a .png of the last frame's window; NULL: none
-    int frames;             // ends after so many; 0: when the window is closed
+    int frames;             // ends after N; 0: when the window is closed
     bool validate;          // with the validation layers
     void *user;             // of the functions
     // Writes the newest frame of a renderer as afterglow render does.

@@ -1,8 +1,8 @@
 // The method: techniques of the catalogue, their options, presets and debug views.
 #include "panel.h"
-#include "bakes.h"
-#include "operations.h"
-#include "running.h"
+#include "viewer/bakes.h"
+#include "viewer/operations.h"
+#include "viewer/running.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // The tabs of the side bar.
 #pragma once
 
-#include "state.h"
+#include "viewer/state.h"
 
 void panel_view(struct viewer *v);
 void panel_light(struct viewer *v);

@@ -1,6 +1,6 @@
 // Lights, sky and materials.
 #include "panel.h"
-#include "operations.h"
+#include "viewer/operations.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -114,7 +114,7 @@ static void edit_light(struct viewer *v, int index)
     viewer_change(v);
 }
 
-// At the target of the camera for points, as bright as a lamp there; a high sun.
+// Points and spots are where the camera is; a sun is high.
 static void add_light(struct viewer *v, enum ag_light_type type)
 {
     struct ag_light_desc light;

@@ -1,6 +1,6 @@
 // The side bar. Each tab has a file of its own.
 #pragma once
 
-#include "state.h"
+#include "viewer/state.h"
 
 void panels_draw(struct viewer *v);

@@ -1,6 +1,6 @@
 // The surface under the mouse: its instance, mesh and material.
 #include "panel.h"
-#include "operations.h"
+#include "viewer/operations.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // Camera, exposure, layer, animation, and what is taken away.
 #include "panel.h"
-#include "command.h"
-#include "operations.h"
+#include "viewer/command.h"
+#include "viewer/operations.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 // The side bar with its tabs, and the status line.
 #include "panels.h"
 
-#include "operations.h"
+#include "viewer/operations.h"
 #include "panel.h"
-#include "running.h"
+#include "viewer/running.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 // Milliseconds by pass over time, and bytes by owner.
 #include "panel.h"
-#include "operations.h"
+#include "viewer/operations.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 // Another method or the reference beside the first, and the error.
 #include "panel.h"
 
-#include "operations.h"
-#include "running.h"
+#include "viewer/operations.h"
+#include "viewer/running.h"
 
 static void show_errors(struct viewer *v)
 {
