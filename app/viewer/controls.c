@@ -12,6 +12,7 @@
 #include <string.h>
 
 enum { LEFT, RIGHT, MIDDLE };
+enum { FRAMES_OF_A_PICK = 4 }; // until one is finished
 static const float RADIANS_PER_PIXEL = 0.004f, SPLIT_PIXELS = 6.0f;
 
 static bool in_image(const struct viewer *v)
@@ -35,6 +36,7 @@ static void move_mouse(struct viewer *v, float x, float y)
     v->mouse_x = x;
     v->mouse_y = y;
     if (v->dragging_split) v->split_at = fminf(fmaxf((x - r.x0) / (r.x1 - r.x0), 0.0f), 1.0f);
+    if (v->inspecting && in_image(v) && v->dirty < FRAMES_OF_A_PICK) v->dirty = FRAMES_OF_A_PICK;
     if (!v->turning && !v->orbiting) return;
     const float scale = RADIANS_PER_PIXEL / window_scale(v->window);
     if (v->orbiting)
@@ -42,6 +44,15 @@ static void move_mouse(struct viewer *v, float x, float y)
     else
         look_turn(&v->look, -scale * dx, -scale * dy);
     viewer_change(v);
+}
+
+// A frame tells which surface is there.
+static void pick(struct viewer *v)
+{
+    v->picking = true;
+    v->pick_at[0] = (int)(v->scale * v->mouse_x);
+    v->pick_at[1] = (int)(v->scale * v->mouse_y);
+    if (v->dirty < FRAMES_OF_A_PICK) v->dirty = FRAMES_OF_A_PICK;
 }
 
 static void press(struct viewer *v, int button, bool down)
@@ -60,8 +71,8 @@ static void press(struct viewer *v, int button, bool down)
         v->dragging_split = true;
     else if (v->keys[GLFW_KEY_LEFT_ALT])
         v->orbiting = true;
-    else if (ag_renderer_picked(v->main.renderer, &v->pick) == AG_OK)
-        v->picked_instance = v->pick.instance;
+    else
+        pick(v);
 }
 
 // The sphere around an instance, or around the whole scene.

@@ -53,6 +53,11 @@ bool script_failed(const struct script *script, char error[1024])
     return script->error[0] != 0;
 }
 
+bool script_waits(const struct script *script, const struct viewer *v)
+{
+    return v->dirty == 0 && (script->samples > 0 || (script->settles && bakes_running(v)));
+}
+
 static bool wrong(struct script *script, const char *what, const char *text)
 {
     snprintf(script->error, sizeof script->error, "%.250s:%d: %.350s %.350s", script->path,

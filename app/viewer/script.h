@@ -34,4 +34,6 @@ struct script *script_open(const char *path, char error[1024]);
 void script_close(struct script *script); // accepts NULL
 // Runs lines until one waits, and appends events. False: the script has ended.
 bool script_step(struct script *script, struct viewer *v, struct event_queue *queue);
+// It waits for threads, not for frames.
+bool script_waits(const struct script *script, const struct viewer *v);
 bool script_failed(const struct script *script, char error[1024]);

@@ -63,7 +63,9 @@ struct viewer {
     bool changed;                  // since the reference began
     bool offered;                  // the reference has the image of this method
 
-    struct ag_pick pick; // surface under the mouse
+    bool inspecting;     // the surface under the mouse is shown
+    bool picking;        // a click waits for its frame
+    int pick_at[2];      // pixels of the rendering
     int picked_instance; // chosen by a click; -1: none
 
     struct times times;

@@ -33,6 +33,16 @@ static void update_camera(struct viewer *v)
                      (float)((double)v->look.fov_deg * (double)PI / 180.0), &v->camera);
 }
 
+static void take_pick(struct viewer *v)
+{
+    struct ag_pick pick;
+    if (ag_renderer_picked(v->main.renderer, &pick) != AG_OK || pick.frame == 0 ||
+        pick.x != v->pick_at[0] || pick.y != v->pick_at[1])
+        return;
+    v->picked_instance = pick.instance;
+    v->picking = false;
+}
+
 static bool render(struct viewer *v)
 {
     struct ag_frame_desc frame;
@@ -44,7 +54,10 @@ static bool render(struct viewer *v)
     frame.animation = v->desc->animation;
     frame.auto_exposure = v->auto_exposure;
     frame.exposure_ev = v->exposure_ev;
-    if (mouse[0] >= 0 && mouse[1] >= 0 && mouse[0] < v->main.width && mouse[1] < v->main.height)
+    if (v->picking)
+        frame.pick = v->pick_at;
+    else if (mouse[0] >= 0 && mouse[1] >= 0 && mouse[0] < v->main.width &&
+             mouse[1] < v->main.height)
         frame.pick = mouse;
     enum ag_result result = rendering_render(&v->main, &frame);
     if (result == AG_OK && v->split) {
@@ -58,6 +71,7 @@ static bool render(struct viewer *v)
         }
         result = rendering_render(&v->other, &frame);
     }
+    if (v->picking) take_pick(v);
     if (v->dirty > 0) v->dirty--;
     times_add(v);
     return viewer_check(v, result);
@@ -144,7 +158,8 @@ static bool fit_window(struct viewer *v)
 
 static bool is_idle(const struct viewer *v)
 {
-    return v->dirty == 0 && !v->playing && !v->script && v->desc->frames == 0 && !v->turning;
+    if (v->script) return script_waits(v->script, v);
+    return v->dirty == 0 && !v->playing && v->desc->frames == 0 && !v->turning;
 }
 
 static void handle_events(struct viewer *v, bool waits)
@@ -292,7 +307,6 @@ bool viewer_run(const struct viewer_desc *desc, char error[1024])
     v->exposure_ev = desc->exposure_ev;
     v->debug_view = v->picked_instance = v->show_tab = -1;
     v->time_s = desc->time_s;
-    v->pick.instance = -1;
     bool done = open(v, error) && begin(v, error) && loop(v, error);
     if (done && v->script && script_failed(v->script, error)) done = false;
     close(v);

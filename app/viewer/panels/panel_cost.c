@@ -102,6 +102,7 @@ void panel_cost(struct viewer *v)
     static float budget_ms = 16.7f;
     ui_text("%s", v->device_info.name);
     ui_text("%.2f ms on the GPU", (double)v->times.frame_ms[v->times.newest]);
+    ui_text("%.0f frames of the window a second", v->frame_s > 0 ? 1.0 / (double)v->frame_s : 0.0);
     plot(&v->times, budget_ms, 180.0f);
     ui_number("budget (ms)", &budget_ms, 1.0f, 200.0f, "%.1f", true);
     if (ui_button("Save as CSV")) save_csv(v, "afterglow-times.csv");

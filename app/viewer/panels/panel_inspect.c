@@ -1,5 +1,7 @@
 // The surface under the mouse: its instance, mesh and material.
 #include "panel.h"
+
+#include "overlay.h"
 #include "viewer/operations.h"
 
 #include <stdio.h>
@@ -50,6 +52,8 @@ static void show_instance(struct viewer *v, int index)
 void panel_inspect(struct viewer *v)
 {
     struct ag_pick pick;
+    v->inspecting = true;
+    overlay_selection(v);
     if (ag_renderer_picked(v->main.renderer, &pick) == AG_OK && pick.frame > 0 &&
         pick.instance >= 0)
         ui_faint("under the mouse: instance %d, triangle %d", pick.instance, pick.triangle);

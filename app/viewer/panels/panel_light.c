@@ -1,5 +1,7 @@
 // Lights, sky and materials.
 #include "panel.h"
+
+#include "overlay.h"
 #include "viewer/operations.h"
 
 #include <math.h>
@@ -148,6 +150,7 @@ void panel_light(struct viewer *v)
 {
     struct ag_scene_info info = { 0 };
     ag_scene_get_info(v->desc->scene, v->desc->animation, v->time_s, &info);
+    overlay_lights(v);
     ui_text("add");
     for (int i = 0; i < 3; i++) {
         ui_same_line();

@@ -1,0 +1,7 @@
+// Marks in the image: lights, and the box of the surface that was clicked.
+#pragma once
+
+#include "viewer/state.h"
+
+void overlay_lights(const struct viewer *v);
+void overlay_selection(const struct viewer *v);
