@@ -104,7 +104,7 @@ if [ $? -ne 77 ]; then
     fails "a C file that is not formatted" 'src/core/bad.c:1' "$here/format.sh" "$tree"
     rm "$tree/src/core/bad.c"
     printf 'float  x;\n' >"$tree/src/core/bad.comp"
-    fails "a shader that is not formatted" 'src/core/bad.comp: not' "$here/format.sh" "$tree"
+    fails "a shader that is not formatted" 'src/core/bad.comp:1' "$here/format.sh" "$tree"
 fi
 rm "$tree/.clang-format"
 

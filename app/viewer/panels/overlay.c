@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-// Where a point is in the window; false: behind the camera.
+// The pixel of the window at which a point appears; false: it is behind the camera.
 static bool place(const struct viewer *v, const float point[3], float *x, float *y)
 {
     const struct region r = viewer_region(v);
