@@ -184,11 +184,21 @@ struct ag_frame_desc {
     const struct ag_view_frame *views; ///< further views of this frame, see view.h; default NULL
     int view_count;                    ///< default 0
     const struct ag_view_matrices *matrices; ///< in place of `camera`; NULL, the default: camera
-    uint64_t reserved[3];                    ///< 0; see ABI in types.h
+    /// Sub-pixel jitter: a pixel samples its centre plus this offset in pixels, +x right, +y down,
+    /// each −0.5…0.5; ag_jitter has a sequence. Jitter of `matrices` stays, this one is added.
+    /// Motion vectors exclude it: a static scene has motion 0, whatever the jitter. Those of the
+    /// program's own G-buffer, which is rendered with this jitter, exclude it too. Shadow cascades
+    /// follow the camera without it. Default 0, 0: the centre.
+    float jitter[2];
+    uint64_t reserved[2]; ///< 0; see ABI in types.h
 };
 /// Sets every member except `camera`; ag_scene_default_camera, ag_scene_camera and ag_scene_look_at
 /// return one. Thread: any.
 AG_API void ag_frame_desc_default(struct ag_frame_desc *desc);
+/// Point `index` modulo `count` of the first `count` points of the Halton sequence of bases 2 and
+/// 3, moved so that their mean is 0: offsets for ag_frame_desc.jitter. The mean of that many frames
+/// is a box-filtered image. count below 2: 0, 0. Thread: any.
+AG_API void ag_jitter(int index, int count, float jitter[2]);
 /// Renders one frame and submits it. Two frames are in flight: the call waits until the frame
 /// before the last is finished. Thread: the context's.
 AG_API enum ag_result ag_renderer_render(struct ag_renderer *renderer,

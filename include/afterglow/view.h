@@ -54,7 +54,8 @@ struct ag_view_frame {
     bool camera_cut;                  ///< of this view; default false
     const struct ag_gbuffer *gbuffer; ///< with host_gbuffer: required; else NULL, the default
     const struct ag_view_matrices *matrices; ///< in place of `camera`; default NULL
-    uint64_t reserved[3];                    ///< 0; see ABI in types.h
+    float jitter[2];                         ///< as in ag_frame_desc; default 0, 0
+    uint64_t reserved[2];                    ///< 0; see ABI in types.h
 };
 /// Sets every member except `view` and `camera`. Thread: any.
 AG_API void ag_view_frame_default(struct ag_view_frame *frame);

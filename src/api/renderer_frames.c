@@ -4,6 +4,7 @@
 #include "api/renderer_state.h"
 #include "api/view_matrices.h"
 
+#include "core/sampling.h"
 #include "gpu/gpu.h"
 
 #include <string.h>
@@ -21,6 +22,14 @@ void ag_frame_desc_default(struct ag_frame_desc *desc)
     if (desc) *desc = (struct ag_frame_desc){ .auto_exposure = true };
 }
 
+void ag_jitter(int index, int count, float jitter[2])
+{
+    if (!jitter) return;
+    const vec2s offset = sample_jitter(index, count);
+    jitter[0] = offset.x;
+    jitter[1] = offset.y;
+}
+
 // One view of a frame, while it is recorded.
 struct shot {
     struct ag_view *view;
@@ -29,6 +38,7 @@ struct shot {
     struct api_view by_matrices;             // of them
     bool auto_exposure, camera_cut;
     float exposure_ev;
+    const float *jitter; // x, y
     const struct ag_gbuffer *gbuffer;
     struct frame_gbuffer images; // of gbuffer
     struct gbuffer_encoding encoding;
@@ -49,6 +59,7 @@ static void list_shots(struct ag_renderer *r, const struct ag_frame_desc *desc, 
                                   .auto_exposure = desc->auto_exposure,
                                   .camera_cut = desc->camera_cut,
                                   .exposure_ev = desc->exposure_ev,
+                                  .jitter = desc->jitter,
                                   .gbuffer = desc->gbuffer };
     for (int i = 0; i < desc->view_count; i++) {
         const struct ag_view_frame *own = &desc->views[i];
@@ -58,6 +69,7 @@ static void list_shots(struct ag_renderer *r, const struct ag_frame_desc *desc, 
                                           .auto_exposure = own->auto_exposure,
                                           .camera_cut = own->camera_cut,
                                           .exposure_ev = own->exposure_ev,
+                                          .jitter = own->jitter,
                                           .gbuffer = own->gbuffer };
     }
 }
@@ -68,6 +80,9 @@ static enum ag_result shot_check(const char *function, struct shot *shot)
     AG_REQUIRE_FOR(function, context, shot->view->sized, "the last resize failed");
     AG_REQUIRE_FOR(function, context, shot->auto_exposure || isfinite(shot->exposure_ev),
                    "exposure_ev is not finite");
+    for (int i = 0; i < 2; i++)
+        AG_REQUIRE_FOR(function, context, fabsf(shot->jitter[i]) <= 0.5f,
+                       "jitter[%d] is %g, not -0.5 to 0.5", i, (double)shot->jitter[i]);
     enum ag_result checked = renderer_gbuffer_check(function, shot->view, shot->gbuffer);
     if (checked != AG_OK) return checked;
     if (!shot->matrices) return api_camera_check(context, function, shot->camera);
@@ -147,6 +162,7 @@ static bool prepare_shot(struct shot *shot, const struct frame_input *common,
     shot->input.auto_exposure = shot->auto_exposure;
     shot->input.exposure_ev = shot->exposure_ev;
     shot->input.camera_cut = shot->camera_cut;
+    shot->input.jitter = (vec2s){ { shot->jitter[0], shot->jitter[1] } };
     shot->input.want_indirect_layer = view->indirect_layer;
     shot->input.want_motion_layer = view->motion_layer;
     shot->input.want_id_layer = view->id_layer;

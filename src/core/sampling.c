@@ -20,3 +20,27 @@ vec3s sample_hemisphere_uniform(vec2s u)
 {
     return direction_of(u.x, u.y);
 }
+
+// Digits of an index mirrored at the radix point.
+static double radical_inverse(int index, int base)
+{
+    double sum = 0.0, digit = 1.0 / base;
+    for (; index > 0; index /= base, digit /= base) sum += index % base * digit;
+    return sum;
+}
+
+// Point 0 of the sequence is left out: it is a corner.
+vec2s sample_jitter(int index, int count)
+{
+    if (count < 2) return (vec2s){ { 0.0f, 0.0f } };
+    index = (index % count + count) % count;
+    double x = 0.0, y = 0.0;
+    for (int i = 1; i <= count; i++) {
+        x += radical_inverse(i, 2);
+        y += radical_inverse(i, 3);
+    }
+    x = radical_inverse(index + 1, 2) - x / count;
+    y = radical_inverse(index + 1, 3) - y / count;
+    // Few counts exceed it, by a thousandth.
+    return (vec2s){ { (float)fmax(fmin(x, 0.5), -0.5), (float)fmax(fmin(y, 0.5), -0.5) } };
+}

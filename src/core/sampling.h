@@ -8,6 +8,9 @@
 vec3s sample_sphere(vec2s u);                          // uniform, density 1/(4π)
 static inline vec3s sample_hemisphere_cosine(vec2s u); // around +z, density cosθ/π
 vec3s sample_hemisphere_uniform(vec2s u);              // around +z, density 1/(2π)
+// Point `index` mod `count` of the first `count` points of the Halton sequence of bases 2 and 3,
+// moved so that their mean is 0; in −½…½. (0, 0) for a count below 2.
+vec2s sample_jitter(int index, int count);
 static inline vec2s sample_disk(vec2s u);     // concentric (Shirley & Chiu 1997), unit disk
 static inline vec2s sample_triangle(vec2s u); // barycentric b1, b2, uniform by area
 

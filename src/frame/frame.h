@@ -45,8 +45,9 @@ enum frame_layer {
     // than √0.04 and 1.
     FRAME_DIELECTRIC,
     FRAME_EMISSIVE, // RGBA16F: scaled radiance
-    // RGBA16F. xy: screen position minus previous screen position, in 0…1 units, +y down; z:
-    // previous over current distance along the view axis, minus 1; w: 1 where there is a surface.
+    // RGBA16F. xy: screen position minus previous screen position, in 0…1 units, +y down, without
+    // the jitter of both frames (frame_constants.jitter_step); z: previous over current distance
+    // along the view axis, minus 1; w: 1 where there is a surface.
     FRAME_MOTION,
     // RG32U: instance of the scene and triangle of its mesh, each plus 1; 0: no surface. Optional.
     FRAME_ID,
@@ -90,6 +91,7 @@ struct frame_view {
     const struct scene_pose *pose;
     const struct environment *environment; // physical units
     const struct scene_gpu *scene; // triangles and materials on the GPU (frame/scene/scene_gpu.h)
+    // With the jitter of this frame.
     struct frame_camera camera;
     struct box3 bounds; // of the scene, world space; empty for an empty scene
     bool camera_cut, geometry_moved, lights_changed; // since the previous frame
@@ -199,6 +201,7 @@ struct frame_input {
     const struct scene_pose *pose;
     struct world_camera camera;
     const struct frame_camera *projected; // in place of `camera`; NULL: its perspective
+    vec2s jitter;                         // from the centres of pixels, in pixels, +y down
     const struct world_light *lights;     // physical units
     int light_count;                      // ≤ FRAME_MAX_LIGHTS
     struct environment environment;       // of the scene

@@ -41,19 +41,30 @@ static void begin_lights(struct frame *f, const struct frame_input *input, float
     f->light_count = count;
 }
 
-// A change between perspective and orthographic is a cut, too.
+static struct frame_camera jittered(const struct frame *f, const struct frame_camera *camera)
+{
+    return frame_camera_jittered(camera, f->jitter, f->width, f->height);
+}
+
+// A change between perspective and orthographic is a cut, too. Both matrices of motion have the
+// jitter of this frame, which so cancels: a static surface has motion 0.
 static void begin_camera(struct frame *f, const struct frame_input *input)
 {
     struct frame_constants *c = &f->constants;
-    const mat4s previous_clip = c->clip_from_world;
-    const struct frame_camera previous = f->camera;
-    f->camera =
+    const struct frame_camera previous = f->unjittered;
+    const vec2s previous_jitter = f->jitter;
+    f->unjittered =
         input->projected ? *input->projected : frame_camera_of(&input->camera, f->width, f->height);
     f->camera_cut =
-        input->camera_cut || f->index == 0 || previous.orthographic != f->camera.orthographic;
+        input->camera_cut || f->index == 0 || previous.orthographic != f->unjittered.orthographic;
+    f->jitter = input->jitter;
+    f->camera = jittered(f, &f->unjittered);
+    const struct frame_camera before = f->camera_cut ? f->camera : jittered(f, &previous);
     frame_camera_constants(&f->camera, f->width, f->height, c);
-    c->previous_clip_from_world = f->camera_cut ? c->clip_from_world : previous_clip;
-    c->previous_axis = f->camera_cut ? c->axis : frame_camera_axis(&previous);
+    c->previous_clip_from_world = frame_camera_clip_from_world(&before);
+    c->previous_axis = frame_camera_axis(&before);
+    c->jitter_step_x = f->camera_cut ? 0.0f : f->jitter.x - previous_jitter.x;
+    c->jitter_step_y = f->camera_cut ? 0.0f : f->jitter.y - previous_jitter.y;
 }
 
 static uint64_t light_hash(const struct frame *f)
@@ -116,7 +127,7 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
     f->light_hash = light_hash(f);
     shadow_place(&f->common->shadow, f->lights, f->light_count,
                  &(struct shadow_view){
-                     .camera = f->camera,
+                     .camera = f->unjittered, // so that jitter alone moves no map
                      .bounds = input->pose->bounds,
                      .cascade_blend = f->common->options.cascade_blend,
                      .filter_radius = f->common->options.shadow_filter,

@@ -21,6 +21,19 @@ struct frame_camera frame_camera_of(const struct world_camera *camera, uint32_t 
                                   .far_m = INFINITY };
 }
 
+struct frame_camera frame_camera_jittered(const struct frame_camera *c, vec2s jitter,
+                                          uint32_t width, uint32_t height)
+{
+    const float x = jitter.x * (c->right - c->left) / (float)width;
+    const float y = jitter.y * (c->top - c->bottom) / (float)height;
+    struct frame_camera moved = *c;
+    moved.left += x;
+    moved.right += x;
+    moved.bottom -= y;
+    moved.top -= y;
+    return moved;
+}
+
 static bool same(vec3s a, vec3s b)
 {
     return a.x == b.x && a.y == b.y && a.z == b.z;

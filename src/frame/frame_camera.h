@@ -16,6 +16,9 @@ struct frame_camera {
 // Perspective, centred.
 struct frame_camera frame_camera_of(const struct world_camera *camera, uint32_t width,
                                     uint32_t height);
+// Sides moved so that pixels sample their centre plus an offset in pixels, +y down.
+struct frame_camera frame_camera_jittered(const struct frame_camera *camera, vec2s jitter,
+                                          uint32_t width, uint32_t height);
 bool frame_camera_equals(const struct frame_camera *a, const struct frame_camera *b);
 vec3s frame_camera_right(const struct frame_camera *camera);
 

@@ -21,7 +21,7 @@
 struct frame_constants {
     mat4s clip_from_world; // reversed Z: depth 1 at the near plane, see frame_camera.h
     mat4s world_from_clip;
-    mat4s previous_clip_from_world; // of the previous frame
+    mat4s previous_clip_from_world; // of the previous frame, with the jitter of this one
     mat4s view_from_world;
     vec4s viewer;            // homogeneous: the position, or minus the axis of an orthographic view
     vec4s distance_of_depth; // distance = (x + y · depth) / (z + w · depth)
@@ -48,7 +48,9 @@ struct frame_constants {
     float environment_cos, environment_sin; // of the map's rotation about +y
     float environment_side;                 // texels of the map's finest level
     vec3s environment_sh[9]; // coefficients of the environment's scaled radiance (core/sh.h)
-    uint32_t padding;        // mat4s is aligned to 16 bytes in C
+    // Jitter of this frame minus that of the previous one, in pixels; 0 after a cut.
+    float jitter_step_x, jitter_step_y;
+    uint32_t padding[3]; // mat4s is aligned to 16 bytes in C
 };
 
 // Storage block "frame_lights".
@@ -97,7 +99,7 @@ struct frame_probes {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct frame_constants) == 4 * 64 + 88 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct frame_constants) == 4 * 64 + 92 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_light) == 64, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_emitter) == 9 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_probes) == 8 * 4, "layout is shared with GLSL");

@@ -75,7 +75,8 @@ struct frame {
     int light_count;
     uint64_t lights_hash, light_hash; // of the physical lights; of struct frame_view
     uint64_t environment_key;
-    struct frame_camera camera;
+    struct frame_camera camera, unjittered; // camera: with the jitter
+    vec2s jitter;
     vec3s emitted_irradiance; // scaled lux
     float fallback_luminance; // scaled, see frame_fallback_luminance
     bool camera_cut, lights_changed;

@@ -75,6 +75,7 @@ static void check_equal(struct renderer_fixture *s, const char *gi, const struct
     const struct ag_frame_desc before = s->frame;
     for (int i = 0; i < 3; i++) {
         s->frame.camera.eye[0] += 0.01f; // histories are reprojected
+        ag_jitter(i, 3, s->frame.jitter);
         render_both(s, hosted, own);
     }
     s->frame = before;

@@ -166,3 +166,32 @@ TEST(corners_of_the_unit_square_give_finite_unit_directions)
         CHECK(sample_hemisphere_cosine(u).z >= 0.0f);
     }
 }
+
+TEST(jitter_has_mean_zero_and_each_offset_once)
+{
+    for (int count = 1; count <= 100; count++) {
+        double x = 0, y = 0;
+        for (int i = 0; i < count; i++) {
+            const vec2s offset = sample_jitter(i, count);
+            CHECK(fabsf(offset.x) <= 0.5f && fabsf(offset.y) <= 0.5f);
+            x += (double)offset.x, y += (double)offset.y;
+            for (int k = 0; k < i; k++) CHECK(sample_jitter(k, count).x != offset.x);
+        }
+        CHECK_NEAR(x / count, 0.0, 1e-4);
+        CHECK_NEAR(y / count, 0.0, 1e-4);
+    }
+    const vec2s first = sample_jitter(0, 64), again = sample_jitter(-64, 64);
+    CHECK(first.x == again.x && first.y == again.y);
+}
+
+// Each eighth of the pixel's width and height has its share of 64 offsets, to one.
+TEST(jitter_covers_the_pixel)
+{
+    int columns[8] = { 0 }, rows[8] = { 0 };
+    for (int i = 0; i < 64; i++) {
+        const vec2s offset = sample_jitter(i, 64);
+        columns[(int)fminf(8.0f * (offset.x + 0.5f), 7.0f)]++;
+        rows[(int)fminf(8.0f * (offset.y + 0.5f), 7.0f)]++;
+    }
+    for (int i = 0; i < 8; i++) CHECK(abs(columns[i] - 8) <= 1 && abs(rows[i] - 8) <= 1);
+}

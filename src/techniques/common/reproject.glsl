@@ -4,10 +4,11 @@
 #ifndef AG_REPROJECT_GLSL
 #define AG_REPROJECT_GLSL
 
-// In pixels, with centers at whole numbers; outside the image if the surface was behind the camera.
-vec2 reproject_place(vec4 motion, ivec2 pixel, vec2 size)
+// In pixels, with the points that the previous frame sampled at whole numbers; outside the image if
+// the surface was behind the camera. jitter_step: of frame_constants, since motion excludes jitter.
+vec2 reproject_place(vec4 motion, ivec2 pixel, vec2 size, vec2 jitter_step)
 {
-    return vec2(pixel) - motion.xy * size;
+    return vec2(pixel) - motion.xy * size + jitter_step;
 }
 
 // Distance along the previous view axis of a point at distance_m along the current one; 0: it was

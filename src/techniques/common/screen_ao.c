@@ -88,6 +88,8 @@ static void use_history(struct screen_ao *ao, const struct frame_view *view)
     // The golden-ratio sequence of rotations continues from frame to frame.
     p->rotation = fmodf(0.61803399f * (float)(ROTATIONS * (ao->number % ROTATIONS)), 1.0f);
     p->has_history = known;
+    p->jitter_step_x = view->constants->jitter_step_x;
+    p->jitter_step_y = view->constants->jitter_step_y;
     if (known) {
         p->previous_scale = scale_of(&ao->previous, focal_px(&ao->previous, view));
         p->previous_depth_of_distance = frame_camera_depth_of_distance(&ao->previous);

@@ -21,13 +21,14 @@ struct screen_ao_params {
     float focal_px;    // pixels per unit of the angle's tangent, or per metre in orthographic views
     float perspective; // 1; 0: orthographic
     float radius_m;    // of the sphere
-    float max_radius_px;              // largest radius of the sphere on the screen
-    float rotation;                   // of the frame's pattern, 0…1 is a full turn
-    float center_x, center_y;         // pixel on the view axis
-    uint32_t width, height;           // of the frame, pixels
-    uint32_t work_width, work_height; // of the estimate, pixels
-    uint32_t has_history;             // bool
-    uint32_t padding[3];              // vec4s is aligned to 16 bytes in C
+    float max_radius_px;                // largest radius of the sphere on the screen
+    float rotation;                     // of the frame's pattern, 0…1 is a full turn
+    float center_x, center_y;           // pixel on the view axis
+    uint32_t width, height;             // of the frame, pixels
+    uint32_t work_width, work_height;   // of the estimate, pixels
+    uint32_t has_history;               // bool
+    float jitter_step_x, jitter_step_y; // see struct frame_constants
+    uint32_t padding;                   // vec4s is aligned to 16 bytes in C
 };
 
 #ifndef AG_GLSL

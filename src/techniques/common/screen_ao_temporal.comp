@@ -49,8 +49,9 @@ void main()
     if (now.y > 0.0 && view.has_history != 0u) {
         ivec2 pixel = work * SCREEN_AO_STEP;
         vec4 moved = texelFetch(motion, pixel, 0);
-        vec2 position =
-            reproject_place(moved, pixel, vec2(view.width, view.height)) / float(SCREEN_AO_STEP);
+        vec2 position = reproject_place(moved, pixel, vec2(view.width, view.height),
+                                        vec2(view.jitter_step_x, view.jitter_step_y)) /
+                        float(SCREEN_AO_STEP);
         float distance_m = reproject_distance(moved, screen_distance(now.y));
         vec4 m = view.previous_depth_of_distance;
         float before = (m.x + m.y * distance_m) / (m.z + m.w * distance_m);

@@ -201,8 +201,10 @@ void main()
         float distance_before = reproject_distance(moved, distance_m);
         history_sample history = history_sample(vec4(0.0), vec3(0.0), vec3(0.0));
         if (set.known != 0u && distance_before > 0.0)
-            history = sample_history(reproject_place(moved, pixel, vec2(frame.width, frame.height)),
-                                     distance_before, n);
+            history =
+                sample_history(reproject_place(moved, pixel, vec2(frame.width, frame.height),
+                                               vec2(frame.jitter_step_x, frame.jitter_step_y)),
+                               distance_before, n);
         if (set.clamp > 0.0 && history.light.w > 0.0)
             history.light.rgb = clamped(history.light.rgb, pixel, position(pixel, z), n,
                                         TOLERANCE_PX * set.pixel * previous_scale(distance_m));
