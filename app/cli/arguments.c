@@ -92,6 +92,7 @@ static struct arguments defaults_of(const struct command *command)
                                .width = 1280,
                                .height = 720,
                                .frames = frames,
+                               .frame_samples = 1,
                                .fov_deg = 60.0,
                                .spp = 64,
                                .scene_scale = 1.0f,

@@ -35,6 +35,7 @@ struct arguments {
     bool has_gi, follow_links, has_scene_scale;
     float scene_scale; // metres per unit of the scene's file
     int width, height, frames;
+    int frame_samples;  // jittered frames whose mean is written: --antialias of render; 1: none
     const char *output; // NULL: from the scene's name
     const char *aov, *debug_view, *stats, *device;
     uint64_t seed;

@@ -7,6 +7,7 @@
 #include "values.h"
 #include "cli/terminal/waiting.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +25,7 @@ struct job {
     bool sequence;           // the pattern has a frame number
     bool measure;            // collect times
     float exposure_ev;       // of the newest frame
+    int rendered, to_render; // frames, also jittered ones
 };
 
 // ---- checks of the command line
@@ -114,7 +116,8 @@ static enum status check_memory(const struct job *job)
     struct ag_device_info device;
     ag_device_get_info(job->device, &device);
     return memory_check_size("render", a->positional[0], a->width, a->height,
-                             16 + 16 * (uint64_t)job->output.layer_count,
+                             16 * (uint64_t)(a->frame_samples > 1 ? 3 : 1) +
+                                 16 * (uint64_t)job->output.layer_count,
                              device.software ? job->gpu_bytes : 0);
 }
 
@@ -149,49 +152,91 @@ static enum status prepare(struct job *job)
     return result == AG_OK ? DONE : fail_library(context, result);
 }
 
+static enum status describe_frame(struct job *job, int frame, struct ag_frame_desc *desc)
+{
+    const struct arguments *a = job->arguments;
+    ag_frame_desc_default(desc);
+    desc->time_s = a->time_s + frame * a->time_step_s;
+    desc->animation = job->session.animation;
+    desc->auto_exposure = !a->has_exposure;
+    desc->exposure_ev = a->exposure_ev;
+    return session_camera(&job->session, desc->time_s, &desc->camera);
+}
+
+static enum status submit_frame(struct job *job, const struct ag_frame_desc *desc)
+{
+    progress("rendering", job->rendered, job->to_render);
+    waiting_begin(job->rendered, job->to_render);
+    const enum ag_result result = ag_renderer_render(job->renderer, desc);
+    // The first of several frames includes one-time work.
+    const bool counts = job->measure && (job->rendered > 0 || job->to_render == 1);
+    const bool measured =
+        result != AG_OK || !counts || statistics_add(&job->statistics, job->renderer);
+    waiting_end();
+    job->rendered++;
+    if (result != AG_OK) return fail_library(job->session.context, result);
+    return measured ? DONE
+                    : fail("cannot measure %s: out of memory", job->arguments->positional[0]);
+}
+
 static enum status render_frame(struct job *job, int frame)
 {
     const struct arguments *a = job->arguments;
-    struct ag_frame_desc desc;
-    ag_frame_desc_default(&desc);
-    desc.time_s = a->time_s + frame * a->time_step_s;
-    desc.animation = job->session.animation;
-    desc.auto_exposure = !a->has_exposure;
-    desc.exposure_ev = a->exposure_ev;
-    enum status status = session_camera(&job->session, desc.time_s, &desc.camera);
-    if (status != DONE) return status;
     const struct session *session = &job->session;
+    struct ag_frame_desc desc;
+    enum status status = describe_frame(job, frame, &desc);
+    if (status != DONE) return status;
     enum ag_result result = AG_OK;
     if (a->environment && a->environment_value.turn != 0.0f)
         result =
             environment_turn(session->scene, session->environment, &a->environment_value, frame);
-    if (result == AG_OK) result = ag_renderer_render(job->renderer, &desc);
-    if (result != AG_OK) return fail_library(job->session.context, result);
-    // The first of several frames includes one-time work.
-    bool counts = job->measure && (frame > 0 || a->frames == 1);
-    if (counts && !statistics_add(&job->statistics, job->renderer))
-        return fail("cannot measure %s: out of memory", a->positional[0]);
-    return DONE;
+    if (result != AG_OK) return fail_library(session->context, result);
+    return submit_frame(job, &desc);
+}
+
+// The mean of jittered frames, all with the exposure of the newest frame.
+static enum status antialias(struct job *job, int frame, struct output_images *images)
+{
+    const int count = job->arguments->frame_samples;
+    struct ag_frame_desc desc;
+    enum status status = describe_frame(job, frame, &desc);
+    desc.auto_exposure = false;
+    desc.exposure_ev = images->ev;
+    for (int i = 0; i < count && status == DONE; i++) {
+        ag_jitter(i, count, desc.jitter);
+        status = submit_frame(job, &desc);
+        if (status == DONE)
+            status = output_average(&job->session, job->renderer, &job->output, i, count, images);
+    }
+    return status;
 }
 
 static enum status write_frame(struct job *job, int frame, char path[PATH_SIZE])
 {
     bool sequence;
+    struct output_images images;
     value_frame_path(job->pattern, frame, path, PATH_SIZE, &sequence);
-    return output_write(&job->session, job->renderer, &job->output, path);
+    enum status status = output_read(&job->session, job->renderer, &job->output, &images);
+    if (status == DONE && job->arguments->frame_samples > 1)
+        status = antialias(job, frame, &images);
+    if (status == DONE)
+        status = output_write(&job->session, job->renderer, &job->output, &images, path);
+    output_finish(&job->session, &images);
+    return status;
 }
 
 static enum status render_frames(struct job *job, char last_path[PATH_SIZE])
 {
-    int frames = job->arguments->frames;
+    const int frames = job->arguments->frames, samples = job->arguments->frame_samples;
+    const int written = job->sequence ? frames : 1;
+    // Progress is a share: the largest product is beyond it.
+    const double all = frames + (samples > 1 ? (double)samples * written : 0.0);
+    job->to_render = all < INT_MAX ? (int)all : INT_MAX;
     enum status status = DONE;
     for (int i = 0; i < frames && status == DONE; i++) {
-        progress("rendering", i, frames);
-        waiting_begin(i, frames);
         status = render_frame(job, i);
         if (status == DONE && (job->sequence || i + 1 == frames))
             status = write_frame(job, i, last_path);
-        waiting_end();
     }
     progress_end();
     return status;
@@ -207,6 +252,7 @@ static json_t *result_json(struct job *job, const char *path)
     json_object_set_new(document, "scene_scale", json_float(job->arguments->scene_scale));
     json_object_set_new(document, "scene", json_text(job->arguments->positional[0]));
     json_object_set_new(document, "camera", json_text(job->session.camera_name));
+    json_object_set_new(document, "antialias", json_integer(job->arguments->frame_samples));
     json_object_set_new(document, "exposure_ev", json_float(job->exposure_ev));
     json_object_set_new(document, "output", json_text(path));
     return document;
@@ -320,6 +366,8 @@ const struct command command_render = {
         "      several layers in one file; 'afterglow diff' compares them\n"
         "  afterglow render fox.glb --gi lpv --frames 48 --time-step 0.0416 -o fox-%04d.png\n"
         "      two seconds of an animation\n"
+        "  afterglow render @atrium --gi vct --antialias 16 -o smooth.png\n"
+        "      smooth edges: the mean of 16 frames\n"
         "  afterglow render @atrium --gi lpv --frames 21 --stats times.json\n"
         "      measure 20 frames; the first warms up\n",
     .run = render,

@@ -23,7 +23,11 @@ static bool write_image(void *user, struct ag_renderer *renderer, const char *la
     struct output output = { .layers = { layer },
                              .layer_count = 1,
                              .exr = has_extension(path, "exr") };
-    return output_write(&viewing->session, renderer, &output, path) == DONE;
+    struct output_images images;
+    enum status status = output_read(&viewing->session, renderer, &output, &images);
+    if (status == DONE) status = output_write(&viewing->session, renderer, &output, &images, path);
+    output_finish(&viewing->session, &images);
+    return status == DONE;
 }
 
 static bool open_copy(void *user, struct ag_context **context, struct ag_scene **scene,

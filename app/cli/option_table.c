@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_FRAMES = 1000000, MAX_SPP = 1000000, MAX_BOUNCES = 1000000 };
+enum { MAX_FRAMES = 1000000, MAX_FRAME_SAMPLES = 4096, MAX_SPP = 1000000, MAX_BOUNCES = 1000000 };
 enum { MAX_THREADS = 1024, MAX_SHARDS = 10000 };
 
 // ---- switches and texts
@@ -146,6 +146,12 @@ static bool set_frames(struct arguments *a, const char *value, const char **why)
 {
     *why = "it must be 1 to 1000000";
     return set_int(value, 1, MAX_FRAMES, &a->frames);
+}
+
+static bool set_frame_samples(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be 1 to 4096";
+    return set_int(value, 1, MAX_FRAME_SAMPLES, &a->frame_samples);
 }
 
 static bool add_light(struct arguments *a, const char *value, const char **why)

@@ -265,36 +265,106 @@ enum ag_result layer_to_display(struct session *session, const char *layer, floa
     return tonemap(session, ev, image);
 }
 
-static enum status write_png(struct session *session, struct ag_renderer *renderer,
-                             const char *layer, const char *path)
+// ---- layers of frames
+
+enum status output_read(struct session *session, struct ag_renderer *renderer,
+                        const struct output *output, struct output_images *out)
+{
+    *out = (struct output_images){ 0 };
+    enum ag_result result = ag_renderer_exposure(renderer, &out->ev);
+    for (int i = 0; i < output->layer_count && result == AG_OK; i++)
+        result = ag_renderer_read(renderer, output->layers[i], &out->layers[i]);
+    return result == AG_OK ? DONE : fail_library(session->context, result);
+}
+
+void output_finish(struct session *session, struct output_images *images)
+{
+    for (int i = 0; i < MAX_LAYERS; i++) ag_image_destroy(session->context, images->layers[i]);
+    ag_image_destroy(session->context, images->radiance);
+    *images = (struct output_images){ 0 };
+}
+
+static bool is_averaged(const char *layer)
+{
+    static const char *const averaged[] = { "color",    "direct",     "indirect", "irradiance",
+                                            "specular", "visibility", "albedo",   "emissive" };
+    for (size_t i = 0; i < sizeof averaged / sizeof *averaged; i++)
+        if (strcmp(averaged[i], layer) == 0) return true;
+    return false;
+}
+
+// Adds a layer of the newest frame to the sum; the last one makes it a mean.
+static enum ag_result add_layer_of_frame(struct session *session, struct ag_renderer *renderer,
+                                         const char *layer, int index, int count,
+                                         struct ag_image **sum)
 {
     struct ag_image *image = NULL;
-    float ev = 0.0f;
-    enum ag_result result = ag_renderer_read(renderer, layer, &image);
-    if (result == AG_OK) result = ag_renderer_exposure(renderer, &ev);
-    if (result == AG_OK) result = layer_to_display(session, layer, ev, &image);
+    const enum ag_result result = ag_renderer_read(renderer, layer, &image);
+    if (result != AG_OK) return result;
+    const size_t values = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    for (size_t i = 0; i < values && index > 0; i++) image->pixels[i] += (*sum)->pixels[i];
+    for (size_t i = 0; i < values && index + 1 == count; i++) image->pixels[i] /= (float)count;
+    ag_image_destroy(session->context, *sum);
+    *sum = image;
+    return AG_OK;
+}
+
+// Radiance is averaged, then exposed and tone mapped, as for a PNG of the layer color.
+static enum ag_result show_mean(struct session *session, struct output_images *out,
+                                struct ag_image **display)
+{
+    struct ag_image *shown = NULL;
+    const enum ag_result result =
+        ag_image_tonemap(session->context, out->radiance, out->ev, &shown);
+    if (result != AG_OK) return result;
+    ag_image_destroy(session->context, *display);
+    *display = shown;
+    return AG_OK;
+}
+
+enum status output_average(struct session *session, struct ag_renderer *renderer,
+                           const struct output *output, int index, int count,
+                           struct output_images *out)
+{
+    enum ag_result result = AG_OK;
+    for (int i = 0; i < output->layer_count && result == AG_OK; i++) {
+        const char *layer = output->layers[i];
+        const bool shows = strcmp(layer, "display") == 0;
+        struct ag_image **sum = shows ? &out->radiance : &out->layers[i];
+        if (!shows && !is_averaged(layer)) continue;
+        result = add_layer_of_frame(session, renderer, shows ? "color" : layer, index, count, sum);
+        if (result == AG_OK && shows && index + 1 == count)
+            result = show_mean(session, out, &out->layers[i]);
+    }
+    return result == AG_OK ? DONE : fail_library(session->context, result);
+}
+
+static enum status write_png(struct session *session, const char *layer,
+                             struct output_images *images, const char *path)
+{
+    enum ag_result result = layer_to_display(session, layer, images->ev, &images->layers[0]);
     interrupt_hold();
-    if (result == AG_OK) result = ag_image_write_png(session->context, path, image);
+    if (result == AG_OK) result = ag_image_write_png(session->context, path, images->layers[0]);
     interrupt_release();
-    ag_image_destroy(session->context, image);
     return result == AG_OK ? DONE : fail_library(session->context, result);
 }
 
 // ---- EXR
 
 // No time or host name: equal commands write equal files.
-static enum ag_result write_exr_layers(struct session *session, struct ag_renderer *renderer,
-                                       const struct ag_image_layer *layers, int count,
-                                       const char *path)
+static enum status write_exr(struct session *session, struct ag_renderer *renderer,
+                             const struct output *output, const struct output_images *images,
+                             const char *path)
 {
     const struct arguments *a = session->arguments;
-    float ev = 0.0f;
-    enum ag_result result = ag_renderer_exposure(renderer, &ev);
-    if (result != AG_OK) return result;
-    char exposure[32], seed[32], version[32], scale[32];
+    struct ag_image_layer layers[MAX_LAYERS];
+    for (int i = 0; i < output->layer_count; i++)
+        layers[i] = (struct ag_image_layer){ output->layers[i], images->layers[i] };
+    char exposure[32], seed[32], version[32], scale[32], antialias[32];
     int v = ag_version();
-    snprintf(exposure, sizeof exposure, "%.9g", (double)ev);
+    snprintf(exposure, sizeof exposure, "%.9g", (double)images->ev);
     snprintf(scale, sizeof scale, "%.9g", (double)a->scene_scale);
+    snprintf(antialias, sizeof antialias, "%d", a->frame_samples);
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)a->seed);
     snprintf(version, sizeof version, "%d.%d.%d", v / 10000, v / 100 % 100, v % 100);
     const struct ag_attribute attributes[] = {
@@ -305,33 +375,21 @@ static enum ag_result write_exr_layers(struct session *session, struct ag_render
         { "afterglow.seed", seed },
         { "afterglow.version", version },
         { "afterglow.scene_scale", scale },
+        { "afterglow.antialias", antialias },
     };
+    const int all = sizeof attributes / sizeof attributes[0];
+    const int count = a->frame_samples == 1 ? all - 1 : all;
     interrupt_hold();
-    result = ag_image_write_exr(session->context, path, layers, count, attributes,
-                                sizeof attributes / sizeof attributes[0]);
+    const enum ag_result result =
+        ag_image_write_exr(session->context, path, layers, output->layer_count, attributes, count);
     interrupt_release();
-    return result;
-}
-
-static enum status write_exr(struct session *session, struct ag_renderer *renderer,
-                             const struct output *output, const char *path)
-{
-    struct ag_image *images[MAX_LAYERS] = { 0 };
-    struct ag_image_layer layers[MAX_LAYERS];
-    enum ag_result result = AG_OK;
-    for (int i = 0; i < output->layer_count && result == AG_OK; i++) {
-        result = ag_renderer_read(renderer, output->layers[i], &images[i]);
-        layers[i] = (struct ag_image_layer){ output->layers[i], images[i] };
-    }
-    if (result == AG_OK)
-        result = write_exr_layers(session, renderer, layers, output->layer_count, path);
-    for (int i = 0; i < output->layer_count; i++) ag_image_destroy(session->context, images[i]);
     return result == AG_OK ? DONE : fail_library(session->context, result);
 }
 
 enum status output_write(struct session *session, struct ag_renderer *renderer,
-                         const struct output *output, const char *path)
+                         const struct output *output, struct output_images *images,
+                         const char *path)
 {
-    if (output->exr) return write_exr(session, renderer, output, path);
-    return write_png(session, renderer, output->layers[0], path);
+    if (output->exr) return write_exr(session, renderer, output, images, path);
+    return write_png(session, output->layers[0], images, path);
 }

@@ -24,6 +24,22 @@ enum ag_result layer_to_display(struct session *session, const char *layer, floa
                                 struct ag_image **image);
 // "shots/house.glb" and "@house:lit=1" give "house" + ending.
 void output_default(const char *scene, const char *ending, char out[PATH_SIZE]);
-// Reads the layers of the newest frame and writes them to a file.
+// Layers of an output, and the exposure of what shows them. Zero is none.
+struct output_images {
+    struct ag_image *layers[MAX_LAYERS];
+    struct ag_image *radiance; // summed with the layer display, which is of its mean
+    float ev;
+};
+// Reads the layers of the newest frame. Finish `out` also after a failure.
+enum status output_read(struct session *session, struct ag_renderer *renderer,
+                        const struct output *output, struct output_images *out);
+// Replaces layers of light and reflectance by their mean over frames. For each frame from the
+// first, index 0, to the last: the pixels of `out` are the sum so far, and the mean after the last.
+// Geometry (depth, position, normal, motion, id) and debug stay as they are.
+enum status output_average(struct session *session, struct ag_renderer *renderer,
+                           const struct output *output, int index, int count,
+                           struct output_images *out);
+void output_finish(struct session *session, struct output_images *images);
 enum status output_write(struct session *session, struct ag_renderer *renderer,
-                         const struct output *output, const char *path);
+                         const struct output *output, struct output_images *images,
+                         const char *path);

@@ -433,3 +433,99 @@ TEST(the_default_file_name_is_that_of_the_scene)
     CHECK(there);
     CHECK(strstr(r->err, "cornell.png"));
 }
+
+static bool equal_layers(const char *a, const char *b, const char *layer)
+{
+    struct image x = read_layer(a, layer), y = read_layer(b, layer);
+    const size_t values = (size_t)x.width * (size_t)x.height * (size_t)x.channels;
+    const bool equal = memcmp(x.pixels, y.pixels, values * sizeof(float)) == 0;
+    image_finish(&x, test_host());
+    image_finish(&y, test_host());
+    return equal;
+}
+
+static void copy_path(char out[300], const char *name)
+{
+    snprintf(out, 300, "%s", test_path(name));
+}
+
+TEST(antialias_averages_light_and_keeps_geometry)
+{
+    require_device();
+    static const char layers[] = "color,direct,indirect,albedo,depth,normal,position,motion,id";
+    char one[300], many[300];
+    copy_path(one, "one.exr");
+    copy_path(many, "many.exr");
+    run_expect(0, SMALL, "--gi", "ambient", "--aov", layers, "-o", one, NULL);
+    run_expect(0, SMALL, "--gi", "ambient", "--aov", layers, "--antialias", "16", "-o", many, NULL);
+    static const char *const geometry[] = { "depth", "normal", "position", "motion", "id" };
+    for (size_t i = 0; i < sizeof geometry / sizeof *geometry; i++)
+        if (!equal_layers(one, many, geometry[i])) fail_msg("%s differs", geometry[i]);
+    static const char *const light[] = { "direct", "indirect", "albedo" };
+    for (size_t i = 0; i < sizeof light / sizeof *light; i++)
+        if (equal_layers(one, many, light[i])) fail_msg("%s is of one frame", light[i]);
+    // The color differs by the share of the bright emitter.
+    CHECK_NEAR(mean_of(many, "albedo"), mean_of(one, "albedo"), 0.02);
+    struct image color = read_layer(many, NULL), direct = read_layer(many, "direct"),
+                 indirect = read_layer(many, "indirect");
+    const double scale = mean(&color);
+    for (int i = 0; i < color.width * color.height * 3; i++) {
+        const double sum = (double)direct.pixels[i] + (double)indirect.pixels[i];
+        CHECK_NEAR(sum, color.pixels[i], 2e-3 * fabs(sum) + 1e-4 * scale);
+    }
+    image_finish(&color, test_host());
+    image_finish(&direct, test_host());
+    image_finish(&indirect, test_host());
+    char *value = exr_attribute_value(test_host(), many, "afterglow.antialias");
+    assert_non_null(value);
+    CHECK_STRING(value, "16");
+    host_free(test_host(), value);
+}
+
+TEST(antialias_by_one_is_the_file_without)
+{
+    require_device();
+    char without[300], one[300];
+    copy_path(without, "without.exr");
+    copy_path(one, "by-one.exr");
+    run_expect(0, SMALL, "-o", without, NULL);
+    run_expect(0, SMALL, "--antialias", "1", "-o", one, NULL);
+    CHECK(files_are_equal(without, one));
+}
+
+// Metered once: all frames, and those without, have one exposure.
+TEST(antialias_has_the_exposure_of_the_frame)
+{
+    require_device();
+    char one[300], many[300];
+    copy_path(one, "exposed.exr");
+    copy_path(many, "exposed-many.exr");
+    run_expect(0, SMALL, "-o", one, NULL);
+    run_expect(0, SMALL, "--antialias", "4", "-o", many, NULL);
+    char *a = exr_attribute_value(test_host(), one, "afterglow.exposure_ev");
+    char *b = exr_attribute_value(test_host(), many, "afterglow.exposure_ev");
+    assert_non_null(a);
+    assert_non_null(b);
+    CHECK_STRING(a, b);
+    host_free(test_host(), a);
+    host_free(test_host(), b);
+}
+
+// The layer display is the tone-mapped mean of radiance, as a PNG of color.
+TEST(the_display_of_antialiased_frames_is_that_of_their_mean)
+{
+    require_device();
+    char color[300], display[300];
+    copy_path(color, "mean-color.png");
+    copy_path(display, "mean-display.png");
+    run_expect(0, SMALL, "--antialias", "4", "-o", color, NULL);
+    run_expect(0, SMALL, "--antialias", "4", "--aov", "display", "-o", display, NULL);
+    CHECK(files_are_equal(color, display));
+}
+
+TEST(a_wrong_number_of_samples_is_refused)
+{
+    static const char *const wrong[] = { "0", "-1", "4097", "x", "2.5" };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        run_expect(2, SMALL, "--antialias", wrong[i], NULL);
+}
