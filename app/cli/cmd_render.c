@@ -82,6 +82,9 @@ static enum status check_usage(struct job *job)
 {
     const struct arguments *a = job->arguments;
     enum status status = plan_output(job);
+    if (a->frame_samples > 1 && a->frame_options && strstr(a->frame_options, "antialias=temporal"))
+        return wrong_usage("cannot use --antialias with --frame-options antialias=temporal: choose "
+                           "one");
     if (status == DONE && a->debug_view) status = check_debug_view(a->debug_view);
     if (status != DONE) return status;
     struct ag_renderer_desc desc;

@@ -30,6 +30,7 @@ enum ag_result ag_renderer_paint_light(struct ag_renderer *r, const struct ag_li
     };
     renderer_enter(r);
     const bool ok = gi_paint(r->gi, &area);
+    if (ok) frame_invalidate(r->main.frame);
     renderer_leave(r);
     return api_done(context, ok);
 }

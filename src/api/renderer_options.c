@@ -18,6 +18,7 @@ static bool set_gi(struct ag_renderer *r, const struct ag_renderer_desc *desc)
         host_free(host, r->gi_text);
         r->gi_text = text;
         renderer_keep_surfaces(r);
+        frame_invalidate(r->main.frame);
         renderer_warn_of_source(r);
         renderer_warn_of_darkness(r);
     } else {

@@ -58,8 +58,8 @@ enum ag_result ag_view_estimate_memory(struct ag_context *context,
     const uint32_t needs = ok ? gi_spec_needs(&spec) : 0;
     const int64_t more = (int64_t)width * height - (int64_t)renderer->width * renderer->height;
     if (ok)
-        *bytes = frame_view_memory_estimate(&input, apart ? NULL : &first, needs, width, height,
-                                            more > 0 ? (uint64_t)more : 0) +
+        *bytes = frame_view_memory_estimate(&options, &input, apart ? NULL : &first, needs, width,
+                                            height, more > 0 ? (uint64_t)more : 0) +
                  gi_view_memory_estimate(&spec, width, height, apart);
     gi_spec_finish(&spec);
     return api_done(context, ok);

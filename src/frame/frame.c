@@ -67,6 +67,7 @@ static void finish_common(struct frame *f)
     struct frame_common *c = f->common;
     frame_environment_finish(&c->environment);
     gpu_image_destroy(f->gpu, &c->ggx_albedo);
+    antialias_finish(&c->antialias);
     display_finish(&c->display);
     composite_finish(&c->composite);
     direct_finish(&c->direct);
@@ -160,7 +161,13 @@ bool frame_set_options(struct frame *f, const struct frame_options *options)
     shadow_finish(&shadow);
     rsm_finish(&rsm);
     if (ok) f->common->options = *options;
+    if (ok) f->common->revision++;
     return ok;
+}
+
+void frame_invalidate(struct frame *f)
+{
+    f->common->revision++;
 }
 
 bool frame_set_scene(struct frame *f, const struct scene *scene)
@@ -386,7 +393,7 @@ static void composite(struct frame *f, struct gpu_cmd *cmd, uint32_t variant)
         .irradiance = f->layers[FRAME_IRRADIANCE],
         .specular = f->layers[FRAME_SPECULAR],
         .visibility = f->layers[FRAME_VISIBILITY],
-        .color = f->layers[FRAME_COLOR],
+        .color = f->layers[f->needs & FRAME_ANTIALIASES ? FRAME_RADIANCE : FRAME_COLOR],
         .indirect = f->layers[FRAME_INDIRECT],
         .display = f->layers[FRAME_DISPLAY],
     };
@@ -468,6 +475,7 @@ static void record_image(struct frame *f, struct gpu_cmd *cmd, const struct fram
     if (indirect && indirect->record) indirect->record(indirect->user, cmd, &f->view);
     record_exposure(f, cmd, input);
     record_composite(f, cmd);
+    frame_record_antialias(f, cmd, frame_displays_color(input));
     record_display(f, cmd, input);
     frame_forget_gbuffer(f);
     f->index++;

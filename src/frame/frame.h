@@ -62,8 +62,9 @@ enum frame_layer {
     FRAME_SPECULAR,   // RGBA16F: scaled radiance, indirect
     FRAME_VISIBILITY, // R8
     FRAME_INDIRECT, // RGBA16F: scaled radiance, albedo/π·(1−E_d)·E·visibility + specular; optional
-    FRAME_COLOR,   // RGBA16F: scaled radiance, direct + indirect
-    FRAME_DISPLAY, // RGBA8: exposed, tone mapped, sRGB-encoded
+    FRAME_RADIANCE, // RGBA16F: FRAME_COLOR before antialiasing; with that only
+    FRAME_COLOR,    // RGBA16F: scaled radiance, direct + indirect
+    FRAME_DISPLAY,  // RGBA8: exposed, tone mapped, sRGB-encoded
     FRAME_LAYER_COUNT
 };
 
@@ -169,6 +170,9 @@ enum frame_need {
     FRAME_NEEDS_DIRECT_IRRADIANCE = 512,
     // As FRAME_WRITES_SPECULAR while the environment has a map, and nothing without one.
     FRAME_WRITES_SPECULAR_OF_MAP = 1024,
+    FRAME_ANTIALIASES = 2048, // by the option antialias, not by techniques
+    // Light of a static scene may change for some frames: bounces, histories, work beside frames.
+    FRAME_LIGHT_EVOLVES = 4096,
 };
 
 struct frame_indirect {
@@ -201,19 +205,21 @@ struct frame_input {
     const struct scene_pose *pose;
     struct world_camera camera;
     const struct frame_camera *projected; // in place of `camera`; NULL: its perspective
-    vec2s jitter;                         // from the centres of pixels, in pixels, +y down
-    const struct world_light *lights;     // physical units
-    int light_count;                      // ≤ FRAME_MAX_LIGHTS
-    struct environment environment;       // of the scene
-    float painted;                        // largest painted irradiance, lux
-    bool auto_exposure;                   // from the frame's radiance, see image/exposure.h
-    float exposure_ev;                    // used if auto_exposure is false
-    bool camera_cut;                      // invalidate history
-    bool want_indirect_layer;             // fill FRAME_INDIRECT
-    bool want_motion_layer;               // fill FRAME_MOTION even without FRAME_NEEDS_MOTION
-    bool want_id_layer;                   // fill FRAME_ID
-    bool keep_layers; // of a further view, also those that nothing else asks for
-    bool pick;        // report the FRAME_ID of a pixel, below the size
+    // From the centres of pixels, in pixels, +y down. 0, 0 with the option antialias, and without a
+    // caller's G-buffer: the frame has a sequence of its own.
+    vec2s jitter;
+    const struct world_light *lights; // physical units
+    int light_count;                  // ≤ FRAME_MAX_LIGHTS
+    struct environment environment;   // of the scene
+    float painted;                    // largest painted irradiance, lux
+    bool auto_exposure;               // from the frame's radiance, see image/exposure.h
+    float exposure_ev;                // used if auto_exposure is false
+    bool camera_cut;                  // invalidate history
+    bool want_indirect_layer;         // fill FRAME_INDIRECT
+    bool want_motion_layer;           // fill FRAME_MOTION even without FRAME_NEEDS_MOTION
+    bool want_id_layer;               // fill FRAME_ID
+    bool keep_layers;                 // of a further view, also those that nothing else asks for
+    bool pick;                        // report the FRAME_ID of a pixel, below the size
     uint32_t pick_x, pick_y;
     bool want_display;                   // fill FRAME_DISPLAY
     const struct frame_shown *shown;     // by FRAME_DISPLAY; NULL: FRAME_COLOR
@@ -234,6 +240,9 @@ int frame_view_number(const struct frame *frame); // 0: not a further view
 void frame_destroy(struct frame *frame);
 // From the next frame on; creates only what the changed options size.
 bool frame_set_options(struct frame *frame, const struct frame_options *options);
+// Techniques or painted light are others from the next frame on: antialiasing follows. The frame
+// finds other changes itself.
+void frame_invalidate(struct frame *frame);
 // Uploads meshes and textures; the scene must outlive the frame or the next frame_set_scene.
 bool frame_set_scene(struct frame *frame, const struct scene *scene);
 bool frame_resize(struct frame *frame, uint32_t width, uint32_t height); // 1…16384
@@ -308,7 +317,8 @@ uint64_t frame_memory_estimate(const struct frame_options *options, const struct
                                uint32_t needs, uint32_t width, uint32_t height);
 // Bytes that a further view adds. It shares layers of the first one if that is not smaller:
 // `first`; NULL: it is. more_pixels: than the largest view before.
-uint64_t frame_view_memory_estimate(const struct frame_input *input,
+uint64_t frame_view_memory_estimate(const struct frame_options *options,
+                                    const struct frame_input *input,
                                     const struct frame_input *first, uint32_t needs, uint32_t width,
                                     uint32_t height, uint64_t more_pixels);
 

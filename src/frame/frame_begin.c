@@ -57,7 +57,8 @@ static void begin_camera(struct frame *f, const struct frame_input *input)
         input->projected ? *input->projected : frame_camera_of(&input->camera, f->width, f->height);
     f->camera_cut =
         input->camera_cut || f->index == 0 || previous.orthographic != f->unjittered.orthographic;
-    f->jitter = input->jitter;
+    f->camera_still = !f->camera_cut && frame_camera_equals(&previous, &f->unjittered);
+    f->jitter = frame_jitter(f, input);
     f->camera = jittered(f, &f->unjittered);
     const struct frame_camera before = f->camera_cut ? f->camera : jittered(f, &previous);
     frame_camera_constants(&f->camera, f->width, f->height, c);

@@ -13,6 +13,7 @@ struct frame_pipelines frame_pipelines_of(const struct frame *f, const struct fr
                                           uint32_t needs)
 {
     const struct frame_common *c = f->common;
+    needs |= frame_antialias_needs(&c->options);
     if (needs & FRAME_WRITES_SPECULAR_OF_MAP && c->environment.map) needs |= FRAME_WRITES_SPECULAR;
     const bool motion = needs & FRAME_NEEDS_MOTION || wants->want_motion_layer;
     const bool ids = needs & FRAME_NEEDS_ID || wants->want_id_layer;

@@ -23,6 +23,7 @@ static const struct layer table[FRAME_LAYER_COUNT] = {
     [FRAME_SPECULAR] = { "frame.specular", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
     [FRAME_VISIBILITY] = { "frame.visibility", GPU_R8, GPU_SAMPLED | GPU_STORAGE },
     [FRAME_INDIRECT] = { "frame.indirect", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
+    [FRAME_RADIANCE] = { "frame.radiance", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
     [FRAME_COLOR] = { "frame.color", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
     [FRAME_DISPLAY] = { "frame.display", GPU_RGBA8, GPU_SAMPLED | GPU_STORAGE },
 };
@@ -70,6 +71,7 @@ uint32_t frame_image_layers(const struct frame_input *input, uint32_t needs)
            (needs & FRAME_WRITES_IRRADIANCE ? 1u << FRAME_IRRADIANCE : 0) |
            (needs & FRAME_WRITES_SPECULAR ? 1u << FRAME_SPECULAR : 0) |
            (needs & FRAME_WRITES_VISIBILITY ? 1u << FRAME_VISIBILITY : 0) |
+           (needs & FRAME_ANTIALIASES ? 1u << FRAME_RADIANCE : 0) |
            (input->want_indirect_layer ? 1u << FRAME_INDIRECT : 0) |
            (input->want_display ? 1u << FRAME_DISPLAY : 0);
 }
@@ -157,6 +159,7 @@ void frame_destroy_layers(struct frame *frame)
 {
     frame->neutral = frame->kept = 0;
     frame_forget_gbuffer(frame);
+    antialias_history_finish(&frame->antialias, frame->gpu);
     for (int l = 0; l < FRAME_LAYER_COUNT; l++) gpu_image_destroy(frame->gpu, &frame->layers[l]);
 }
 

@@ -47,22 +47,30 @@ static uint64_t light_bytes(const struct frame_options *options, uint32_t needs)
     return (sun > local ? sun : local) + rsm;
 }
 
+static uint64_t history_bytes(uint32_t needs, uint32_t width, uint32_t height)
+{
+    return needs & FRAME_ANTIALIASES ? antialias_history_bytes(width, height) : 0;
+}
+
 uint64_t frame_memory_estimate(const struct frame_options *options, const struct frame_input *input,
                                uint32_t needs, uint32_t width, uint32_t height)
 {
     const uint64_t lights = input->light_count > 0 ? (uint64_t)input->light_count : 0;
     // The list of the pixels that direct light of a single sun leaves undecided.
     const uint64_t list = lights == 1 ? (uint64_t)width * height * sizeof(uint32_t) : 0;
+    needs |= frame_antialias_needs(options);
     return EXPOSURE_BYTES + GGX_ALBEDO_BYTES + list +
            layer_bytes(layers_of(input, needs), width, height) +
-           lights * light_bytes(options, needs);
+           history_bytes(needs, width, height) + lights * light_bytes(options, needs);
 }
 
-uint64_t frame_view_memory_estimate(const struct frame_input *input,
+uint64_t frame_view_memory_estimate(const struct frame_options *options,
+                                    const struct frame_input *input,
                                     const struct frame_input *first, uint32_t needs, uint32_t width,
                                     uint32_t height, uint64_t more_pixels)
 {
+    needs |= frame_antialias_needs(options);
     const uint32_t shared = first ? layers_of(first, needs) & ~frame_kept_layers(input) : 0;
-    return EXPOSURE_BYTES + more_pixels * sizeof(uint32_t) +
+    return EXPOSURE_BYTES + more_pixels * sizeof(uint32_t) + history_bytes(needs, width, height) +
            layer_bytes(layers_of(input, needs) & ~shared, width, height);
 }

@@ -14,9 +14,10 @@ static bool check_gbuffer(struct frame *f)
                      : missing >> FRAME_NORMAL & 1u ? "normal"
                      : missing >> FRAME_ALBEDO & 1u ? "albedo"
                                                     : "motion",
-                     missing & FRAME_LEAST_GBUFFER  ? ""
-                     : missing >> FRAME_MOTION & 1u ? ", which a technique or motion_layer needs"
-                                                    : ", which a technique needs");
+                     missing & FRAME_LEAST_GBUFFER ? ""
+                     : missing >> FRAME_MOTION & 1u
+                         ? ", which a technique, antialias or motion_layer needs"
+                         : ", which a technique needs");
 }
 
 // Whether the display image is of another layer than the colour.
@@ -24,6 +25,11 @@ bool frame_shows_layer(const struct frame_input *input)
 {
     const struct frame_shown *shown = input->shown;
     return input->want_display && shown && (shown->image.id || shown->layer != FRAME_COLOR);
+}
+
+bool frame_displays_color(const struct frame_input *input)
+{
+    return input->want_display && !frame_shows_layer(input);
 }
 
 // Layers that exist even if no technique writes them.
@@ -39,7 +45,7 @@ uint32_t frame_composite_variant(const struct frame_input *input, uint32_t needs
            (needs & FRAME_WRITES_SPECULAR ? COMPOSITE_SPECULAR : 0) |
            (needs & FRAME_WRITES_VISIBILITY ? COMPOSITE_VISIBILITY : 0) |
            (input->want_indirect_layer ? COMPOSITE_INDIRECT : 0) |
-           (input->want_display && !frame_shows_layer(input) ? COMPOSITE_DISPLAY : 0);
+           (frame_displays_color(input) && !(needs & FRAME_ANTIALIASES) ? COMPOSITE_DISPLAY : 0);
 }
 
 uint32_t frame_meter_variant(uint32_t variant)
@@ -139,7 +145,9 @@ static uint32_t needs_of(const struct frame *f, const struct frame_indirect *ind
 {
     const uint32_t needs = indirect ? indirect->needs : 0;
     const bool mirrors = needs & FRAME_WRITES_SPECULAR_OF_MAP && f->common->environment.map;
-    return needs | (mirrors ? FRAME_WRITES_SPECULAR : 0);
+    return needs | (mirrors ? FRAME_WRITES_SPECULAR : 0) |
+           (needs & FRAME_NEEDS_MOTION ? FRAME_LIGHT_EVOLVES : 0) |
+           frame_antialias_needs(&f->common->options);
 }
 
 bool frame_prepare(struct frame *f, const struct frame_input *input,
@@ -168,6 +176,7 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
                (input->want_id_layer || input->pick ? FRAME_NEEDS_ID : 0);
     f->own = f->view_number ? kept | frame_kept_layers(input) : ~0u;
     f->prepared = prepare_layers(f, input, kept) && (!is_first || prepare_maps(f, input)) &&
-                  prepare_direct(f, input) && prepare_composite(f, input);
+                  prepare_direct(f, input) && prepare_composite(f, input) &&
+                  frame_prepare_antialias(f, frame_displays_color(input));
     return f->prepared;
 }

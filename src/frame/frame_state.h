@@ -3,6 +3,7 @@
 
 #include "frame/frame.h"
 
+#include "frame/composite/antialias.h"
 #include "frame/composite/composite.h"
 #include "frame/composite/display.h"
 #include "frame/composite/exposure.h"
@@ -39,6 +40,8 @@ struct frame_common {
     struct direct direct;
     struct composite composite;
     struct display display;
+    struct antialias antialias;
+    uint64_t revision;    // counts frame_invalidate and changes of options
     gpu_image ggx_albedo; // core/ggx_albedo.h
     struct frame_environment environment;
     struct frame *views[FRAME_MAX_VIEWS]; // [0]: the first; NULL: there is none
@@ -52,6 +55,7 @@ struct frame {
     uint32_t width, height; // 0 before the first resize
 
     struct exposure exposure;
+    struct antialias_history antialias; // with FRAME_ANTIALIASES
     gpu_image layers[FRAME_LAYER_COUNT];
     uint32_t imported; // bit l: layer l is the caller's, until the frame is recorded
     const struct frame_gbuffer *gbuffer; // the caller's, until the frame is recorded; or NULL
@@ -77,6 +81,7 @@ struct frame {
     uint64_t environment_key;
     struct frame_camera camera, unjittered; // camera: with the jitter
     vec2s jitter;
+    bool camera_still;        // but for the jitter
     vec3s emitted_irradiance; // scaled lux
     float fallback_luminance; // scaled, see frame_fallback_luminance
     bool camera_cut, lights_changed;
@@ -105,9 +110,19 @@ void frame_clear_unwritten(struct frame *frame, struct gpu_cmd *cmd);
 
 // frame_prepare.c. Whether the display image is of another layer than the colour.
 bool frame_shows_layer(const struct frame_input *input);
+bool frame_displays_color(const struct frame_input *input); // there is one, of the colour
 // Variants of composite; the second: of the same radiance, without images.
 uint32_t frame_composite_variant(const struct frame_input *input, uint32_t needs);
 uint32_t frame_meter_variant(uint32_t variant);
+
+// frame_antialias.c
+// frame_need bits that the options add. displays: frame_displays_color.
+uint32_t frame_antialias_needs(const struct frame_options *options);
+bool frame_prepare_antialias(struct frame *frame, bool displays);
+// The jitter of a frame.
+vec2s frame_jitter(const struct frame *frame, const struct frame_input *input);
+// From FRAME_RADIANCE to FRAME_COLOR, and to FRAME_DISPLAY.
+void frame_record_antialias(struct frame *frame, struct gpu_cmd *cmd, bool displays);
 
 // frame_report.c
 bool reports_init(struct frame *frame);

@@ -80,10 +80,11 @@ static struct ag_layer_handle layer(struct renderer_fixture *s, const char *name
 }
 
 // Faces of reflective shadow maps are counted as those of a point light.
-static struct ag_renderer_desc renderer_desc(const char *gi)
+static struct ag_renderer_desc renderer_desc(const char *gi, bool temporal)
 {
     struct ag_renderer_desc desc = fixture_renderer_desc(gi);
-    desc.frame_options = "shadow_size=256,rsm_size=32";
+    desc.frame_options =
+        temporal ? "shadow_size=256,rsm_size=32,antialias=temporal" : "shadow_size=256,rsm_size=32";
     return desc;
 }
 
@@ -99,7 +100,7 @@ static struct renderer_fixture open_scene(void)
     assert_int_equal(ag_scene_remove_lights(s.scene), AG_OK);
     assert_int_equal(ag_scene_add_light(s.scene, &sun, NULL), AG_OK);
     assert_int_equal(ag_scene_set_material(s.scene, 0, &glossy), AG_OK);
-    const struct ag_renderer_desc desc = renderer_desc("none");
+    const struct ag_renderer_desc desc = renderer_desc("none", false);
     assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &s.renderer), AG_OK);
     assert_int_equal(ag_renderer_resize(s.renderer, WIDTH, HEIGHT), AG_OK);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
@@ -107,9 +108,10 @@ static struct renderer_fixture open_scene(void)
 }
 
 // With an own G-buffer, or with that of the fixture's renderer.
-static void check(struct renderer_fixture *s, const char *gi, bool hosted, bool views)
+static void check(struct renderer_fixture *s, const char *gi, bool temporal, bool hosted,
+                  bool views)
 {
-    struct ag_renderer_desc desc = renderer_desc(gi);
+    struct ag_renderer_desc desc = renderer_desc(gi, temporal);
     struct ag_renderer *renderer = NULL;
     uint64_t estimate;
     desc.width = WIDTH;
@@ -136,7 +138,8 @@ TEST(estimates_are_exact_with_views_and_a_programs_gbuffer)
                                          "vct:resolution=32,temporal=true" };
     struct renderer_fixture s = open_scene();
     for (size_t i = 0; i < sizeof specs / sizeof *specs; i++)
-        for (int hosted = 0; hosted < 2; hosted++) check(&s, specs[i], hosted, true);
+        for (int hosted = 0; hosted < 2; hosted++) check(&s, specs[i], false, hosted, true);
+    for (int hosted = 0; hosted < 2; hosted++) check(&s, "none", true, hosted, true);
     fixture_close(&s);
 }
 
@@ -149,11 +152,12 @@ TEST(estimates_of_techniques_are_exact)
                                          "ambient+vo:mode=areas" };
     struct renderer_fixture s = open_scene();
     struct ag_technique_info info;
-    for (size_t i = 0; i < sizeof specs / sizeof *specs; i++) check(&s, specs[i], false, false);
+    for (size_t i = 0; i < sizeof specs / sizeof *specs; i++)
+        check(&s, specs[i], false, false, false);
     for (int i = 0; ag_technique_get(i, &info); i++) {
         char gi[FIXTURE_SPEC];
         fixture_print_base(i, &info, gi);
-        if (!info.needs_bake) check(&s, gi, false, false);
+        if (!info.needs_bake) check(&s, gi, false, false, false);
     }
     fixture_close(&s);
 }

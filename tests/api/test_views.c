@@ -403,9 +403,9 @@ TEST(wrong_views_are_refused)
     list[0].view = NULL;
     assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
     list[0] = view_in_frame(views[0], &s.frame.camera);
-    list[0].reserved[2] = 1;
+    list[0].reserved[1] = 1;
     assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
-    list[0].reserved[2] = 0;
+    list[0].reserved[1] = 0;
     list[0].camera.near_m = -1;
     assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
     struct ag_image *image = NULL;

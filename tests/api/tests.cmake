@@ -27,6 +27,7 @@ ag_test(api/view_matrices USES api LABELS long LIBRARIES ag_test_renderer_fixtur
 ag_test(api/gbuffer_layouts USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/jitter USES api LIBRARIES ag_test_view_fixture)
 target_sources(test_api_jitter PRIVATE ${CMAKE_CURRENT_LIST_DIR}/camera_matrices.c)
+ag_test(api/antialias USES api LABELS long LIBRARIES ag_test_view_fixture)
 target_sources(test_api_gbuffer_layouts PRIVATE ${CMAKE_CURRENT_LIST_DIR}/camera_matrices.c)
 target_sources(test_api_view_matrices PRIVATE ${CMAKE_CURRENT_LIST_DIR}/camera_matrices.c)
 add_library(ag_test_view_fixture STATIC ${CMAKE_CURRENT_LIST_DIR}/view_fixture.c)

@@ -528,4 +528,5 @@ TEST(a_wrong_number_of_samples_is_refused)
     static const char *const wrong[] = { "0", "-1", "4097", "x", "2.5" };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         run_expect(2, SMALL, "--antialias", wrong[i], NULL);
+    run_expect(2, SMALL, "--antialias", "4", "--frame-options", "antialias=temporal", NULL);
 }

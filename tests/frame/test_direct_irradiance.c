@@ -244,8 +244,8 @@ TEST_GPU(memory_estimate_has_the_layer)
     const uint64_t with = frame_memory_estimate(&s.options, &s.input, s.indirect.needs, 256, 128);
     CHECK(with == without + 256 * 128 * 8);
     CHECK_RELATIVE(frame_bytes(gpu), with, 0.01);
-    CHECK(frame_view_memory_estimate(&s.input, NULL, s.indirect.needs, 256, 128, 0) ==
-          frame_view_memory_estimate(&s.input, NULL, 0, 256, 128, 0) + 256 * 128 * 8);
+    CHECK(frame_view_memory_estimate(&s.options, &s.input, NULL, s.indirect.needs, 256, 128, 0) ==
+          frame_view_memory_estimate(&s.options, &s.input, NULL, 0, 256, 128, 0) + 256 * 128 * 8);
     fixture_finish(&s);
 }
 

@@ -360,7 +360,7 @@ const struct technique technique_vct = {
                   "2.5.3, 4; Crassin et al. 2011"),
     .role = ROLE_SOURCE,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | MAKES_SPECULAR | GATHERS_EMISSION,
-    .needs = FRAME_WRITES_IRRADIANCE,
+    .needs = FRAME_WRITES_IRRADIANCE | FRAME_LIGHT_EVOLVES,
     .options = OPTION_TABLE(struct vct_options, option_rows, aliases),
     .presets = presets,
     .debug_views = debug_views,

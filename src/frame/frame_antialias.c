@@ -1,0 +1,80 @@
+// Temporal antialiasing of a view: the jitter, and what of its history holds.
+#include "frame/frame_state.h"
+
+#include "core/sampling.h"
+
+// Weights of the history in samples, at most, while geometry or the camera move, and while light
+// changes, which its clipping alone follows.
+enum { MOST_MOVING = 8, MOST_LIT_ANEW = 1 };
+// Frames until techniques have followed a change: bounces of vct, objects of drt.
+enum { SETTLING_FRAMES = 16 };
+
+uint32_t frame_antialias_needs(const struct frame_options *options)
+{
+    return options->antialias ? FRAME_ANTIALIASES | FRAME_NEEDS_MOTION : 0;
+}
+
+bool frame_prepare_antialias(struct frame *f, bool displays)
+{
+    struct antialias *a = &f->common->antialias;
+    const uint32_t display = displays ? ANTIALIAS_DISPLAY : 0;
+    if (f->needs & FRAME_ANTIALIASES)
+        return antialias_prepare(a, f->gpu, display) &&
+               antialias_prepare(a, f->gpu, ANTIALIAS_MOVES | display) &&
+               antialias_history_prepare(&f->antialias, f->gpu, f->width, f->height);
+    antialias_history_finish(&f->antialias, f->gpu);
+    return true;
+}
+
+// A program's own G-buffer has its jitter already. Any 64 frames in a row have all points.
+vec2s frame_jitter(const struct frame *f, const struct frame_input *input)
+{
+    const bool centred = input->jitter.x == 0.0f && input->jitter.y == 0.0f;
+    if (!(f->needs & FRAME_ANTIALIASES) || !centred || input->gbuffer) return input->jitter;
+    return sample_jitter((int)(f->index % ANTIALIAS_SAMPLES), ANTIALIAS_SAMPLES);
+}
+
+// Updates the history's record of what the image depends on. Returns the weight of the history, and
+// whether it must be tested.
+static uint32_t follow(struct frame *f, bool *moves)
+{
+    struct antialias_history *h = &f->antialias;
+    const struct frame_common *c = f->common;
+    const uint64_t light_hash = c->views[0]->light_hash;
+    const bool first = !h->known || f->camera_cut;
+    const bool lit_anew =
+        light_hash != h->light_hash || c->revision != h->revision || c->scene.recolored;
+    const bool moved = !f->camera_still || c->scene.moved || c->scene.draw_list != h->draw_list;
+    const int settling = f->needs & FRAME_LIGHT_EVOLVES ? SETTLING_FRAMES : 0;
+    h->settles = first || lit_anew || moved ? settling : h->settles > 0 ? h->settles - 1 : 0;
+    h->known = true;
+    h->light_hash = light_hash;
+    h->draw_list = c->scene.draw_list;
+    h->revision = c->revision;
+    *moves = !first && (lit_anew || moved || h->settles > 0);
+    if (first) return 0;
+    return lit_anew ? MOST_LIT_ANEW : *moves ? MOST_MOVING : ANTIALIAS_SAMPLES - 1;
+}
+
+void frame_record_antialias(struct frame *f, struct gpu_cmd *cmd, bool displays)
+{
+    if (!(f->needs & FRAME_ANTIALIASES)) return;
+    bool moves;
+    const uint32_t most = follow(f, &moves);
+    const struct antialias_images images = {
+        .radiance = f->layers[FRAME_RADIANCE],
+        .depth = f->layers[FRAME_DEPTH],
+        .motion = f->layers[FRAME_MOTION],
+        .color = f->layers[FRAME_COLOR],
+        .display = f->layers[FRAME_DISPLAY],
+    };
+    const struct gpu_binding bindings[2] = {
+        f->constants_binding,
+        { "exposure_state", .buffer = f->exposure.state },
+    };
+    gpu_scope_begin(cmd, "antialias");
+    antialias_record(&f->common->antialias, cmd,
+                     (moves ? ANTIALIAS_MOVES : 0) | (displays ? ANTIALIAS_DISPLAY : 0),
+                     &f->antialias, most, &images, bindings, f->width, f->height);
+    gpu_scope_end(cmd);
+}
