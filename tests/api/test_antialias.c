@@ -353,6 +353,40 @@ TEST(without_the_option_there_is_no_pass_and_it_can_be_switched)
     fixture_close(&s);
 }
 
+// The mean over the image of relative differences to the mean of jittered frames, without
+// histories.
+static void check_technique(struct renderer_fixture *s, const char *gi, const char *plain_gi)
+{
+    struct ag_renderer *temporal = make(s, gi, TEMPORAL), *plain = make(s, plain_gi, PLAIN);
+    float low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < 16 + 2 * SAMPLES; i++) {
+        float ev;
+        render(s, temporal, &s->frame);
+        assert_int_equal(ag_renderer_exposure(temporal, &ev), AG_OK);
+        if (i >= 16) low = fminf(low, ev), high = fmaxf(high, ev);
+    }
+    struct ag_image *image = read(s, temporal), *mean = mean_of(s, plain, SAMPLES);
+    const double difference = fixture_difference(image, mean);
+    print_message("%s: differs by %.4f, exposure by %.4f EV\n", gi, difference,
+                  (double)(high - low));
+    CHECK(difference < 0.02);
+    CHECK(high - low < 0.05f); // metered in each frame
+    ag_image_destroy(s->context, image);
+    ag_image_destroy(s->context, mean);
+    ag_renderer_destroy(temporal);
+    ag_renderer_destroy(plain);
+}
+
+TEST(techniques_and_their_histories_converge_under_jitter)
+{
+    struct renderer_fixture s = fixture_open_lit(NULL);
+    check_technique(&s, "lpv:dim=16", "lpv:dim=16");
+    check_technique(&s, "ambient+vo:temporal=true", "ambient+vo");
+    check_technique(&s, "ambient+gtao:temporal=true", "ambient+gtao");
+    check_technique(&s, "vct:resolution=32,temporal=true", "vct:resolution=32");
+    fixture_close(&s);
+}
+
 // ---- layers, views, a program's own G-buffer
 
 TEST(display_shows_the_antialiased_color)
