@@ -407,11 +407,12 @@ static void composite(struct frame *f, struct gpu_cmd *cmd, uint32_t variant)
 
 static void record_exposure(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input)
 {
+    const float share = frame_exposure_share(f, input->auto_exposure);
     gpu_scope_begin(cmd, "exposure");
     if (input->auto_exposure) {
         exposure_record_clear(&f->exposure, cmd);
         composite(f, cmd, frame_meter_variant(f->composite_variant));
-        exposure_record_auto(&f->exposure, cmd, f->constants_binding, f->fallback_luminance);
+        exposure_record_auto(&f->exposure, cmd, f->constants_binding, f->fallback_luminance, share);
     } else {
         exposure_record_fixed(&f->exposure, cmd, input->exposure_ev);
     }
@@ -473,6 +474,7 @@ static void record_image(struct frame *f, struct gpu_cmd *cmd, const struct fram
                          const struct frame_indirect *indirect)
 {
     if (indirect && indirect->record) indirect->record(indirect->user, cmd, &f->view);
+    frame_follow_antialias(f);
     record_exposure(f, cmd, input);
     record_composite(f, cmd);
     frame_record_antialias(f, cmd, frame_displays_color(input));

@@ -34,10 +34,10 @@ vec2s frame_jitter(const struct frame *f, const struct frame_input *input)
     return sample_jitter((int)(f->index % ANTIALIAS_SAMPLES), ANTIALIAS_SAMPLES);
 }
 
-// Updates the history's record of what the image depends on. Returns the weight of the history, and
-// whether it must be tested.
-static uint32_t follow(struct frame *f, bool *moves)
+// Updates the history's record of what the image depends on.
+void frame_follow_antialias(struct frame *f)
 {
+    if (!(f->needs & FRAME_ANTIALIASES)) return;
     struct antialias_history *h = &f->antialias;
     const struct frame_common *c = f->common;
     const uint64_t light_hash = c->views[0]->light_hash;
@@ -51,16 +51,25 @@ static uint32_t follow(struct frame *f, bool *moves)
     h->light_hash = light_hash;
     h->draw_list = c->scene.draw_list;
     h->revision = c->revision;
-    *moves = !first && (lit_anew || moved || h->settles > 0);
-    if (first) return 0;
-    return lit_anew ? MOST_LIT_ANEW : *moves ? MOST_MOVING : ANTIALIAS_SAMPLES - 1;
+    h->moves = !first && (lit_anew || moved || h->settles > 0);
+    h->still = first || h->moves ? 0 : h->still + 1;
+    h->most = first ? 0 : lit_anew ? MOST_LIT_ANEW : h->moves ? MOST_MOVING : ANTIALIAS_SAMPLES - 1;
+}
+
+float frame_exposure_share(struct frame *f, bool is_automatic)
+{
+    struct antialias_history *h = &f->antialias;
+    const bool averages = f->needs & FRAME_ANTIALIASES && h->still > 0;
+    h->metered = !is_automatic                    ? 0
+                 : !averages                      ? 1
+                 : h->metered < ANTIALIAS_SAMPLES ? h->metered + 1
+                                                  : ANTIALIAS_SAMPLES;
+    return 1.0f / (float)(h->metered > 0 ? h->metered : 1);
 }
 
 void frame_record_antialias(struct frame *f, struct gpu_cmd *cmd, bool displays)
 {
     if (!(f->needs & FRAME_ANTIALIASES)) return;
-    bool moves;
-    const uint32_t most = follow(f, &moves);
     const struct antialias_images images = {
         .radiance = f->layers[FRAME_RADIANCE],
         .depth = f->layers[FRAME_DEPTH],
@@ -74,7 +83,8 @@ void frame_record_antialias(struct frame *f, struct gpu_cmd *cmd, bool displays)
     };
     gpu_scope_begin(cmd, "antialias");
     antialias_record(&f->common->antialias, cmd,
-                     (moves ? ANTIALIAS_MOVES : 0) | (displays ? ANTIALIAS_DISPLAY : 0),
-                     &f->antialias, most, &images, bindings, f->width, f->height);
+                     (f->antialias.moves ? ANTIALIAS_MOVES : 0) |
+                         (displays ? ANTIALIAS_DISPLAY : 0),
+                     &f->antialias, f->antialias.most, &images, bindings, f->width, f->height);
     gpu_scope_end(cmd);
 }

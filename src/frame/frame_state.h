@@ -121,6 +121,10 @@ uint32_t frame_antialias_needs(const struct frame_options *options);
 bool frame_prepare_antialias(struct frame *frame, bool displays);
 // The jitter of a frame.
 vec2s frame_jitter(const struct frame *frame, const struct frame_input *input);
+// Finds what of the history holds, before exposure and antialiasing are recorded.
+void frame_follow_antialias(struct frame *frame);
+// Share of this frame in the mean exposure of a static image: jitter changes what is metered.
+float frame_exposure_share(struct frame *frame, bool is_automatic);
 // From FRAME_RADIANCE to FRAME_COLOR, and to FRAME_DISPLAY.
 void frame_record_antialias(struct frame *frame, struct gpu_cmd *cmd, bool displays);
 

@@ -29,8 +29,11 @@ struct antialias {
 struct antialias_history {
     gpu_image images[2];
     int newest;
-    bool known;  // there was a frame
-    int settles; // frames until light that follows a change is taken for settled
+    bool known;           // there was a frame
+    int settles;          // frames until light that follows a change is taken for settled
+    bool moves;           // this frame tests the history
+    uint32_t most, still; // its weight in samples; frames since the last change
+    uint32_t metered;     // frames in the mean of automatic exposure
     // State of the last frame on which a static image depends, beside the camera.
     uint64_t light_hash, draw_list, revision;
 };

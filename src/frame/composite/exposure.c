@@ -43,9 +43,9 @@ void exposure_record_clear(const struct exposure *e, struct gpu_cmd *cmd)
 }
 
 void exposure_record_auto(const struct exposure *e, struct gpu_cmd *cmd,
-                          struct gpu_binding constants, float fallback)
+                          struct gpu_binding constants, float fallback, float share)
 {
-    struct exposure_push push = { .fallback = fallback };
+    struct exposure_push push = { .fallback = fallback, .share = share };
     gpu_dispatch(cmd, e->finish,
                  GPU_BIND(constants, { "exposure_state", .buffer = e->state },
                           { "exposure_histogram", .buffer = e->histogram }),

@@ -9,7 +9,7 @@
 
 layout(local_size_x = EXPOSURE_THREADS) in;
 
-layout(set = 0, binding = 1, scalar) writeonly buffer exposure_state
+layout(set = 0, binding = 1, scalar) buffer exposure_state
 {
     exposure_values state;
 };
@@ -95,5 +95,7 @@ void main()
     scaled = round(scaled * EXPOSURE_EV_STEPS) / EXPOSURE_EV_STEPS;
     float ev = scaled - round(log2(frame.radiance_scale)); // the scale is a power of two
     bool any = lit > 0 || push.fallback > 0.0;
-    state.ev = any ? clamp(ev, -EXPOSURE_EV_LIMIT, EXPOSURE_EV_LIMIT) : 0.0;
+    ev = any ? clamp(ev, -EXPOSURE_EV_LIMIT, EXPOSURE_EV_LIMIT) : 0.0;
+    float last = state.ev;
+    state.ev = mix(last + (ev - last) * push.share, ev, push.share >= 1.0);
 }

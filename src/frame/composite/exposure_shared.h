@@ -24,6 +24,7 @@ struct exposure_counts {
 
 struct exposure_push {
     float fallback; // scaled luminance that is metered if no visible surface is lit
+    float share;    // of this frame in the mean of EVs; 1: this frame alone
 };
 
 #endif
