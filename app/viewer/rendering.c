@@ -20,16 +20,23 @@ enum ag_result rendering_open(struct rendering *rendering, const struct renderin
     return ag_renderer_create(desc->device, desc->scene, &renderer, &rendering->renderer);
 }
 
+// The window's newest frame may still copy from the image.
+static void forget_shown(struct rendering *rendering)
+{
+    if (rendering->shown.vk_image) vkDeviceWaitIdle(rendering->gpu->device);
+    rendering->shown.vk_image = NULL;
+}
+
 void rendering_close(struct rendering *rendering)
 {
-    rendering->shown.vk_image = NULL;
+    forget_shown(rendering);
     ag_renderer_destroy(rendering->renderer);
     *rendering = (struct rendering){ 0 };
 }
 
 enum ag_result rendering_resize(struct rendering *rendering, int width, int height)
 {
-    rendering->shown.vk_image = NULL;
+    forget_shown(rendering);
     const enum ag_result result = ag_renderer_resize(rendering->renderer, width, height);
     if (result != AG_OK) return result;
     rendering->width = width;
