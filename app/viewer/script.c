@@ -60,8 +60,8 @@ bool script_waits(const struct script *script, const struct viewer *v)
 
 static bool wrong(struct script *script, const char *what, const char *text)
 {
-    snprintf(script->error, sizeof script->error, "%.250s:%d: %.350s %.350s", script->path,
-             script->line, what, text);
+    snprintf(script->error, sizeof script->error, "%.250s:%d: %.350s%s%.350s", script->path,
+             script->line, what, text[0] ? " " : "", text);
     return false;
 }
 
@@ -400,6 +400,7 @@ static bool goes_on(struct script *script, struct viewer *v, struct event_queue 
         script->waits--;
         return true;
     }
+    if (v->screenshot[0]) return true; // the window had no image
     script->settles = script->settles && (v->dirty > 0 || bakes_running(v));
     return script->settles || lacks_samples(script, v);
 }
@@ -407,6 +408,7 @@ static bool goes_on(struct script *script, struct viewer *v, struct event_queue 
 bool script_step(struct script *script, struct viewer *v, struct event_queue *queue)
 {
     char line[LINE_SIZE];
+    if (v->screenshot_failed) return wrong(script, v->message, "");
     while (!goes_on(script, v, queue)) {
         if (!read_line(script, line)) return false;
         if (!run_line(script, v, queue, line)) return false;

@@ -77,6 +77,7 @@ struct viewer {
     double message_until_s;
     bool message_warns;
     char screenshot[1024]; // to be written with the next frame; "": none
-    int show_tab;          // to be shown by the next frame; -1: the user's
+    bool screenshot_failed;
+    int show_tab; // to be shown by the next frame; -1: the user's
     struct script *script;
 };

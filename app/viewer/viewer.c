@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const float PI = 3.14159265f;
+static const double PI = 3.14159265358979324;
 static const double IDLE_WAIT_S = 0.1;
 
 // ---- the image
@@ -30,7 +30,7 @@ static void update_camera(struct viewer *v)
     }
     look_target(&v->look, target);
     ag_scene_look_at(v->desc->scene, v->look.eye, target,
-                     (float)((double)v->look.fov_deg * (double)PI / 180.0), &v->camera);
+                     (float)((double)v->look.fov_deg * (PI / 180.0)), &v->camera);
 }
 
 static void take_pick(struct viewer *v)
@@ -138,7 +138,7 @@ static bool draw(struct viewer *v)
     alive = swapchain_end(&v->swapchain);
     if (copies) {
         alive = vkQueueWaitIdle(v->gpu.queue) == VK_SUCCESS && alive;
-        if (alive) write_screenshot(v, &copy, v->screenshot);
+        if (alive && !write_screenshot(v, &copy, v->screenshot)) v->screenshot_failed = true;
         v->screenshot[0] = 0;
         gpu_mapped_close(&v->gpu, &copy);
     }
@@ -174,9 +174,16 @@ static void handle_events(struct viewer *v, bool waits)
     }
 }
 
+static bool is_last(const struct viewer *v)
+{
+    return v->quit || (v->desc->frames > 0 && v->frame + 1 == (uint64_t)v->desc->frames);
+}
+
 static bool step(struct viewer *v, float seconds)
 {
     handle_events(v, is_idle(v));
+    if (v->desc->screenshot && is_last(v))
+        snprintf(v->screenshot, sizeof v->screenshot, "%s", v->desc->screenshot);
     controls_step(v, seconds);
     if (v->playing) v->time_s += (double)seconds;
     if (v->playing) viewer_change(v);
@@ -190,11 +197,6 @@ static bool step(struct viewer *v, float seconds)
     return draw(v);
 }
 
-static bool is_last(const struct viewer *v)
-{
-    return v->desc->frames > 0 && v->frame + 1 == (uint64_t)v->desc->frames;
-}
-
 static bool loop(struct viewer *v, char error[1024])
 {
     double last = window_seconds();
@@ -204,8 +206,6 @@ static bool loop(struct viewer *v, char error[1024])
         const float seconds = v->script ? 1.0f / 60.0f : fminf((float)(now - last), 0.25f);
         v->frame_s += 0.1f * ((float)(now - last) - v->frame_s);
         last = now;
-        if (v->desc->screenshot && is_last(v))
-            snprintf(v->screenshot, sizeof v->screenshot, "%s", v->desc->screenshot);
         if (v->desc->interrupted(v->desc->user)) break;
         if (!step(v, seconds)) {
             snprintf(error, 1024,
@@ -309,6 +309,10 @@ bool viewer_run(const struct viewer_desc *desc, char error[1024])
     v->time_s = desc->time_s;
     bool done = open(v, error) && begin(v, error) && loop(v, error);
     if (done && v->script && script_failed(v->script, error)) done = false;
+    if (done && desc->screenshot && v->screenshot_failed) {
+        snprintf(error, 1024, "%s", v->message);
+        done = false;
+    }
     close(v);
     if (done && v->gpu.messages > 0) {
         snprintf(error, 1024, "Vulkan validation logged %d messages, the first: %s",

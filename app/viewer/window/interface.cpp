@@ -18,7 +18,7 @@ VkDevice device;
 struct interface_desc desc;
 bool font_uploaded;
 
-// Elements of the newest frame, for scripts.
+// Elements of the newest frame that are in view, for scripts.
 struct element {
     char label[LABEL_SIZE];
     float x, y;
@@ -30,7 +30,7 @@ int element_count;
 // label are not found.
 bool seen(const char *label, bool changed)
 {
-    if (element_count < MAX_ELEMENTS) {
+    if (element_count < MAX_ELEMENTS && ImGui::IsItemVisible()) {
         element &e = elements[element_count++];
         const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
         snprintf(e.label, sizeof e.label, "%s", label);
