@@ -3,6 +3,7 @@
 #include "cli/files/interrupt.h"
 #include "commands.h"
 #include "output.h"
+#include "view_words.h"
 #include "viewer/viewer.h"
 
 #include <stdio.h>
@@ -13,7 +14,7 @@ struct viewing {
     const struct arguments *arguments;
     struct session session;
     struct viewer_desc desc;
-    char scene_words[64], camera_words[3 * SPEC_SIZE];
+    struct view_words words;
 };
 
 static bool write_image(void *user, struct ag_renderer *renderer, const char *layer,
@@ -23,11 +24,7 @@ static bool write_image(void *user, struct ag_renderer *renderer, const char *la
     struct output output = { .layers = { layer },
                              .layer_count = 1,
                              .exr = has_extension(path, "exr") };
-    struct output_images images;
-    enum status status = output_read(&viewing->session, renderer, &output, &images);
-    if (status == DONE) status = output_write(&viewing->session, renderer, &output, &images, path);
-    output_finish(&viewing->session, &images);
-    return status == DONE;
+    return output_try(&viewing->session, renderer, &output, path) == AG_OK;
 }
 
 static bool open_copy(void *user, struct ag_context **context, struct ag_scene **scene,
@@ -83,21 +80,6 @@ static enum status check_usage(const struct arguments *a)
     return status;
 }
 
-// Options that load the same scene, for "Copy as command".
-static void describe_scene(struct viewing *viewing)
-{
-    const struct arguments *a = viewing->arguments;
-    if (a->has_scene_scale)
-        snprintf(viewing->scene_words, sizeof viewing->scene_words, "--scene-scale %.9g",
-                 (double)a->scene_scale);
-    if (a->has_eye || viewing->session.made_up)
-        snprintf(viewing->camera_words, sizeof viewing->camera_words, "%s",
-                 viewing->session.camera_name);
-    else if (a->camera || a->has_fov)
-        snprintf(viewing->camera_words, sizeof viewing->camera_words, "%s%s%s",
-                 a->camera ? "--camera '" : "", a->camera ? a->camera : "", a->camera ? "'" : "");
-}
-
 static enum status open_scene(struct viewing *viewing)
 {
     const struct arguments *a = viewing->arguments;
@@ -113,16 +95,17 @@ static void describe(struct viewing *viewing)
     const struct arguments *a = viewing->arguments;
     struct viewer_desc *desc = &viewing->desc;
     const char *validation = getenv("AFTERGLOW_VALIDATION");
-    describe_scene(viewing);
+    view_words(&viewing->session, &desc->camera, &viewing->words);
     desc->context = viewing->session.context;
     desc->scene = viewing->session.scene;
     desc->scene_name = a->positional[0];
     desc->gi = a->gi;
     desc->frame_options = a->frame_options;
     desc->device = a->device;
-    desc->scene_words = viewing->scene_words;
-    desc->light_words = viewing->session.light;
-    desc->camera_words = viewing->camera_words;
+    desc->scene_words = viewing->words.scene;
+    desc->light_words = viewing->words.light;
+    desc->kept_words = viewing->words.kept;
+    desc->camera_words = viewing->words.camera;
     desc->animation = viewing->session.animation;
     desc->time_s = a->time_s;
     desc->has_exposure = a->has_exposure;

@@ -267,13 +267,20 @@ enum ag_result layer_to_display(struct session *session, const char *layer, floa
 
 // ---- layers of frames
 
-enum status output_read(struct session *session, struct ag_renderer *renderer,
-                        const struct output *output, struct output_images *out)
+static enum ag_result read_layers(struct ag_renderer *renderer, const struct output *output,
+                                  struct output_images *out)
 {
     *out = (struct output_images){ 0 };
     enum ag_result result = ag_renderer_exposure(renderer, &out->ev);
     for (int i = 0; i < output->layer_count && result == AG_OK; i++)
         result = ag_renderer_read(renderer, output->layers[i], &out->layers[i]);
+    return result;
+}
+
+enum status output_read(struct session *session, struct ag_renderer *renderer,
+                        const struct output *output, struct output_images *out)
+{
+    const enum ag_result result = read_layers(renderer, output, out);
     return result == AG_OK ? DONE : fail_library(session->context, result);
 }
 
@@ -339,22 +346,22 @@ enum status output_average(struct session *session, struct ag_renderer *renderer
     return result == AG_OK ? DONE : fail_library(session->context, result);
 }
 
-static enum status write_png(struct session *session, const char *layer,
-                             struct output_images *images, const char *path)
+static enum ag_result write_png(struct session *session, const char *layer,
+                                struct output_images *images, const char *path)
 {
     enum ag_result result = layer_to_display(session, layer, images->ev, &images->layers[0]);
     interrupt_hold();
     if (result == AG_OK) result = ag_image_write_png(session->context, path, images->layers[0]);
     interrupt_release();
-    return result == AG_OK ? DONE : fail_library(session->context, result);
+    return result;
 }
 
 // ---- EXR
 
 // No time or host name: equal commands write equal files.
-static enum status write_exr(struct session *session, struct ag_renderer *renderer,
-                             const struct output *output, const struct output_images *images,
-                             const char *path)
+static enum ag_result write_exr(struct session *session, struct ag_renderer *renderer,
+                                const struct output *output, const struct output_images *images,
+                                const char *path)
 {
     const struct arguments *a = session->arguments;
     struct ag_image_layer layers[MAX_LAYERS];
@@ -383,13 +390,31 @@ static enum status write_exr(struct session *session, struct ag_renderer *render
     const enum ag_result result =
         ag_image_write_exr(session->context, path, layers, output->layer_count, attributes, count);
     interrupt_release();
-    return result == AG_OK ? DONE : fail_library(session->context, result);
+    return result;
+}
+
+static enum ag_result write_layers(struct session *session, struct ag_renderer *renderer,
+                                   const struct output *output, struct output_images *images,
+                                   const char *path)
+{
+    if (output->exr) return write_exr(session, renderer, output, images, path);
+    return write_png(session, output->layers[0], images, path);
+}
+
+enum ag_result output_try(struct session *session, struct ag_renderer *renderer,
+                          const struct output *output, const char *path)
+{
+    struct output_images images;
+    enum ag_result result = read_layers(renderer, output, &images);
+    if (result == AG_OK) result = write_layers(session, renderer, output, &images, path);
+    output_finish(session, &images);
+    return result;
 }
 
 enum status output_write(struct session *session, struct ag_renderer *renderer,
                          const struct output *output, struct output_images *images,
                          const char *path)
 {
-    if (output->exr) return write_exr(session, renderer, output, images, path);
-    return write_png(session, output->layers[0], images, path);
+    const enum ag_result result = write_layers(session, renderer, output, images, path);
+    return result == AG_OK ? DONE : fail_library(session->context, result);
 }

@@ -40,6 +40,9 @@ enum status output_average(struct session *session, struct ag_renderer *renderer
                            const struct output *output, int index, int count,
                            struct output_images *out);
 void output_finish(struct session *session, struct output_images *images);
+// Reads the layers of the newest frame and writes them, without a message.
+enum ag_result output_try(struct session *session, struct ag_renderer *renderer,
+                          const struct output *output, const char *path);
 enum status output_write(struct session *session, struct ag_renderer *renderer,
                          const struct output *output, struct output_images *images,
                          const char *path);

@@ -9,9 +9,10 @@ struct viewer_desc {
     struct ag_scene *scene; // lit; the viewer changes it
     const char *scene_name; // as on the command line
     const char *gi, *frame_options, *device;
-    const char *scene_words;  // options of the command line that load the scene so
-    const char *light_words;  // likewise those that light it, and
-    const char *camera_words; // those of its camera
+    const char *scene_words;  // options of the command line that load the scene so, a blank first
+    const char *light_words;  // likewise those that light it,
+    const char *kept_words;   // those of them that stay when lights change,
+    const char *camera_words; // and those of its camera
     struct ag_camera camera;
     int animation;
     double time_s;
@@ -25,7 +26,7 @@ struct viewer_desc {
     int frames;             // ends after N; 0: when the window is closed
     bool validate;          // with the validation layers
     void *user;             // of the functions
-    // Writes the newest frame of a renderer as afterglow render does.
+    // Writes the newest frame of a renderer as afterglow render does; false: see the last error.
     bool (*write)(void *user, struct ag_renderer *renderer, const char *layer, const char *path);
     // On any thread: another context, with the scene as it was loaded and lit at first.
     bool (*open_copy)(void *user, struct ag_context **context, struct ag_scene **scene,
