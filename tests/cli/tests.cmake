@@ -7,6 +7,11 @@ foreach(name usage info environment diff reference render compare interrupt host
   target_compile_definitions(test_cli_${name} PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
   add_dependencies(test_cli_${name} afterglow)
 endforeach()
+if(AFTERGLOW_VIEWER)
+  ag_test(cli/view USES image api LIBRARIES ag_test_program)
+  target_compile_definitions(test_cli_view PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
+  add_dependencies(test_cli_view afterglow)
+endif()
 
 # The program with a technique that bakes in no time.
 add_executable(afterglow_sample ${CMAKE_SOURCE_DIR}/app/cli/main.c $<TARGET_OBJECTS:ag_test_sample_registry>)

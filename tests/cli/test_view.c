@@ -1,0 +1,429 @@
+// view: scripts under a virtual display, with the validation layers, whose messages fail the
+// program. AFTERGLOW_TEST_VIEW_TECHNIQUES=lpv,vct also tests each option of these alone.
+#include "cli/program.h"
+
+#include "image/png_file.h"
+
+#include <afterglow/afterglow.h>
+
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
+enum { SCRIPT_SIZE = 65536, SPEC_SIZE = 4096, VALUE_SIZE = 64, DISPLAY_WAIT_MS = 20000 };
+#define CORNELL   "view @cornell:light=point --quiet"
+#define SMALL     " --size 640x480 --scale 0.25"
+#define LEAST     " --size 400x240 --scale 0.2"
+#define SCRIPT    "script.txt"
+#define MAX_BYTES 60000000u
+
+// ---- the display
+
+static pid_t server;
+static char display[32];
+
+static bool stop_display(void)
+{
+    if (server > 0) {
+        kill(server, SIGTERM);
+        waitpid(server, NULL, 0);
+    }
+    server = 0;
+    return true;
+}
+
+// Writes the number of the display to `fd`. It ends with this program, even if that is killed.
+static void run_server(int fd)
+{
+    char number[16];
+    snprintf(number, sizeof number, "%d", fd);
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+#endif
+    if (!freopen("/dev/null", "w", stderr)) _exit(126);
+    execlp("Xvfb", "Xvfb", "-displayfd", number, "-screen", "0", "1280x800x24", "-nolisten", "tcp",
+           "-noreset", (char *)NULL);
+    _exit(127);
+}
+
+static void start_display(void)
+{
+    int ends[2];
+    if (pipe(ends) != 0) fail_msg("cannot make a pipe");
+    server = fork();
+    if (server < 0) fail_msg("cannot fork");
+    if (server == 0) {
+        close(ends[0]);
+        run_server(ends[1]);
+    }
+    test_register_end(stop_display);
+    close(ends[1]);
+    char number[16] = "";
+    size_t used = 0;
+    struct pollfd wait = { .fd = ends[0], .events = POLLIN };
+    const int limit = (int)(DISPLAY_WAIT_MS * test_time_factor());
+    while (used < sizeof number - 1 && !memchr(number, '\n', used) && poll(&wait, 1, limit) == 1) {
+        const ssize_t got = read(ends[0], number + used, sizeof number - 1 - used);
+        if (got <= 0) break;
+        used += (size_t)got;
+    }
+    close(ends[0]);
+    if (used > 0) snprintf(display, sizeof display, ":%d", atoi(number));
+}
+
+// The folder of the test has the files of scripts, of the program, and its cache.
+static void enter_folder(void)
+{
+    static bool entered;
+    if (entered) return;
+    if (chdir(make_folder("view")) != 0) fail_msg("cannot enter the folder");
+    setenv("AFTERGLOW_CACHE", test_path("cache"), 1);
+    setenv("AFTERGLOW_VALIDATION", "1", 1);
+    unsetenv("WAYLAND_DISPLAY");
+    entered = true;
+}
+
+static void require_display(void)
+{
+    static bool started;
+    enter_folder();
+    if (!started) require_device();
+    if (!started) start_display();
+    started = true;
+    if (!display[0]) test_skip("no Xvfb");
+    setenv("DISPLAY", display, 1);
+}
+
+// ---- runs
+
+static void write_script(const char *script)
+{
+    write_file(SCRIPT, script, strlen(script));
+}
+
+static void view(const char *words, const char *script)
+{
+    write_script(script);
+    const struct run *r = run_expect(0, words, "--script", SCRIPT, NULL);
+    if (r->err[0] || r->out[0]) fail_msg("%s: not silent: %s%s", words, r->err, r->out);
+}
+
+static void check_fails(const char *words, const char *script, const char *names)
+{
+    write_script(script);
+    const struct run *r = run_expect(1, words, "--script", SCRIPT, NULL);
+    check_one_error_line(r);
+    if (!strstr(r->err, names)) fail_msg("does not name \"%s\": %s", names, r->err);
+}
+
+static void check_equal(const char *a, const char *b)
+{
+    if (!files_are_equal(a, b)) fail_msg("%s and %s differ", a, b);
+}
+
+static void check_size(const char *path, int width, int height)
+{
+    int w = 0, h = 0;
+    CHECK(png_read_size(test_host(), path, &w, &h));
+    if (w != width || h != height) fail_msg("%s is %dx%d", path, w, h);
+}
+
+static double mean_of(const char *path)
+{
+    struct image image;
+    double sum = 0;
+    CHECK(png_read(test_host(), path, &image));
+    const size_t count = (size_t)image.width * (size_t)image.height * (size_t)image.channels;
+    for (size_t i = 0; i < count; i++) sum += (double)image.pixels[i];
+    image_finish(&image, test_host());
+    return sum / (double)count;
+}
+
+// ---- the window
+
+TEST(without_a_display_one_line_names_the_remedy)
+{
+    enter_folder();
+    require_device();
+    unsetenv("DISPLAY");
+    for (int i = 0; i < 2; i++) {
+        const struct run *r = run_expect(1, CORNELL, "--frames", "1", NULL);
+        check_one_error_line(r);
+        if (!strstr(r->err, "set DISPLAY") || !strstr(r->err, "afterglow render"))
+            fail_msg("no remedy: %s", r->err);
+        setenv("DISPLAY", ":9876", 1);
+    }
+}
+
+TEST(each_tab_is_shown)
+{
+    static const char *const tabs[] = { "View", "Light", "Method", "Compare", "Cost", "Inspect" };
+    enum { TABS = sizeof tabs / sizeof *tabs };
+    char script[1024] = "settle\n", names[TABS][32];
+    require_display();
+    for (int i = 0; i < TABS; i++) {
+        const size_t used = strlen(script);
+        snprintf(names[i], sizeof names[i], "tab-%s.png", tabs[i]);
+        snprintf(script + used, sizeof script - used, "tab %s\nscreenshot %s\n", tabs[i], names[i]);
+    }
+    view(CORNELL SMALL " --gi lpv:dim=16", script);
+    for (int i = 0; i < TABS; i++) {
+        check_size(names[i], 640, 480);
+        for (int k = 0; k < i; k++)
+            if (files_are_equal(names[i], names[k]))
+                fail_msg("%s and %s are the same image", names[i], names[k]);
+    }
+}
+
+TEST(frames_are_shown_without_a_script)
+{
+    require_display();
+    const struct run *r =
+        run_expect(0, CORNELL SMALL, "--frames", "5", "--screenshot", "frames.png", NULL);
+    CHECK_STRING(r->err, "");
+    check_size("frames.png", 640, 480);
+    CHECK(mean_of("frames.png") > 0.01);
+}
+
+TEST(the_last_frame_of_a_script_is_a_screenshot)
+{
+    require_display();
+    view(CORNELL " --size 400x300 --scale 0.25 --screenshot end.png", "wait 2\n");
+    check_size("end.png", 400, 300);
+}
+
+// ---- the command of a view
+
+// Runs the line as a shell does, for the program under test.
+static void run_line(const char *path, const char *output)
+{
+    char line[4096] = "", command[8192];
+    FILE *file = fopen(path, "r");
+    if (!file || !fgets(line, sizeof line, file)) fail_msg("%s is empty", path);
+    fclose(file);
+    line[strcspn(line, "\n")] = 0;
+    if (strncmp(line, "afterglow ", 10) != 0) fail_msg("no command: %s", line);
+    snprintf(command, sizeof command, "'%s' %s --quiet -o %s", AFTERGLOW_PROGRAM, line + 10,
+             output);
+    if (system(command) != 0) fail_msg("failed: %s", command);
+}
+
+static void check_command(const char *words, const char *script)
+{
+    char lines[1024];
+    snprintf(lines, sizeof lines, "%ssettle\nsave saved.png\ncommand command.sh\n", script);
+    view(words, lines);
+    run_line("command.sh", "rendered.png");
+    if (!files_are_equal("saved.png", "rendered.png"))
+        fail_msg("%s: the command renders another image", words);
+}
+
+TEST(the_command_of_a_view_renders_its_image)
+{
+    require_display();
+    check_command(CORNELL SMALL " --gi lpv:dim=16", "");
+    check_command("view @atrium --quiet --gi vct:resolution=32+vo" SMALL, "look 2,3,1 -4,1,0\n");
+    check_command("view @maze --quiet --gi ambient+gtao" SMALL,
+                  "camera far\nexposure 9.3\nlayer irradiance\n");
+}
+
+TEST(the_command_of_a_view_has_its_camera_and_lights)
+{
+    require_display();
+    check_command(CORNELL LEAST " --fov 41.7", "light 0 0\nlight 0 1\n");
+    check_command("view @maze --quiet --camera far --fov 33" LEAST
+                  " --light point:-2.123456789,1.5,-4:900,800,700 --sky 1,2,3.123456789",
+                  "");
+    check_command("view @maze --quiet" LEAST " --eye -2.123456789,1.5,-4.000000123 --target "
+                  "-3,1.5,-9 --fov 66.6666666 --light area:-2,2,-4:0,-1,-0.3:1,1:900,800,700 "
+                  "--light spot:-2,2,-4:0,-1,-0.3:11.1:37.7:900,800,700",
+                  "light 0 0\nlight 0 1\nmouse 10 10\nscroll 0 1\n");
+}
+
+// ---- methods
+
+// Two values that exclude each other are an error only on a device.
+static bool excluded(const char *gi)
+{
+    const char *levels = strstr(gi, "levels=");
+    return levels && levels[7] != '1' && strstr(gi, "storage=svo");
+}
+
+static bool fits(struct ag_context *context, const char *gi)
+{
+    struct ag_renderer_desc desc;
+    uint64_t bytes;
+    ag_renderer_desc_default(&desc);
+    desc.width = 96;
+    desc.height = 96;
+    desc.gi = gi;
+    if (excluded(gi)) return false;
+    return ag_renderer_estimate_memory(context, &desc, 1, &bytes) == AG_OK && bytes <= MAX_BYTES;
+}
+
+// The least (0) or greatest (1) value; false: a text.
+static bool extreme(const struct ag_option_info *option, int which, char out[VALUE_SIZE])
+{
+    if (strcmp(option->type, "text") == 0) return false;
+    if (strcmp(option->type, "bool") == 0)
+        snprintf(out, VALUE_SIZE, "%s", which ? "true" : "false");
+    else if (strcmp(option->type, "choice") == 0 && which)
+        snprintf(out, VALUE_SIZE, "%s",
+                 strrchr(option->unit, '|') ? strrchr(option->unit, '|') + 1 : option->unit);
+    else if (strcmp(option->type, "choice") == 0)
+        snprintf(out, VALUE_SIZE, "%.*s", (int)strcspn(option->unit, "|"), option->unit);
+    else
+        snprintf(out, VALUE_SIZE, "%.9g", which ? option->max : option->min);
+    return true;
+}
+
+static void add_method(char script[SCRIPT_SIZE], const char *gi)
+{
+    const size_t used = strlen(script);
+    const int wrote = snprintf(script + used, SCRIPT_SIZE - used, "gi %s\nwait 1\n", gi);
+    if (wrote < 0 || used + (size_t)wrote >= SCRIPT_SIZE) fail_msg("the script is too long");
+}
+
+// Each option alone, then as it was.
+static void add_each_option(char script[SCRIPT_SIZE], struct ag_context *context, int technique,
+                            const char *start)
+{
+    struct ag_option_info option;
+    for (int k = 0; ag_technique_option_get(technique, k, &option); k++)
+        for (int which = 0; which < 2; which++) {
+            char gi[SPEC_SIZE], value[VALUE_SIZE];
+            if (!extreme(&option, which, value)) continue;
+            snprintf(gi, sizeof gi, "%s:%s=%s", start, option.name, value);
+            if (!fits(context, gi)) continue;
+            add_method(script, gi);
+            add_method(script, start);
+        }
+}
+
+// All options at once, apart from those that would take too much memory.
+static void add_extremes(char script[SCRIPT_SIZE], struct ag_context *context, int technique,
+                         const char *start, int which)
+{
+    struct ag_option_info option;
+    char gi[SPEC_SIZE];
+    snprintf(gi, sizeof gi, "%s", start);
+    for (int k = 0; ag_technique_option_get(technique, k, &option); k++) {
+        char value[VALUE_SIZE];
+        const size_t used = strlen(gi);
+        if (!extreme(&option, which, value)) continue;
+        snprintf(gi + used, sizeof gi - used, "%c%s=%s", strchr(gi, ':') ? ',' : ':', option.name,
+                 value);
+        if (!fits(context, gi)) gi[used] = 0;
+    }
+    add_method(script, gi);
+}
+
+static bool is_listed(const char *list, const char *name)
+{
+    const size_t length = strlen(name);
+    for (; list; list = strchr(list, ',') ? strchr(list, ',') + 1 : NULL)
+        if (strncmp(list, name, length) == 0 && strchr(",", list[length])) return true;
+    return false;
+}
+
+static void add_technique(char script[SCRIPT_SIZE], struct ag_context *context, int technique,
+                          const struct ag_technique_info *info)
+{
+    char start[VALUE_SIZE];
+    const bool source = strcmp(info->role, "source") == 0;
+    snprintf(start, sizeof start, "%s%s", source ? "" : "ambient+", info->name);
+    add_method(script, start);
+    for (int which = 0; which < 2; which++) add_extremes(script, context, technique, start, which);
+    if (is_listed(getenv("AFTERGLOW_TEST_VIEW_TECHNIQUES"), info->name))
+        add_each_option(script, context, technique, start);
+}
+
+TEST(methods_with_extreme_options_leave_the_first_as_it_was)
+{
+    static char script[SCRIPT_SIZE];
+    struct ag_technique_info info;
+    struct ag_context *context = NULL;
+    require_display();
+    CHECK(ag_context_create(NULL, &context) == AG_OK);
+    snprintf(script, sizeof script, "settle\nsave first.png\n");
+    for (int i = 0; ag_technique_get(i, &info); i++)
+        if (!info.needs_bake) add_technique(script, context, i, &info);
+    ag_context_destroy(context);
+    add_method(script, "lpv:dim=16");
+    snprintf(script + strlen(script), SCRIPT_SIZE - strlen(script), "settle\nsave last.png\n");
+    view(CORNELL " --size 640x240 --scale 0.12 --gi lpv:dim=16", script);
+    check_equal("first.png", "last.png");
+}
+
+// ---- sizes, events
+
+TEST(sizes_of_the_window_leave_the_image_as_it_was)
+{
+    require_display();
+    view(CORNELL SMALL " --gi lpv:dim=16",
+         "settle\nsave first.png\n"
+         "size 1000x700\nsize 333x401\nwait 1\nsize 700x333\nwait 1\nsize 1280x800\nwait 1\n"
+         "size 500x500\nsize 501x499\nsize 320x240\nscreenshot small.png\n"
+         "size 800x600\nwait 1\nsize 640x480\nsettle\nsave last.png\nscreenshot large.png\n");
+    check_equal("first.png", "last.png");
+    check_size("small.png", 320, 240);
+    check_size("large.png", 640, 480);
+}
+
+TEST(images_are_resized_and_removed_while_the_window_shows_them)
+{
+    require_display();
+    view(CORNELL LEAST, "settle\nsave first.png\nsplit ambient\nwait 1\nscale 0.4\nwait 1\n"
+                        "scale 0.3\nwait 1\nsplit off\nwait 1\nlayer normal\nwait 1\n"
+                        "scale 0.2\nlayer color\nsettle\nsave last.png\n");
+    check_equal("first.png", "last.png");
+}
+
+TEST(random_events_end_without_a_message)
+{
+    require_display();
+    view(CORNELL SMALL " --gi lpv:dim=16", "settle\nrandom 3 200\nwait 2\n");
+}
+
+TEST(a_click_switches_a_light_off)
+{
+    require_display();
+    view(CORNELL SMALL " --exposure 9",
+         "settle\nsave on.png\ntab Light\nclick on\nsettle\nsave off.png\n");
+    CHECK(mean_of("on.png") > 0.01);
+    CHECK(mean_of("off.png") < 0.5 * mean_of("on.png"));
+}
+
+// ---- wrong scripts
+
+TEST(a_line_that_fails_is_named)
+{
+    require_display();
+    check_fails(CORNELL LEAST, "# first\n\nwait 2\nclick no such label\n",
+                "script.txt:4: no element is shown with the label no such label");
+    check_fails(CORNELL LEAST, "frobnicate 1\n", "script.txt:1: unknown command frobnicate");
+    check_fails(CORNELL LEAST, "wait 1\ngi lvp\n", "script.txt:2: ");
+    check_fails(CORNELL LEAST, "wait 1\nsave missing/a.png\n", "script.txt:2: ");
+    check_fails(CORNELL LEAST, "screenshot missing/a.png\nwait 1\n", "script.txt:1: ");
+    check_fails(CORNELL LEAST, "command missing/a.sh\n", "script.txt:1: cannot write");
+}
+
+TEST(files_that_cannot_be_used_are_named)
+{
+    require_display();
+    const struct run *r = run_expect(1, CORNELL LEAST, "--script", "missing.txt", NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "cannot read missing.txt"));
+    r = run_expect(1, CORNELL LEAST, "--frames", "2", "--screenshot", "missing/a.png", NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "missing/a.png"));
+}
