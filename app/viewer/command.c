@@ -83,7 +83,10 @@ bool viewer_command(struct viewer *v, char *out, size_t size)
     add_lights(&w, v);
     if (!v->auto_exposure) words_add(&w, " --exposure %.9g", (double)v->exposure_ev);
     if (v->time_s != 0.0) words_add(&w, " --time %.17g", v->time_s);
-    if (v->layer > 0) words_add(&w, " --aov %s", viewer_layers[v->layer]);
+    if (v->debug_view)
+        words_add(&w, " --debug-view %s --aov debug", v->debug_view);
+    else if (v->layer > 0)
+        words_add(&w, " --aov %s", viewer_layers[v->layer]);
     if (w.used < size) return true;
     viewer_warn(v, "the command would be longer than %zu characters", size - 1);
     return false;
@@ -91,8 +94,8 @@ bool viewer_command(struct viewer *v, char *out, size_t size)
 
 bool viewer_write(struct viewer *v, const char *path)
 {
-    const bool done =
-        v->desc->write(v->desc->user, v->main.renderer, viewer_layers[v->layer], path);
+    const char *layer = v->debug_view ? "debug" : viewer_layers[v->layer];
+    const bool done = v->desc->write(v->desc->user, v->main.renderer, layer, path);
     if (done)
         viewer_say(v, "written: %s", path);
     else

@@ -74,17 +74,38 @@ void viewer_image_size(const struct viewer *v, int *width, int *height)
     if (*height < LEAST_SIZE) *height = LEAST_SIZE;
 }
 
+static bool has_debug_view(const struct method *method, const char *name)
+{
+    for (int i = 0; i < ROLE_COUNT; i++)
+        if (method->chosen[i] >= 0 && ag_technique_debug_view_find(method->chosen[i], name) >= 0)
+            return true;
+    return false;
+}
+
 void viewer_runs(struct viewer *v, bool other, const char *gi)
 {
     struct rendering *rendering = other ? &v->other : &v->main;
     snprintf(other ? v->other_gi : v->gi, METHOD_SPEC, "%s", gi);
     method_parse(other ? &v->other_method : &v->method, ag_renderer_gi(rendering->renderer));
-    if (!other) v->debug_view = -1;
+    if (!other && v->debug_view && !has_debug_view(&v->method, v->debug_view))
+        viewer_set_debug_view(v, NULL);
     viewer_touch(v);
+}
+
+bool viewer_set_debug_view(struct viewer *v, const char *name)
+{
+    const char *layer = name ? "debug" : v->layer > 0 ? viewer_layers[v->layer] : NULL;
+    if (!viewer_check(v, ag_renderer_set_debug_view(v->main.renderer, name)) ||
+        !viewer_check(v, ag_renderer_set_display(v->main.renderer, layer)))
+        return false;
+    v->debug_view = name;
+    viewer_touch(v);
+    return true;
 }
 
 void viewer_set_layer(struct viewer *v, int layer)
 {
+    if (v->debug_view && !viewer_set_debug_view(v, NULL)) return;
     const char *name = layer > 0 ? viewer_layers[layer] : NULL;
     if (!viewer_check(v, ag_renderer_set_display(v->main.renderer, name))) return;
     if (v->other.renderer) viewer_check(v, ag_renderer_set_display(v->other.renderer, name));

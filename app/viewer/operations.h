@@ -16,6 +16,7 @@ void viewer_touch(struct viewer *v);
 void viewer_change(struct viewer *v);
 // Takes note of the spec that a rendering runs now.
 void viewer_runs(struct viewer *v, bool other, const char *gi);
+bool viewer_set_debug_view(struct viewer *v, const char *name); // NULL: none
 void viewer_set_layer(struct viewer *v, int layer);
 void viewer_set_camera(struct viewer *v, int scene_camera); // -1: that of the command line
 struct region viewer_region(const struct viewer *v);

@@ -50,8 +50,9 @@ struct viewer {
 
     bool auto_exposure;
     float exposure_ev;
-    int layer, debug_view; // indices of layer_names and of the techniques' debug views; -1: none
-    float scale;           // of the image
+    int layer;              // index of viewer_layers
+    const char *debug_view; // shown in its place; NULL: none
+    float scale;            // of the image
     bool playing;
     double time_s;
     struct edits edits;

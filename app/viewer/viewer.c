@@ -305,7 +305,7 @@ bool viewer_run(const struct viewer_desc *desc, char error[1024])
     v->given = desc->camera;
     v->auto_exposure = !desc->has_exposure;
     v->exposure_ev = desc->exposure_ev;
-    v->debug_view = v->picked_instance = v->show_tab = -1;
+    v->picked_instance = v->show_tab = -1;
     v->time_s = desc->time_s;
     bool done = open(v, error) && begin(v, error) && loop(v, error);
     if (done && v->script && script_failed(v->script, error)) done = false;

@@ -172,7 +172,7 @@ void panel_edit_method(struct viewer *v, bool other)
 static void choose_debug_view(struct viewer *v)
 {
     const char *names[64] = { "(none)" }, *help[64] = { "" };
-    int count = 1, index = v->debug_view + 1;
+    int count = 1, index = 0;
     for (int i = 0; i < ROLE_COUNT; i++) {
         const int technique = v->method.chosen[i];
         for (int k = 0; technique >= 0 && count < 64 &&
@@ -180,17 +180,11 @@ static void choose_debug_view(struct viewer *v)
              k++)
             count++;
     }
-    if (count == 1) return;
-    if (!ui_choice("debug view", &index, names, count)) return;
-    if (!viewer_check(v, ag_renderer_set_debug_view(v->main.renderer, index ? names[index] : NULL)))
-        return;
-    viewer_check(v,
-                 ag_renderer_set_display(v->main.renderer, index          ? "debug"
-                                                           : v->layer > 0 ? viewer_layers[v->layer]
-                                                                          : NULL));
-    v->debug_view = index - 1;
-    if (index) viewer_say(v, "%s: %s", names[index], help[index]);
-    viewer_touch(v);
+    for (int i = 1; i < count && v->debug_view; i++)
+        if (strcmp(names[i], v->debug_view) == 0) index = i;
+    if (count == 1 || !ui_choice("debug view", &index, names, count)) return;
+    if (viewer_set_debug_view(v, index ? names[index] : NULL) && index)
+        viewer_say(v, "%s: %s", names[index], help[index]);
 }
 
 static void show_bytes(struct viewer *v)
