@@ -96,7 +96,7 @@ function(ag_shaders_for target header folder)
     set(write_words od -An -v -tx4 -w64 ${spv} | sed "s/ \\([0-9a-f]*\\)/0x\\1,/g" > ${inc})
     if(AFTERGLOW_SPIRV_FROM)
       add_custom_command(OUTPUT ${inc} ${spv}
-        COMMAND ${CMAKE_COMMAND} -E copy ${AFTERGLOW_SPIRV_FROM}/${name}.spv ${spv}
+        COMMAND cp ${AFTERGLOW_SPIRV_FROM}/${name}.spv ${spv}
         COMMAND ${write_words} DEPENDS ${AFTERGLOW_SPIRV_FROM}/${name}.spv COMMENT "SPIR-V ${name}" VERBATIM)
     else()
       add_custom_command(OUTPUT ${inc} ${spv}

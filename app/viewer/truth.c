@@ -164,9 +164,13 @@ static void trace(struct truth *t)
 static void *run(void *user)
 {
     struct truth *t = user;
-    if (t->desc->open_copy(t->desc->user, &t->context, &t->scene, t->state.error))
-        while (wait_for_view(t))
-            if (begin(t)) trace(t);
+    char error[512] = "";
+    const bool loaded = t->desc->open_copy(t->desc->user, &t->context, &t->scene, error);
+    pthread_mutex_lock(&t->mutex);
+    snprintf(t->state.error, sizeof t->state.error, "%s", error);
+    pthread_mutex_unlock(&t->mutex);
+    while (loaded && wait_for_view(t))
+        if (begin(t)) trace(t);
     ag_reference_destroy(t->reference);
     ag_scene_destroy(t->scene);
     ag_context_destroy(t->context);
