@@ -1,7 +1,7 @@
 // Images, files and metrics: forwards to image/.
 #include "api/objects.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "image/exr.h"
 #include "image/flip.h"
 #include "image/image.h"

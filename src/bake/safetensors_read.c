@@ -2,7 +2,7 @@
 #include "bake/safetensors.h"
 
 #include "core/arena.h"
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <jansson.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // Writing safetensors files.
 #include "bake/safetensors.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <jansson.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 
 #include "image/exr.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <openexr.h>
 

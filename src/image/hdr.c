@@ -3,7 +3,7 @@
 // into the image. A short file with a header of 16384x16384 thus allocates 64 KiB.
 #include "image/hdr.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <float.h>
 #include <math.h>

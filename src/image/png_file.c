@@ -3,7 +3,7 @@
 // gAMA and iCCP are ignored and colours are read as sRGB, as glTF requires.
 #include "image/png_file.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "image/png_decode.h"
 #include "image/png_limits.h"
 

@@ -1,7 +1,7 @@
 // File access for Assimp: the imported file, and others of its folder and below.
 #include "importer/importer.h"
 
-#include "core/links.h"
+#include "core/files/links.h"
 
 #include <ctype.h>
 #include <errno.h>

@@ -1,6 +1,6 @@
 #include "bake/bake_sample.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "core/linalg.h"
 #include "core/rng.h"
 #include "framework/test.h"

@@ -1,7 +1,7 @@
 // Bake files and keys: what is used, and what is refused.
 #include "bake/bake_sample.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "framework/test.h"
 
 #include <locale.h>

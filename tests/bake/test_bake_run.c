@@ -2,7 +2,7 @@
 #include "bake/bake_sample.h"
 #include "bake/bake_state.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "framework/test.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 // safetensors files: what is written is read, and nothing else is.
 #include "bake/safetensors.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "framework/test.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 
 #include "bench/plot.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <math.h>
 #include <stdio.h>

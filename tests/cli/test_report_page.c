@@ -5,7 +5,7 @@
 #include "cli/program.h"
 #include "cli/report_sample.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <fcntl.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 // Whole-file reads and atomic writes.
 #include "framework/test.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -1,7 +1,7 @@
 // Programs that process_output starts.
 #include "framework/test.h"
 
-#include "core/process.h"
+#include "core/files/process.h"
 
 #include <errno.h>
 #include <fcntl.h>

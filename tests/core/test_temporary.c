@@ -1,8 +1,8 @@
 // Temporary names, their locks, and removal of what a killed process left.
 #include "framework/test.h"
 
-#include "core/file.h"
-#include "core/temporary.h"
+#include "core/files/file.h"
+#include "core/files/temporary.h"
 
 #include <signal.h>
 #include <stdio.h>

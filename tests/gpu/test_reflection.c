@@ -3,8 +3,8 @@
 #include "framework/test.h"
 #include "gpu/cross_reflection.h"
 
-#include "core/file.h"
-#include "gpu/spirv.h"
+#include "core/files/file.h"
+#include "gpu/pipelines/spirv.h"
 
 #include <stdio.h>
 #include <stdlib.h>

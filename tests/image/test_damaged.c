@@ -5,7 +5,7 @@
 #include "image/exr.h"
 #include "image/png_file.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 
 #include "image/exr.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "core/half.h"
 
 #include <openexr.h>

@@ -3,7 +3,7 @@
 
 #include "image/hdr.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 
 #include "image/png_file.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <png.h>
 

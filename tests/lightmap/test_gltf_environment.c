@@ -1,7 +1,7 @@
 // Copies of scenes as glTF have the environment: all floats of its map, and its sun once.
 #include "framework/test.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "scene/environment/environment_map.h"
 #include "scene/export/gltf_doc.h"
 #include "scene/pose.h"

@@ -2,7 +2,7 @@
 // refused.
 #include "framework/test.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "scene/images/image_decode.h"
 
 #include <png.h>

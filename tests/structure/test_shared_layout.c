@@ -2,7 +2,7 @@
 // headers have the members, offsets and sizes of C. A generated shader has a block of each struct.
 #include "framework/test.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <spirv_cross_c.h>
 

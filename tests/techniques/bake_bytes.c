@@ -1,6 +1,6 @@
 #include "techniques/bake_bytes.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "framework/test.h"
 #include "techniques/gi_bake.h"
 #include "techniques/gi_spec.h"

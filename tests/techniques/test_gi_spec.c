@@ -1,6 +1,6 @@
 #include "framework/test.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "techniques/gi_spec.h"
 #include "techniques/technique_rules.h"
 

@@ -2,7 +2,7 @@
 #include "cache.h"
 #include "cli/files/interrupt.h"
 
-#include "core/temporary.h"
+#include "core/files/temporary.h"
 
 #include <ctype.h>
 #include <dirent.h>

@@ -3,7 +3,7 @@
 
 #include "whole_file.h"
 
-#include "core/temporary.h"
+#include "core/files/temporary.h"
 
 struct folder {
     char shown[PATH_SIZE];   // as given

@@ -2,7 +2,7 @@
 #include "whole_file.h"
 #include "interrupt.h"
 
-#include "core/temporary.h"
+#include "core/files/temporary.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,6 +1,6 @@
 #include "scene/environment/environment_map.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "core/hash.h"
 #include "image/exr.h"
 #include "image/hdr.h"

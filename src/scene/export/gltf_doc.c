@@ -1,7 +1,7 @@
 // Additions to a document, and GLB (glTF 2.0, section 4.4).
 #include "scene/export/gltf_doc.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 // to src/scene/import.
 #pragma once
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "scene/import/import.h"
 
 enum { IMPORT_MAX_NOTES = 24, IMPORT_NOTE_SIZE = 96 };

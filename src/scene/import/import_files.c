@@ -1,7 +1,7 @@
 #include "scene/import/import_files.h"
 
 #include "core/hash.h"
-#include "core/links.h"
+#include "core/files/links.h"
 
 #include <string.h>
 #include <unistd.h>

@@ -5,7 +5,7 @@
 
 #include "scene/import/import_stream.h"
 
-#include "core/process.h"
+#include "core/files/process.h"
 
 #include <errno.h>
 #include <fcntl.h>

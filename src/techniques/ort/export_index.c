@@ -2,7 +2,7 @@
 #include "techniques/ort/export.h"
 
 #include "bake/report.h"
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <stdio.h>
 #include <string.h>

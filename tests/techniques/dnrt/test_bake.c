@@ -4,7 +4,7 @@
 #include "techniques/gi_bake.h"
 #include "techniques/gi_spec.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #include "framework/test.h"
 #include "techniques/mrt/mrt_bake_fixture.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "core/sh.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 // same bytes again.
 #include "techniques/ort/bake_fixture.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "core/half.h"
 #include "core/rng.h"
 #include "image/exr.h"

@@ -2,7 +2,7 @@
 // Untrusted input.
 #include "block_map.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 #include "core/option.h"
 
 #include "scene/limits.h"

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/host.h"
-#include "core/temporary.h"
+#include "core/files/temporary.h"
 
 #include <stdint.h>
 #include <stdio.h>

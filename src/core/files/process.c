@@ -1,5 +1,5 @@
 // posix_spawn instead of fork: other threads of the host program may hold locks.
-#include "core/process.h"
+#include "core/files/process.h"
 
 #include <errno.h>
 #include <fcntl.h>

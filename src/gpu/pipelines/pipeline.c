@@ -1,7 +1,7 @@
 // Pipelines from embedded shaders or shaders on disk, and their reload when a file changes.
 #include "gpu/vk.h"
 
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // Runs another program and collects its output. POSIX only.
 #pragma once
 
-#include "core/file.h"
+#include "core/files/file.h"
 
 // How a program ended; 0 0 also where the host program reaps its children itself, by ignoring
 // SIGCHLD or by waiting for all: a caller tells from the output whether it is complete.

@@ -1,6 +1,6 @@
 // Variables that an entry point uses: those that pointers of instructions name, in the functions
 // that it calls.
-#include "gpu/spirv.h"
+#include "gpu/pipelines/spirv.h"
 
 enum { USED = 1, WALKED = 2 };
 enum {

@@ -1,5 +1,5 @@
 // Temporary names with locks: creation, and removal of those that a killed process left.
-#include "core/temporary.h"
+#include "core/files/temporary.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -1,4 +1,4 @@
-#include "core/links.h"
+#include "core/files/links.h"
 
 #include <errno.h>
 #include <stdlib.h>

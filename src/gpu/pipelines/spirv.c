@@ -1,5 +1,5 @@
 // SPIR-V modules: sections, ids, names and decorations.
-#include "gpu/spirv.h"
+#include "gpu/pipelines/spirv.h"
 
 #include <string.h>
 

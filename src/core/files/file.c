@@ -1,5 +1,5 @@
 // Reads into memory and atomic writes (temporary file, then rename).
-#include "core/file.h"
+#include "core/files/file.h"
 
 #include <errno.h>
 #include <fcntl.h>

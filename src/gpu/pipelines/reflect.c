@@ -1,6 +1,6 @@
 // Shader reflection: bindings (name, type, read or written), push constants, specialization
 // constants. Only variables that the entry point uses are listed.
-#include "gpu/spirv.h"
+#include "gpu/pipelines/spirv.h"
 #include "gpu/vk.h"
 
 #include <stdio.h>
