@@ -1,6 +1,7 @@
 // Parses the command line, and prints it again.
 #include "arguments.h"
 #include "option_table.h"
+#include "shell/words.h"
 
 #include <afterglow/catalogue.h>
 
@@ -133,32 +134,10 @@ enum status arguments_parse(const struct command *command, int count, char **wor
 
 // ---- the command line again
 
-static size_t append(char *out, size_t size, size_t used, const char *text, size_t length)
-{
-    for (size_t i = 0; i < length && used + 1 < size; i++) out[used++] = text[i];
-    out[used] = 0;
-    return used;
-}
-
-static size_t append_quoted(char *out, size_t size, size_t used, const char *word)
-{
-    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                                "@%+=:,./_-";
-    if (word[0] && word[strspn(word, plain)] == 0)
-        return append(out, size, used, word, strlen(word));
-    used = append(out, size, used, "'", 1);
-    for (const char *c = word; *c; c++)
-        used = append(out, size, used, *c == '\'' ? "'\\''" : c, *c == '\'' ? 4 : 1);
-    return append(out, size, used, "'", 1);
-}
-
 void arguments_command(const char *command, const struct arguments *arguments, char *out,
                        size_t size)
 {
-    size_t used = append(out, size, 0, "afterglow ", 10);
-    used = append(out, size, used, command, strlen(command));
-    for (int i = 0; i < arguments->word_count; i++) {
-        used = append(out, size, used, " ", 1);
-        used = append_quoted(out, size, used, arguments->words[i]);
-    }
+    struct words words = { out, size, 0 };
+    words_add(&words, "afterglow %s", command);
+    for (int i = 0; i < arguments->word_count; i++) words_add_word(&words, arguments->words[i]);
 }

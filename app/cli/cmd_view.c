@@ -1,6 +1,6 @@
 // afterglow view: the scene, light and camera of the command line in a window.
 #include "cli/cache/cache.h"
-#include "cli/files/interrupt.h"
+#include "cli/files/whole_file.h"
 #include "commands.h"
 #include "output.h"
 #include "view_words.h"
@@ -45,23 +45,31 @@ static bool open_copy(void *user, struct ag_context **context, struct ag_scene *
     return false;
 }
 
-static bool bake_path(void *user, const char *key, char path[4096])
+static bool bake_path(void *user, const char *key, char path[4096], char error[512])
 {
+    char why[CACHE_WHY_SIZE];
     (void)user;
-    return cache_file(CACHE_BAKE, key, path, NULL);
+    if (cache_file(CACHE_BAKE, key, path, why)) return true;
+    snprintf(error, 512, "cannot keep a bake: %.300s; " CACHE_REMEDY, why);
+    return false;
 }
 
-static bool interrupted(void *user)
+static enum status put_text(FILE *file, const void *text)
 {
-    (void)user;
-    return interrupt_caught();
+    fputs(text, file);
+    return DONE;
 }
 
-static enum status check_usage(const struct arguments *a)
+static bool write_text(void *user, const char *path, const char *text)
+{
+    (void)user;
+    return whole_file_write(path, put_text, text) == DONE;
+}
+
+static enum status check_usage(const struct arguments *a, struct ag_context *context)
 {
     struct ag_renderer_desc desc;
     uint64_t bytes;
-    struct ag_context *context = NULL;
     if (a->screenshot && !has_extension(a->screenshot, "png"))
         return wrong_usage("wrong value --screenshot %s: the file name must end in .png",
                            a->screenshot);
@@ -69,15 +77,13 @@ static enum status check_usage(const struct arguments *a)
         return wrong_usage("cannot use --screenshot: it requires --frames or --script");
     ag_renderer_desc_default(&desc);
     desc.frame_options = a->frame_options;
-    enum ag_result result = ag_context_create(NULL, &context);
+    enum ag_result result = AG_OK;
     for (int i = 0; i < 2 && result == AG_OK; i++) {
         desc.gi = i == 0 ? a->gi : a->split;
         if (desc.gi && strcmp(desc.gi, "reference") != 0)
             result = ag_renderer_estimate_memory(context, &desc, 1, &bytes);
     }
-    const enum status status = result == AG_OK ? DONE : fail_library(context, result);
-    ag_context_destroy(context);
-    return status;
+    return result == AG_OK ? DONE : fail_library(context, result);
 }
 
 static enum status open_scene(struct viewing *viewing)
@@ -122,7 +128,7 @@ static void describe(struct viewing *viewing)
     desc->write = write_image;
     desc->open_copy = open_copy;
     desc->bake_path = bake_path;
-    desc->interrupted = interrupted;
+    desc->write_text = write_text;
 }
 
 static enum status view(const struct arguments *arguments)
@@ -131,8 +137,8 @@ static enum status view(const struct arguments *arguments)
     char error[1024];
     if (!viewing) return fail("cannot view %s: out of memory", arguments->positional[0]);
     viewing->arguments = arguments;
-    enum status status = check_usage(arguments);
-    if (status == DONE) status = session_begin(&viewing->session, arguments);
+    enum status status = session_begin(&viewing->session, arguments);
+    if (status == DONE) status = check_usage(arguments, viewing->session.context);
     if (status == DONE) status = open_scene(viewing);
     if (status == DONE) session_say(&viewing->session);
     if (status == DONE) {

@@ -24,7 +24,7 @@ enum ag_result layer_to_display(struct session *session, const char *layer, floa
                                 struct ag_image **image);
 // "shots/house.glb" and "@house:lit=1" give "house" + ending.
 void output_default(const char *scene, const char *ending, char out[PATH_SIZE]);
-// Layers of an output, and the exposure of what shows them. Zero is none.
+// Layers of an output, and the exposure of its display values. Zero: no layer.
 struct output_images {
     struct ag_image *layers[MAX_LAYERS];
     struct ag_image *radiance; // summed with the layer display, which is of its mean

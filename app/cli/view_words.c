@@ -1,7 +1,7 @@
 #include "view_words.h"
 
 #include "values.h"
-#include "viewer/words.h"
+#include "shell/words.h"
 
 static void describe_scene(const struct arguments *a, struct words *w)
 {

@@ -44,6 +44,19 @@ static bool fail(struct bake_job *job, const struct ag_context *context)
     return false;
 }
 
+// Runs it, or goes on with the checkpoint that render and bake leave, too.
+static bool make(struct bake_job *job, struct ag_context *context, struct ag_bake *bake,
+                 const char *path)
+{
+    char checkpoint[4096 + 16];
+    snprintf(checkpoint, sizeof checkpoint, "%s.checkpoint", path);
+    const bool done =
+        ag_bake_load(bake, path) == AG_OK ||
+        (ag_bake_set_checkpoint(bake, checkpoint) == AG_OK &&
+         ag_bake_run(bake, progress, job) == AG_OK && ag_bake_save(bake, path, true) == AG_OK);
+    return done || fail(job, context);
+}
+
 static bool run_one(struct bake_job *job, struct ag_context *context, struct ag_scene *scene,
                     const char *technique)
 {
@@ -53,12 +66,11 @@ static bool run_one(struct bake_job *job, struct ag_context *context, struct ag_
     char path[4096];
     ag_bake_desc_default(&desc);
     desc.technique = technique;
-    bool done = ag_bake_create(scene, job->gi, &desc, &bake) == AG_OK &&
-                ag_bake_get_info(bake, &info) == AG_OK &&
-                job->desc->bake_path(job->desc->user, info.key, path) &&
-                (ag_bake_load(bake, path) == AG_OK || (ag_bake_run(bake, progress, job) == AG_OK &&
-                                                       ag_bake_save(bake, path, true) == AG_OK));
-    if (!done) fail(job, context);
+    if (ag_bake_create(scene, job->gi, &desc, &bake) != AG_OK ||
+        ag_bake_get_info(bake, &info) != AG_OK)
+        return fail(job, context);
+    const bool done = job->desc->bake_path(job->desc->user, info.key, path, job->error) &&
+                      make(job, context, bake, path);
     ag_bake_destroy(bake);
     return done;
 }
@@ -121,14 +133,14 @@ static bool load(struct viewer *v, const char *gi, struct ag_bake *bakes[VIEWER_
         const char *technique = NULL;
         struct ag_bake_desc desc;
         struct ag_bake_info info;
-        char path[4096];
+        char path[4096], why[512];
         if (ag_bake_technique(v->desc->context, gi, i, &technique) != AG_OK || !technique) break;
         ag_bake_desc_default(&desc);
         desc.technique = technique;
         const int at = (*count)++;
         all = ag_bake_create(v->desc->scene, gi, &desc, &bakes[at]) == AG_OK &&
               ag_bake_get_info(bakes[at], &info) == AG_OK &&
-              v->desc->bake_path(v->desc->user, info.key, path) &&
+              v->desc->bake_path(v->desc->user, info.key, path, why) &&
               ag_bake_load(bakes[at], path) == AG_OK && all;
     }
     return all;
@@ -148,7 +160,7 @@ static bool set_gi(struct viewer *v, struct rendering *rendering, const char *gi
         if (v->bake_job) bakes_cancel(v);
         if (start(v, gi, rendering == &v->other)) return false;
     }
-    if (!all) viewer_warn(v, "%s needs a bake that does not fit the scene as it is now", gi);
+    if (!all) viewer_warn(v, "%s needs a bake, and that in the cache is of another scene", gi);
     return all && viewer_check(v, result);
 }
 

@@ -2,7 +2,7 @@
 #include "command.h"
 
 #include "operations.h"
-#include "words.h"
+#include "shell/words.h"
 
 static void add_camera(struct words *w, const struct viewer *v)
 {

@@ -4,7 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-enum { SETTLE_FRAMES = 24, SIDEBAR_UNITS = 360, LEAST_SIZE = 16 };
+enum { SIDEBAR_UNITS = 360, LEAST_SIZE = 16 };
 static const double MESSAGE_S = 8.0;
 
 const char *const viewer_layers[] = {

@@ -59,7 +59,7 @@ void rendering_draw(const struct rendering *rendering, struct swapchain *swapcha
     if (!shown->vk_image) return;
     const VkImage image = ag_vulkan_image(shown);
     const VkImageLayout layout = ag_vulkan_layout(shown);
-    blit_transition(commands, image, layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    gpu_transition(commands, image, layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     blit_part(swapchain, image, shown->width, shown->height, rectangle, left, right);
-    blit_transition(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, layout);
+    gpu_transition(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, layout);
 }

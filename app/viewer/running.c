@@ -131,9 +131,8 @@ void running_step(struct viewer *v)
 {
     bakes_step(v);
     if (!v->truth || !v->main.shown.vk_image) return;
-    // Restarts wait until the camera rests for a moment: each begins from nothing.
-    if (v->changed && v->dirty > 0 && v->dirty < 22) restart(v);
-    if (v->changed && v->dirty == 0) restart(v);
+    // Each restart begins from nothing: the camera rests before.
+    if (v->changed && v->dirty <= SETTLE_FRAMES - REST_FRAMES) restart(v);
     if (!v->offered && v->dirty == 0) offer(v);
     take(v);
 }

@@ -252,11 +252,24 @@ static bool run_light(const struct words *w)
 static bool run_command(const struct words *w)
 {
     char command[METHOD_SPEC];
-    if (!viewer_command(w->v, command, sizeof command)) return done(w, false);
-    FILE *file = fopen(w->rest, "w");
-    if (!file) return wrong(w->script, "cannot write", w->rest);
-    fprintf(file, "%s\n", command);
-    return fclose(file) == 0 || wrong(w->script, "cannot write", w->rest);
+    if (!viewer_command(w->v, command, sizeof command - 1)) return done(w, false);
+    strcat(command, "\n"); // viewer_command leaves room
+    return w->v->desc->write_text(w->v->desc->user, w->rest, command) ||
+           wrong(w->script, "cannot write", w->rest);
+}
+
+static bool run_errors(const struct words *w)
+{
+    struct truth_state state = { 0 };
+    char text[256];
+    if (w->v->truth) truth_get(w->v->truth, &state);
+    if (!state.measured || !w->v->offered)
+        return wrong(w->script, "no errors are measured: use samples N", "");
+    snprintf(text, sizeof text,
+             "{\"samples\": %d, \"flip\": %.9g, \"relmse\": %.9g, \"energy\": %.9g}\n",
+             state.samples, state.flip, state.relative_error, state.energy);
+    return w->v->desc->write_text(w->v->desc->user, w->rest, text) ||
+           wrong(w->script, "cannot write", w->rest);
 }
 
 static bool run_screenshot(const struct words *w)
@@ -302,6 +315,7 @@ static bool run(const struct words *w)
     if (is(w, "save")) return done(w, viewer_write(v, w->rest));
     if (is(w, "screenshot")) return run_screenshot(w);
     if (is(w, "command")) return run_command(w);
+    if (is(w, "errors")) return run_errors(w);
     if (is(w, "random")) return run_random(w);
     if (is(w, "quit")) return v->quit = true;
     return wrong(w->script, "unknown command", w->name);
@@ -379,7 +393,7 @@ static bool lacks_samples(struct script *script, struct viewer *v)
     if (script->samples == 0 || !v->truth) return false;
     truth_get(v->truth, &state);
     if (state.error[0]) wrong(script, state.error, "");
-    if (state.samples >= script->samples && state.measured) script->samples = 0;
+    if (state.samples >= script->samples && state.measured && v->offered) script->samples = 0;
     return script->samples > 0;
 }
 

@@ -17,6 +17,7 @@
 //   camera NAME|given · look X,Y,Z X,Y,Z
 //   light N X                    switches light N on (1) or off (0)
 //   save FILE · screenshot FILE  the image (.png, .exr); the window (.png)
+//   errors FILE                  errors to the reference, as JSON
 //   command FILE                 the command that renders this view
 //   random SEED N                N random events
 //   quit

@@ -10,6 +10,8 @@
 #include "truth.h"
 #include "viewer.h"
 
+// Frames after a change: until the image has converged, and until the reference begins again.
+enum { SETTLE_FRAMES = 24, REST_FRAMES = 2 };
 enum { VIEWER_LIGHTS = 128, VIEWER_PASSES = 96, VIEWER_HISTORY = 180, VIEWER_MESSAGE = 1024 };
 
 // The part of the window that shows the image, in pixels.
@@ -79,6 +81,8 @@ struct viewer {
     bool message_warns;
     char screenshot[1024]; // to be written with the next frame; "": none
     bool screenshot_failed;
-    int show_tab; // to be shown by the next frame; -1: the user's
+    char file[512];  // of the button "Save image"
+    float budget_ms; // line in the plot of times
+    int show_tab;    // to be shown by the next frame; -1: the user's
     struct script *script;
 };

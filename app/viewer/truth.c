@@ -21,6 +21,7 @@ struct truth {
     struct truth_view view;
     struct edits edits;
     struct ag_image offered;   // pixels NULL: none
+    bool unmeasured;           // it is newer than the errors
     struct ag_image images[2]; // radiance and FLIP, until they are taken
     struct truth_state state;
     // the thread's own
@@ -90,6 +91,7 @@ static void measure(struct truth *t, const struct ag_image *color)
     desc.ev = t->view.ev;
     if (t->offered.pixels && t->offered.width == color->width && t->offered.height == color->height)
         publish(&copy, &t->offered);
+    t->unmeasured = false;
     pthread_mutex_unlock(&t->mutex);
     if (!copy.pixels) return;
     desc.ignore_not_finite = true;
@@ -97,10 +99,7 @@ static void measure(struct truth *t, const struct ag_image *color)
         ag_image_metrics(t->context, &copy, color, &desc, &metrics) == AG_OK &&
         ag_image_error_map(t->context, &copy, color, &desc, AG_DIFFERENCE_FLIP, 0, &map) == AG_OK;
     free(copy.pixels);
-    if (!done || t->request != t->running) {
-        ag_image_destroy(t->context, map);
-        return;
-    }
+    if (!done) return;
     static const double weights[3] = { 0.2126, 0.7152, 0.0722 };
     double a = 0, b = 0;
     for (int i = 0; i < 3; i++) {
@@ -108,11 +107,13 @@ static void measure(struct truth *t, const struct ag_image *color)
         b += weights[i] * metrics.mean_b[i];
     }
     pthread_mutex_lock(&t->mutex);
-    publish(&t->images[1], map);
-    t->state.measured = true;
-    t->state.flip = metrics.flip;
-    t->state.relative_error = metrics.relmse;
-    t->state.energy = b > 0 ? a / b : 0.0;
+    if (t->request == t->running && !t->unmeasured) {
+        publish(&t->images[1], map);
+        t->state.measured = true;
+        t->state.flip = metrics.flip;
+        t->state.relative_error = metrics.relmse;
+        t->state.energy = b > 0 ? a / b : 0.0;
+    }
     pthread_mutex_unlock(&t->mutex);
     ag_image_destroy(t->context, map);
 }
@@ -137,10 +138,11 @@ static void show(struct truth *t)
     window_wake();
 }
 
-static bool wait_for_view(struct truth *t)
+static bool wait_for_work(struct truth *t)
 {
     pthread_mutex_lock(&t->mutex);
-    while (!t->quit && t->request == t->running) pthread_cond_wait(&t->changed, &t->mutex);
+    while (!t->quit && t->request == t->running && !(t->unmeasured && t->reference))
+        pthread_cond_wait(&t->changed, &t->mutex);
     pthread_mutex_unlock(&t->mutex);
     return !t->quit;
 }
@@ -169,8 +171,12 @@ static void *run(void *user)
     pthread_mutex_lock(&t->mutex);
     snprintf(t->state.error, sizeof t->state.error, "%s", error);
     pthread_mutex_unlock(&t->mutex);
-    while (loaded && wait_for_view(t))
-        if (begin(t)) trace(t);
+    while (loaded && wait_for_work(t)) {
+        if (t->request == t->running)
+            show(t); // it has all samples: another image is to be measured
+        else if (begin(t))
+            trace(t);
+    }
     ag_reference_destroy(t->reference);
     ag_scene_destroy(t->scene);
     ag_context_destroy(t->context);
@@ -221,6 +227,7 @@ void truth_restart(struct truth *t, const struct truth_view *view)
     t->state.samples = 0;
     t->state.measured = false;
     forget(&t->offered);
+    t->unmeasured = false;
     for (int i = 0; i < 2; i++) forget(&t->images[i]);
     t->request++;
     pthread_cond_signal(&t->changed);
@@ -231,7 +238,12 @@ bool truth_offer(struct truth *t, const struct ag_image *color)
 {
     pthread_mutex_lock(&t->mutex);
     const bool fits = color->width == t->view.width && color->height == t->view.height;
-    if (fits) publish(&t->offered, color);
+    if (fits) {
+        publish(&t->offered, color);
+        t->unmeasured = true;
+        t->state.measured = false;
+        pthread_cond_signal(&t->changed);
+    }
     pthread_mutex_unlock(&t->mutex);
     return fits;
 }

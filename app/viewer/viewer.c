@@ -206,7 +206,6 @@ static bool loop(struct viewer *v, char error[1024])
         const float seconds = v->script ? 1.0f / 60.0f : fminf((float)(now - last), 0.25f);
         v->frame_s += 0.1f * ((float)(now - last) - v->frame_s);
         last = now;
-        if (v->desc->interrupted(v->desc->user)) break;
         if (!step(v, seconds)) {
             snprintf(error, 1024,
                      "the Vulkan device was lost or gives no more images: begin again "
@@ -301,6 +300,8 @@ bool viewer_run(const struct viewer_desc *desc, char error[1024])
     }
     v->desc = desc;
     v->split_at = 0.5f;
+    v->budget_ms = 16.7f;
+    snprintf(v->file, sizeof v->file, "afterglow.png");
     v->scene_camera = -1;
     v->given = desc->camera;
     v->auto_exposure = !desc->has_exposure;

@@ -31,9 +31,10 @@ struct viewer_desc {
     // On any thread: another context, with the scene as it was loaded and lit at first.
     bool (*open_copy)(void *user, struct ag_context **context, struct ag_scene **scene,
                       char error[512]);
-    // On any thread: where the bake with that key is kept; false: nowhere.
-    bool (*bake_path)(void *user, const char *key, char path[4096]);
-    bool (*interrupted)(void *user); // the program is to end
+    // On any thread: where the bake with that key is kept; false: nowhere, with a sentence.
+    bool (*bake_path)(void *user, const char *key, char path[4096], char error[512]);
+    // Writes a text file, completely or not at all.
+    bool (*write_text)(void *user, const char *path, const char *text);
 };
 
 // False with a sentence in `error`: no display, no device, or a file that cannot be used.

@@ -407,6 +407,39 @@ TEST(a_click_switches_a_light_off)
     CHECK(mean_of("off.png") < 0.5 * mean_of("on.png"));
 }
 
+// The energy of lpv in the box is some percent off; a wrong factor of radiance is beyond.
+TEST(errors_are_those_to_the_reference)
+{
+    require_display();
+    view(CORNELL SMALL " --gi lpv:dim=16 --split reference",
+         "settle\nsamples 32\nerrors errors.json\ngi none\nsettle\nsamples 64\nwait 2\n"
+         "errors none.json\n");
+    json_t *lpv = json_load_file("errors.json", 0, NULL),
+           *none = json_load_file("none.json", 0, NULL);
+    assert_true(lpv && none);
+    const double energy = json_number_value(json_object_get(lpv, "energy"));
+    if (energy < 0.85 || energy > 1.15) fail_msg("the energy of lpv is %g", energy);
+    CHECK(json_integer_value(json_object_get(lpv, "samples")) >= 32);
+    CHECK(json_number_value(json_object_get(none, "energy")) < 0.8 * energy);
+    CHECK(json_number_value(json_object_get(none, "flip")) >
+          json_number_value(json_object_get(lpv, "flip")));
+    json_decref(lpv);
+    json_decref(none);
+    check_fails(CORNELL LEAST, "errors errors.json\n", "script.txt:1: no errors are measured");
+}
+
+// The window goes while a bake runs: what is finished is kept for the next one.
+TEST(a_bake_is_cancelled_with_the_window_and_goes_on_later)
+{
+    require_display();
+    setenv("AFTERGLOW_CACHE", make_folder("bakes"), 1);
+    view(CORNELL LEAST " --gi lpv:dim=8,cascades=1",
+         "settle\nsave before.png\ngi radiosity\nwait 1\n");
+    view(CORNELL LEAST, "gi radiosity:texels=2048,rays=16\nsettle\nsave baked.png\nlayer indirect\n"
+                        "settle\nsave indirect.png\n");
+    CHECK(mean_of("indirect.png") > 0.01);
+}
+
 // ---- wrong scripts
 
 TEST(a_line_that_fails_is_named)

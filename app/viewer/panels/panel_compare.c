@@ -13,7 +13,7 @@ static void show_errors(struct viewer *v)
         return;
     }
     ui_text("%d samples a pixel", state.samples);
-    if (!state.measured) {
+    if (!state.measured || !v->offered) {
         ui_faint("errors follow when the image has settled");
         return;
     }

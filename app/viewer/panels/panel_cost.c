@@ -2,7 +2,9 @@
 #include "panel.h"
 #include "viewer/operations.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const uint32_t colors[] = { 0x4e79a7ff, 0xf28e2bff, 0xe15759ff, 0x76b7b2ff, 0x59a14fff,
@@ -20,7 +22,7 @@ static float most_ms(const struct times *times)
 static void plot(const struct times *times, float budget_ms, float height)
 {
     const struct ui_area area = ui_area(height);
-    const float most = 1.1f * (most_ms(times) > budget_ms ? most_ms(times) : budget_ms);
+    const float most = 1.1f * fmaxf(most_ms(times), budget_ms);
     const float column = area.width / (float)VIEWER_HISTORY, unit = area.height / most;
     char text[64];
     ui_area_box(area.x, area.y, area.x + area.width, area.y + area.height, 0x18181aff);
@@ -75,14 +77,14 @@ static void list_memory(struct viewer *v)
     ui_text("in all %.2f MB", (double)sum * 1e-6);
 }
 
+// A row for each frame, the oldest first.
 static void save_csv(struct viewer *v, const char *path)
 {
-    FILE *file = fopen(path, "w");
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
     const struct times *times = &v->times;
-    if (!file) {
-        viewer_warn(v, "cannot write %s", path);
-        return;
-    }
+    if (!file) return;
     fprintf(file, "frame,frame_ms");
     for (int k = 0; k < times->count; k++) fprintf(file, ",%s", times->names[k]);
     for (int i = times->frames - 1; i >= 0; i--) {
@@ -91,20 +93,20 @@ static void save_csv(struct viewer *v, const char *path)
         for (int k = 0; k < times->count; k++) fprintf(file, ",%.6g", (double)times->ms[k][at]);
     }
     fprintf(file, "\n");
-    if (fclose(file) == 0)
+    if (fclose(file) == 0 && v->desc->write_text(v->desc->user, path, text))
         viewer_say(v, "written: %s", path);
     else
         viewer_warn(v, "cannot write %s", path);
+    free(text);
 }
 
 void panel_cost(struct viewer *v)
 {
-    static float budget_ms = 16.7f;
     ui_text("%s", v->device_info.name);
     ui_text("%.2f ms on the GPU", (double)v->times.frame_ms[v->times.newest]);
     ui_text("%.0f frames of the window a second", v->frame_s > 0 ? 1.0 / (double)v->frame_s : 0.0);
-    plot(&v->times, budget_ms, 180.0f);
-    ui_number("budget (ms)", &budget_ms, 1.0f, 200.0f, "%.1f", true);
+    plot(&v->times, v->budget_ms, 180.0f);
+    ui_number("budget (ms)", &v->budget_ms, 1.0f, 200.0f, "%.1f", true);
     if (ui_button("Save as CSV")) save_csv(v, "afterglow-times.csv");
     if (ui_section("Passes", true)) list_passes(&v->times);
     if (ui_section("Memory", true)) list_memory(v);

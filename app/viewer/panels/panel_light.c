@@ -2,6 +2,7 @@
 #include "panel.h"
 
 #include "overlay.h"
+#include "viewer/light_values.h"
 #include "viewer/operations.h"
 
 #include <math.h>
@@ -15,26 +16,6 @@ static const char *const units[] = { "lux", "cd", "cd" };
 static float largest(const float rgb[3])
 {
     return fmaxf(fmaxf(rgb[0], rgb[1]), rgb[2]);
-}
-
-// Linear Rec. 709 colour of a black body, its largest component 1: Kim et al. 2002, the cubic
-// approximation of the Planckian locus, 1667 K to 25000 K.
-static void black_body(float kelvin, float rgb[3])
-{
-    const float t = 1000.0f / kelvin;
-    const float x = kelvin < 4000.0f
-                        ? ((-0.2661239f * t - 0.2343589f) * t + 0.8776956f) * t + 0.179910f
-                        : ((-3.0258469f * t + 2.1070379f) * t + 0.2226347f) * t + 0.240390f;
-    const float y =
-        kelvin < 2222.0f   ? ((-1.1063814f * x - 1.34811020f) * x + 2.18555832f) * x - 0.20219683f
-        : kelvin < 4000.0f ? ((-0.9549476f * x - 1.37418593f) * x + 2.09137015f) * x - 0.16748867f
-                           : ((3.0817580f * x - 5.87338670f) * x + 3.75112997f) * x - 0.37001483f;
-    const float X = x / y, Z = (1.0f - x - y) / y;
-    rgb[0] = fmaxf(3.2404542f * X - 1.5371385f - 0.4985314f * Z, 0.0f);
-    rgb[1] = fmaxf(-0.9692660f * X + 1.8760108f + 0.0415560f * Z, 0.0f);
-    rgb[2] = fmaxf(0.0556434f * X - 0.2040259f + 1.0572252f * Z, 0.0f);
-    const float most = largest(rgb);
-    for (int i = 0; i < 3; i++) rgb[i] /= most;
 }
 
 // Intensity and colour of a light; the colour's largest component is 1.
@@ -52,7 +33,7 @@ static bool edit_intensity(float rgb[3], const char *unit, float most)
     }
     float kelvin = 6500.0f;
     if (ui_number("temperature (K)", &kelvin, 1700.0f, 15000.0f, "set to %.0f", true)) {
-        black_body(kelvin, color);
+        light_black_body(kelvin, color);
         changed = true;
     }
     ui_tooltip("Sets the colour to that of a black body.");
@@ -60,22 +41,17 @@ static bool edit_intensity(float rgb[3], const char *unit, float most)
     return changed;
 }
 
-// Elevation and azimuth of where the light comes from; azimuth 0 is −z, positive to +x.
 static bool edit_direction(float direction[3])
 {
-    const float length = sqrtf(direction[0] * direction[0] + direction[1] * direction[1] +
-                               direction[2] * direction[2]);
-    if (!(length > 0)) return false;
-    float elevation = asinf(fminf(fmaxf(-direction[1] / length, -1.0f), 1.0f)) * DEGREES;
-    float azimuth = atan2f(-direction[0], direction[2]) * DEGREES;
+    float elevation, azimuth;
+    light_angles(direction, &elevation, &azimuth);
+    elevation *= DEGREES;
+    azimuth *= DEGREES;
     bool changed = ui_number("elevation (°)", &elevation, -90.0f, 90.0f, "%.1f", false);
     changed |= ui_number("azimuth (°)", &azimuth, -180.0f, 180.0f, "%.1f", false);
-    if (!changed) return false;
-    const float e = elevation / DEGREES, a = azimuth / DEGREES;
-    direction[0] = -cosf(e) * sinf(a);
-    direction[1] = -sinf(e);
-    direction[2] = cosf(e) * cosf(a);
-    return true;
+    ui_tooltip("Of the point from which the light comes; azimuth from −z towards +x.");
+    if (changed) light_direction(elevation / DEGREES, azimuth / DEGREES, direction);
+    return changed;
 }
 
 static bool edit_cone(struct ag_light_desc *light)

@@ -154,7 +154,7 @@ static bool choose_technique(struct method *method, enum method_role role)
     return true;
 }
 
-// A failure leaves the running method as it is, and shows that again.
+// After a failure the panel shows the running method again.
 void panel_edit_method(struct viewer *v, bool other)
 {
     struct method *method = other ? &v->other_method : &v->method;

@@ -81,10 +81,9 @@ static void edit_time(struct viewer *v)
 
 static void take_away(struct viewer *v)
 {
-    static char path[512] = "afterglow.png";
-    ui_line("file", path, sizeof path);
-    ui_tooltip(".png as it is shown, .exr with linear physical values");
-    if (ui_button("Save image")) viewer_write(v, path);
+    ui_line("file", v->file, sizeof v->file);
+    ui_tooltip(".png: exposed and tone mapped; .exr: linear physical values");
+    if (ui_button("Save image")) viewer_write(v, v->file);
     ui_same_line();
     if (ui_button("Save window"))
         snprintf(v->screenshot, sizeof v->screenshot, "%s", "afterglow-window.png");

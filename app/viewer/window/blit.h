@@ -3,8 +3,6 @@
 
 #include "swapchain.h"
 
-// Between all earlier and all later commands.
-void blit_transition(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to);
 // Draws the part from `left` to `right`, 0…1 of the width, of an image in the layout
 // TRANSFER_SRC_OPTIMAL to the same part of a rectangle of the window, in pixels: x0, y0, x1, y1.
 void blit_part(struct swapchain *swapchain, VkImage image, int width, int height,

@@ -39,3 +39,6 @@ struct gpu_mapped {
 };
 bool gpu_mapped_open(const struct gpu *gpu, VkDeviceSize size, struct gpu_mapped *out);
 void gpu_mapped_close(const struct gpu *gpu, struct gpu_mapped *mapped);
+
+// Changes the layout of a color image, between all earlier and all later commands.
+void gpu_transition(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to);

@@ -79,12 +79,12 @@ void host_image_draw(struct host_image *image, struct swapchain *swapchain,
             .imageSubresource = { VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1 },
             .imageExtent = { (uint32_t)image->width, (uint32_t)image->height, 1 },
         };
-        blit_transition(commands, image->image, VK_IMAGE_LAYOUT_UNDEFINED,
-                        VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+        gpu_transition(commands, image->image, VK_IMAGE_LAYOUT_UNDEFINED,
+                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
         vkCmdCopyBufferToImage(commands, image->staging.buffer, image->image,
                                VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
-        blit_transition(commands, image->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                        VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+        gpu_transition(commands, image->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                       VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
         image->changed = false;
     }
     blit_part(swapchain, image->image, image->width, image->height, rectangle, left, right);

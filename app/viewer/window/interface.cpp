@@ -11,12 +11,11 @@
 
 namespace {
 
-enum { MAX_IMAGES = 4, MAX_ELEMENTS = 512, LABEL_SIZE = 96 };
+enum { FONT_IMAGES = 1, MAX_ELEMENTS = 512, LABEL_SIZE = 96 };
 
 VkDescriptorPool pool;
 VkDevice device;
 struct interface_desc desc;
-bool font_uploaded;
 
 // Elements of the newest frame that are in view, for scripts.
 struct element {
@@ -26,8 +25,6 @@ struct element {
 element elements[MAX_ELEMENTS];
 int element_count;
 
-// Rows of `elements` are taken in the order of drawing; those of a second element with the same
-// label are not found.
 bool seen(const char *label, bool changed)
 {
     if (element_count < MAX_ELEMENTS && ImGui::IsItemVisible()) {
@@ -151,7 +148,7 @@ void style(float scale)
 bool upload_font()
 {
 #if IMGUI_VERSION_NUM >= 19000
-    font_uploaded = ImGui_ImplVulkan_CreateFontsTexture();
+    return ImGui_ImplVulkan_CreateFontsTexture();
 #else
     const struct gpu *gpu = desc.gpu;
     const VkCommandBuffer commands = desc.swapchain->frames[0].commands;
@@ -162,24 +159,24 @@ bool upload_font()
     submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
     submit.commandBufferCount = 1;
     submit.pCommandBuffers = &commands;
-    font_uploaded = vkResetCommandPool(device, desc.swapchain->frames[0].pool, 0) == VK_SUCCESS &&
-                    vkBeginCommandBuffer(commands, &begin) == VK_SUCCESS &&
-                    ImGui_ImplVulkan_CreateFontsTexture(commands) &&
-                    vkEndCommandBuffer(commands) == VK_SUCCESS &&
-                    vkQueueSubmit(gpu->queue, 1, &submit, VK_NULL_HANDLE) == VK_SUCCESS &&
-                    vkQueueWaitIdle(gpu->queue) == VK_SUCCESS;
+    const bool done = vkResetCommandPool(device, desc.swapchain->frames[0].pool, 0) == VK_SUCCESS &&
+                      vkBeginCommandBuffer(commands, &begin) == VK_SUCCESS &&
+                      ImGui_ImplVulkan_CreateFontsTexture(commands) &&
+                      vkEndCommandBuffer(commands) == VK_SUCCESS &&
+                      vkQueueSubmit(gpu->queue, 1, &submit, VK_NULL_HANDLE) == VK_SUCCESS &&
+                      vkQueueWaitIdle(gpu->queue) == VK_SUCCESS;
     ImGui_ImplVulkan_DestroyFontUploadObjects();
+    return done;
 #endif
-    return font_uploaded;
 }
 
 bool create_pool()
 {
-    const VkDescriptorPoolSize size = { VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, MAX_IMAGES };
+    const VkDescriptorPoolSize size = { VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, FONT_IMAGES };
     VkDescriptorPoolCreateInfo info = {};
     info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
     info.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
-    info.maxSets = MAX_IMAGES;
+    info.maxSets = FONT_IMAGES;
     info.poolSizeCount = 1;
     info.pPoolSizes = &size;
     return vkCreateDescriptorPool(device, &info, nullptr, &pool) == VK_SUCCESS;
@@ -197,7 +194,6 @@ bool interface_open(const struct interface_desc *wanted)
     desc = *wanted;
     device = desc.gpu->device;
     pool = VK_NULL_HANDLE;
-    font_uploaded = false;
     ImGui::CreateContext();
     ImGuiIO &io = ImGui::GetIO();
     io.IniFilename = nullptr;

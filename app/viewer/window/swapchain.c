@@ -239,36 +239,20 @@ bool swapchain_begin(struct swapchain *s, VkCommandBuffer *commands)
     return true;
 }
 
-static void transition(struct swapchain *s, VkImageLayout from, VkImageLayout to,
-                       VkAccessFlags before, VkAccessFlags after, VkPipelineStageFlags next)
+static void transition(struct swapchain *s, VkImageLayout from, VkImageLayout to)
 {
-    const VkImageMemoryBarrier barrier = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
-        .srcAccessMask = before,
-        .dstAccessMask = after,
-        .oldLayout = from,
-        .newLayout = to,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .image = s->images[s->image],
-        .subresourceRange = { VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1 },
-    };
-    vkCmdPipelineBarrier(s->frames[s->frame].commands, VK_PIPELINE_STAGE_TRANSFER_BIT, next, 0, 0,
-                         NULL, 0, NULL, 1, &barrier);
+    gpu_transition(s->frames[s->frame].commands, s->images[s->image], from, to);
 }
 
 void swapchain_clear(struct swapchain *s)
 {
     const VkClearColorValue color = { { 0.06f, 0.06f, 0.07f, 1.0f } };
     const VkImageSubresourceRange all = { VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1 };
-    transition(s, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0,
-               VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT);
+    transition(s, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     vkCmdClearColorImage(s->frames[s->frame].commands, s->images[s->image],
                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &color, 1, &all);
     // Copies overwrite parts of it.
-    transition(s, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-               VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-               VK_PIPELINE_STAGE_TRANSFER_BIT);
+    transition(s, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
 }
 
 void swapchain_pass_begin(struct swapchain *s)
@@ -294,12 +278,10 @@ void swapchain_copy(struct swapchain *s, VkBuffer to)
         .imageSubresource = { VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1 },
         .imageExtent = { s->width, s->height, 1 },
     };
-    transition(s, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, 0,
-               VK_ACCESS_TRANSFER_READ_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT);
+    transition(s, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     vkCmdCopyImageToBuffer(commands, s->images[s->image], VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to,
                            1, &region);
-    transition(s, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR,
-               VK_ACCESS_TRANSFER_READ_BIT, 0, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT);
+    transition(s, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR);
     const VkBufferMemoryBarrier host = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER,
         .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,

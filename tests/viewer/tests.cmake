@@ -1,0 +1,4 @@
+# The viewer's parts that need no window; cli.view opens one.
+if(AFTERGLOW_VIEWER)
+  ag_test(viewer/light_values LIBRARIES afterglow_viewer)
+endif()
