@@ -165,6 +165,15 @@ double fixture_difference(const struct ag_image *a, const struct ag_image *b)
     return sum > 0 ? sum / mean : 0.0;
 }
 
+struct ag_layer_handle fixture_layer(struct renderer_fixture *s, struct ag_renderer *renderer,
+                                     const char *name)
+{
+    struct ag_layer_handle handle;
+    if (ag_renderer_layer_handle(renderer, name, &handle) != AG_OK)
+        fail_msg("%s: %s", name, ag_context_last_error(s->context));
+    return handle;
+}
+
 struct ag_image *fixture_read_from(struct renderer_fixture *s, struct ag_renderer *renderer,
                                    const char *layer)
 {

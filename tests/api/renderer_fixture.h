@@ -39,6 +39,8 @@ struct renderer_fixture fixture_open_alone(const char *gi);
 void fixture_close(struct renderer_fixture *fixture);
 // The caller destroys it.
 struct ag_image *fixture_read(struct renderer_fixture *fixture, const char *layer);
+struct ag_layer_handle fixture_layer(struct renderer_fixture *s, struct ag_renderer *renderer,
+                                     const char *name);
 struct ag_image *fixture_read_from(struct renderer_fixture *fixture, struct ag_renderer *renderer,
                                    const char *layer);
 // The Cornell box, whose ceiling emits, with a sky. gi NULL: without a renderer.

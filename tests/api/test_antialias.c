@@ -459,15 +459,6 @@ TEST(a_view_has_a_history_of_its_own)
     fixture_close(&s);
 }
 
-static struct ag_layer_handle layer(struct renderer_fixture *s, struct ag_renderer *renderer,
-                                    const char *name)
-{
-    struct ag_layer_handle handle;
-    if (ag_renderer_layer_handle(renderer, name, &handle) != AG_OK)
-        fail_msg("%s: %s", name, ag_context_last_error(s->context));
-    return handle;
-}
-
 TEST(a_programs_gbuffer_has_the_jitter_of_the_program)
 {
     struct renderer_fixture s = fixture_open("none", NULL);
@@ -486,11 +477,11 @@ TEST(a_programs_gbuffer_has_the_jitter_of_the_program)
         ag_jitter(i + 1, 16, frame.jitter);
         render(&s, source, &frame);
         render(&s, own, &frame);
-        struct ag_gbuffer gbuffer = { .depth = layer(&s, source, "depth"),
-                                      .normal = layer(&s, source, "normal"),
-                                      .albedo = layer(&s, source, "albedo"),
-                                      .emissive = layer(&s, source, "emissive"),
-                                      .motion = layer(&s, source, "motion") };
+        struct ag_gbuffer gbuffer = { .depth = fixture_layer(&s, source, "depth"),
+                                      .normal = fixture_layer(&s, source, "normal"),
+                                      .albedo = fixture_layer(&s, source, "albedo"),
+                                      .emissive = fixture_layer(&s, source, "emissive"),
+                                      .motion = fixture_layer(&s, source, "motion") };
         frame.gbuffer = &gbuffer;
         render(&s, hosted, &frame);
         check_same(&s, hosted, own, "color");

@@ -75,22 +75,13 @@ TEST(a_sun_lights_several_views)
 
 // ---- A program's own G-buffer
 
-static struct ag_layer_handle layer(struct renderer_fixture *s, struct ag_renderer *renderer,
-                                    const char *name)
-{
-    struct ag_layer_handle handle;
-    if (ag_renderer_layer_handle(renderer, name, &handle) != AG_OK)
-        fail_msg("%s: %s", name, ag_context_last_error(s->context));
-    return handle;
-}
-
 static struct ag_gbuffer gbuffer_of(struct renderer_fixture *s, struct ag_renderer *renderer)
 {
-    return (struct ag_gbuffer){ .depth = layer(s, renderer, "depth"),
-                                .normal = layer(s, renderer, "normal"),
-                                .albedo = layer(s, renderer, "albedo"),
-                                .emissive = layer(s, renderer, "emissive"),
-                                .motion = layer(s, renderer, "motion") };
+    return (struct ag_gbuffer){ .depth = fixture_layer(s, renderer, "depth"),
+                                .normal = fixture_layer(s, renderer, "normal"),
+                                .albedo = fixture_layer(s, renderer, "albedo"),
+                                .emissive = fixture_layer(s, renderer, "emissive"),
+                                .motion = fixture_layer(s, renderer, "motion") };
 }
 
 static struct ag_renderer *make_hosted(struct renderer_fixture *s, const char *gi)

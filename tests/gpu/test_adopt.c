@@ -1,6 +1,5 @@
 // An adopted device: created with plain Vulkan, used by the layer and by the host.
-#include "framework/gpu_test.h"
-#include "framework/own_device.h"
+#include "gpu/own_gpu.h"
 #include "gpu_test_shaders.h"
 
 #include <string.h>
@@ -9,25 +8,6 @@ static void open_own(struct own_device *own, uint32_t flags)
 {
     test_gpu_require();
     own_device_open(own, flags | OWN_DEVICE_VALIDATION);
-}
-
-static struct gpu *adopt_with(struct own_device *own, PFN_vkGetInstanceProcAddr get)
-{
-    struct gpu_adopt adopt = { .instance = own->instance,
-                               .physical_device = own->physical,
-                               .device = own->device,
-                               .queue = own->queue,
-                               .queue_family = own->family,
-                               .lock_queue = own_device_lock,
-                               .unlock_queue = own_device_unlock,
-                               .user = own,
-                               .get_instance_proc_addr = (void (*)(void))get };
-    return gpu_create(test_host(), &(struct gpu_desc){ .validation = true, .adopt = &adopt });
-}
-
-static struct gpu *adopt(struct own_device *own)
-{
-    return adopt_with(own, NULL);
 }
 
 // One frame and one transfer.
@@ -52,7 +32,7 @@ TEST(an_adopted_device_runs_frames_and_transfers)
 {
     struct own_device own;
     open_own(&own, 0);
-    struct gpu *gpu = adopt(&own);
+    struct gpu *gpu = own_gpu_create(&own, NULL, NULL);
     CHECK(gpu != NULL);
     add_ten_times_seven(gpu);
     assert_int_equal(own.locks, 2);
@@ -77,7 +57,7 @@ TEST(commands_are_recorded_into_the_hosts_command_buffer)
     enum { FRAMES = 3 };
     struct own_device own;
     open_own(&own, 0);
-    struct gpu *gpu = adopt(&own);
+    struct gpu *gpu = own_gpu_create(&own, NULL, NULL);
     CHECK(gpu != NULL);
     gpu_buffer total = test_gpu_buffer(gpu, 4), words;
     gpu_pipeline sum = test_gpu_compute(gpu, &shader_test_sum_comp);
@@ -200,7 +180,7 @@ TEST(a_wrapped_image_is_shared_with_the_host)
 {
     struct own_device own;
     open_own(&own, 0);
-    struct gpu *gpu = adopt(&own);
+    struct gpu *gpu = own_gpu_create(&own, NULL, NULL);
     CHECK(gpu != NULL);
     VkDeviceMemory memory;
     VkImage vk_image = create_image(&own, &memory);
@@ -241,7 +221,7 @@ TEST(more_pending_adopted_frames_than_the_limit_are_refused)
 {
     struct own_device own;
     open_own(&own, 0);
-    struct gpu *gpu = adopt(&own);
+    struct gpu *gpu = own_gpu_create(&own, NULL, NULL);
     CHECK(gpu != NULL);
     struct gpu_cmd *cmds[GPU_ADOPTED_FRAMES];
     for (int i = 0; i < GPU_ADOPTED_FRAMES; i++) {
@@ -270,11 +250,11 @@ TEST(an_unsuitable_adopted_device_is_refused_with_the_reason)
 {
     struct own_device own;
     open_own(&own, OWN_DEVICE_NO_PUSH_DESCRIPTORS);
-    assert_null(adopt(&own));
+    assert_null(own_gpu_create(&own, NULL, NULL));
     assert_non_null(strstr(test_last_message(), "created without VK_KHR_push_descriptor"));
     VkQueue queue = own.queue;
     own.queue = NULL;
-    assert_null(adopt(&own));
+    assert_null(own_gpu_create(&own, NULL, NULL));
     assert_non_null(strstr(test_last_message(), "must be there"));
     own.queue = queue;
     own_device_close(&own);
@@ -351,7 +331,7 @@ TEST(functions_come_from_the_loader_of_the_host)
     struct own_device own;
     open_own(&own, 0);
     memset(&loader, 0, sizeof loader);
-    struct gpu *gpu = adopt_with(&own, instance_function);
+    struct gpu *gpu = own_gpu_create(&own, NULL, instance_function);
     CHECK(gpu != NULL);
     add_ten_times_seven(gpu);
     assert_int_equal(loader.dispatches, 1);
@@ -372,11 +352,11 @@ TEST(a_function_that_the_loader_lacks_is_named)
     memset(&loader, 0, sizeof loader);
     for (size_t i = 0; i < sizeof needed / sizeof *needed; i++) {
         loader.lacks = needed[i];
-        assert_null(adopt_with(&own, instance_function));
+        assert_null(own_gpu_create(&own, NULL, instance_function));
         assert_non_null(strstr(test_last_message(), needed[i]));
     }
     loader.lacks = "vkCmdBeginDebugUtilsLabelEXT"; // of an extension that nothing depends on
-    struct gpu *gpu = adopt_with(&own, instance_function);
+    struct gpu *gpu = own_gpu_create(&own, NULL, instance_function);
     CHECK(gpu != NULL);
     add_ten_times_seven(gpu);
     test_gpu_finish(gpu);

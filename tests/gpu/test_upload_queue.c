@@ -1,7 +1,6 @@
 // The upload queue of an adopted device. On a device with one queue it is the same, and the
 // timeline semaphore that a submission signals tells which of the two it was for.
-#include "framework/gpu_test.h"
-#include "framework/own_device.h"
+#include "gpu/own_gpu.h"
 #include "gpu/vk.h"
 #include "gpu_test_shaders.h"
 
@@ -72,21 +71,6 @@ static void watch_release(void)
     assert_int_equal(vkQueueSubmit2(watch.held.queue, 1, &info, VK_NULL_HANDLE), VK_SUCCESS);
 }
 
-static struct gpu *adopt(struct own_device *own, PFN_vkGetInstanceProcAddr get)
-{
-    struct gpu_adopt adopt = { .instance = own->instance,
-                               .physical_device = own->physical,
-                               .device = own->device,
-                               .queue = own->queue,
-                               .upload_queue = own->upload_queue,
-                               .queue_family = own->family,
-                               .lock_queue = own_device_lock,
-                               .unlock_queue = own_device_unlock,
-                               .user = own,
-                               .get_instance_proc_addr = (void (*)(void))get };
-    return gpu_create(test_host(), &(struct gpu_desc){ .validation = true, .adopt = &adopt });
-}
-
 static struct gpu *open_queues(struct own_device *own)
 {
     test_gpu_require();
@@ -94,7 +78,7 @@ static struct gpu *open_queues(struct own_device *own)
     setenv("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",
            0);
     own_device_open(own, OWN_DEVICE_VALIDATION);
-    struct gpu *gpu = adopt(own, NULL);
+    struct gpu *gpu = own_gpu_create(own, own->upload_queue, NULL);
     if (!gpu) fail_msg("%s", test_last_message());
     watch_begin(gpu, own);
     return gpu;
@@ -422,7 +406,7 @@ TEST(a_creation_that_fails_leaves_nothing)
     for (int i = 1; !gpu; i++) {
         memset(&creation, 0, sizeof creation);
         creation.fails_at = i;
-        gpu = adopt(&own, instance_function);
+        gpu = own_gpu_create(&own, own.upload_queue, instance_function);
         assert_true((gpu != NULL) == (i > CREATED));
         assert_int_equal(creation.live, gpu ? CREATED : 0);
     }
