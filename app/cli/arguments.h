@@ -79,8 +79,8 @@ struct arguments {
     bool no_cache;
     double max_flip, max_relmse, max_ms; // below 0: no bound
     // view
-    const char *split, *script, *screenshot; // NULL: none
-    float scale;                             // of the image; 0: chosen by the device
+    const char *split, *script, *session, *screenshot; // NULL: none
+    float scale;                                       // of the image; 0: chosen by the device
     // diff
     const char *layer, *map;
     enum ag_difference metric; // of the map

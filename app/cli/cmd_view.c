@@ -32,17 +32,17 @@ static bool open_copy(void *user, struct ag_context **context, struct ag_scene *
 {
     const struct viewing *viewing = user;
     struct session copy;
+    messages_keep(error, 512);
     enum status status = session_begin(&copy, viewing->arguments);
     if (status == DONE)
         status =
             session_load(&copy, viewing->arguments->positional[0], viewing->arguments->scene_scale);
     if (status == DONE) status = session_light(&copy);
+    messages_keep(NULL, 0);
     *context = copy.context;
     *scene = copy.scene;
     ag_environment_destroy(copy.environment);
-    if (status == DONE) return true;
-    snprintf(error, 512, "cannot load %.400s a second time", viewing->arguments->positional[0]);
-    return false;
+    return status == DONE;
 }
 
 static bool bake_path(void *user, const char *key, char path[4096], char error[512])
@@ -60,10 +60,13 @@ static enum status put_text(FILE *file, const void *text)
     return DONE;
 }
 
-static bool write_text(void *user, const char *path, const char *text)
+static bool write_text(void *user, const char *path, const char *text, char error[512])
 {
     (void)user;
-    return whole_file_write(path, put_text, text) == DONE;
+    messages_keep(error, 512);
+    const bool done = whole_file_write(path, put_text, text) == DONE;
+    messages_keep(NULL, 0);
+    return done;
 }
 
 static enum status check_usage(const struct arguments *a, struct ag_context *context)
@@ -120,6 +123,7 @@ static void describe(struct viewing *viewing)
     desc->height = a->height;
     desc->scale = a->scale;
     desc->split = a->split;
+    desc->session = a->session;
     desc->script = a->script;
     desc->screenshot = a->screenshot;
     desc->frames = a->frames;

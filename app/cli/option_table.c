@@ -60,6 +60,7 @@ TEXT(layer, layer)
 TEXT(split, split)
 TEXT(script, script)
 TEXT(screenshot, screenshot)
+TEXT(session, session)
 
 // ---- checked values
 

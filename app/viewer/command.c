@@ -49,7 +49,7 @@ static void add_lights(struct words *w, const struct viewer *v)
 {
     struct ag_scene_info info = { 0 };
     struct ag_light_info light;
-    if (!v->edits.lights_changed) {
+    if (!edits_changed_lights(&v->edits)) {
         words_add(w, "%s", v->desc->light_words);
         return;
     }
@@ -66,9 +66,9 @@ static void add_lights(struct words *w, const struct viewer *v)
 bool viewer_command(struct viewer *v, char *out, size_t size)
 {
     struct words w = { out, size, 0 };
-    if (v->edits.material_count > 0 || v->edits.instance_count > 0) {
+    if (edits_changed_materials(&v->edits) || edits_changed_instances(&v->edits)) {
         viewer_warn(v, "there is no option for a changed %s: the command cannot render this view",
-                    v->edits.material_count > 0 ? "material" : "place of an object");
+                    edits_changed_materials(&v->edits) ? "material" : "place of an object");
         return false;
     }
     words_add(&w, "afterglow render");

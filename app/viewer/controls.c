@@ -4,6 +4,8 @@
 #include "command.h"
 #include "operations.h"
 #include "running.h"
+#include "session_file.h"
+#include "undo.h"
 
 #include <GLFW/glfw3.h>
 
@@ -111,14 +113,35 @@ static void focus(struct viewer *v)
     viewer_change(v);
 }
 
+static void press_control_key(struct viewer *v, int key)
+{
+    if (key == GLFW_KEY_Y || (key == GLFW_KEY_Z && v->keys[GLFW_KEY_LEFT_SHIFT]))
+        undo_forward(v);
+    else if (key == GLFW_KEY_Z)
+        undo_back(v);
+}
+
 static void press_key(struct viewer *v, int key, bool down)
 {
     if (key >= 0 && key < (int)(sizeof v->keys / sizeof *v->keys)) v->keys[key] = down;
     if (!down || interface_wants_keys()) return;
+    if (v->keys[GLFW_KEY_LEFT_CONTROL] || v->keys[GLFW_KEY_RIGHT_CONTROL]) {
+        press_control_key(v, key);
+        return;
+    }
     if (key == GLFW_KEY_F) focus(v);
     if (key == GLFW_KEY_HOME) viewer_set_camera(v, v->scene_camera);
     if (key == GLFW_KEY_SPACE) v->playing = !v->playing;
     if (key == GLFW_KEY_F12) viewer_write(v, "afterglow.png");
+}
+
+static void drop(struct viewer *v, const char *path)
+{
+    const char *end = strrchr(path, '.');
+    if (end && strcmp(end, ".json") == 0)
+        session_file_read(v, path);
+    else
+        viewer_warn(v, "begin again to open %s", path);
 }
 
 void controls_event(struct viewer *v, const struct event *event)
@@ -147,7 +170,7 @@ void controls_event(struct viewer *v, const struct event *event)
         if (v->turning) window_capture_mouse(v->window, v->turning = false);
         break;
     case EVENT_DROP:
-        viewer_warn(v, "begin again to open %s", event->text);
+        drop(v, event->text);
         break;
     case EVENT_TEXT:
         break;

@@ -1,5 +1,7 @@
 #include "operations.h"
 
+#include "undo.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -11,6 +13,7 @@ const char *const viewer_layers[] = {
     "color",  "direct",     "indirect", "irradiance", "specular",
     "albedo", "visibility", "normal",   "depth",      "emissive"
 };
+const char *const viewer_light_types[3] = { "sun", "point", "spot" };
 const int viewer_layer_count = sizeof viewer_layers / sizeof *viewer_layers;
 
 // ---- messages
@@ -44,6 +47,17 @@ bool viewer_check(struct viewer *v, enum ag_result result)
     return result == AG_OK;
 }
 
+bool viewer_write_text(struct viewer *v, const char *path, const char *text)
+{
+    char why[512];
+    const bool done = v->desc->write_text(v->desc->user, path, text, why);
+    if (done)
+        viewer_say(v, "written: %s", path);
+    else
+        viewer_warn(v, "%s", why);
+    return done;
+}
+
 // ---- the image
 
 void viewer_touch(struct viewer *v)
@@ -74,12 +88,16 @@ void viewer_image_size(const struct viewer *v, int *width, int *height)
     if (*height < LEAST_SIZE) *height = LEAST_SIZE;
 }
 
-static bool has_debug_view(const struct method *method, const char *name)
+// The catalogue's name of a debug view; NULL: the method has none of that name.
+static const char *find_debug_view(const struct method *method, const char *name)
 {
-    for (int i = 0; i < ROLE_COUNT; i++)
-        if (method->chosen[i] >= 0 && ag_technique_debug_view_find(method->chosen[i], name) >= 0)
-            return true;
-    return false;
+    const char *found = NULL, *help;
+    for (int i = 0; name && i < ROLE_COUNT && !found; i++) {
+        const int technique = method->chosen[i];
+        const int view = technique < 0 ? -1 : ag_technique_debug_view_find(technique, name);
+        if (view >= 0) ag_technique_debug_view_get(technique, view, &found, &help);
+    }
+    return found;
 }
 
 void viewer_runs(struct viewer *v, bool other, const char *gi)
@@ -87,7 +105,8 @@ void viewer_runs(struct viewer *v, bool other, const char *gi)
     struct rendering *rendering = other ? &v->other : &v->main;
     snprintf(other ? v->other_gi : v->gi, METHOD_SPEC, "%s", gi);
     method_parse(other ? &v->other_method : &v->method, ag_renderer_gi(rendering->renderer));
-    if (!other && v->debug_view && !has_debug_view(&v->method, v->debug_view))
+    undo_note(v, UNDO_METHOD, -1);
+    if (!other && v->debug_view && !find_debug_view(&v->method, v->debug_view))
         viewer_set_debug_view(v, NULL);
     viewer_touch(v);
 }
@@ -98,7 +117,7 @@ bool viewer_set_debug_view(struct viewer *v, const char *name)
     if (!viewer_check(v, ag_renderer_set_debug_view(v->main.renderer, name)) ||
         !viewer_check(v, ag_renderer_set_display(v->main.renderer, layer)))
         return false;
-    v->debug_view = name;
+    v->debug_view = find_debug_view(&v->method, name);
     viewer_touch(v);
     return true;
 }
@@ -111,6 +130,11 @@ void viewer_set_layer(struct viewer *v, int layer)
     if (v->other.renderer) viewer_check(v, ag_renderer_set_display(v->other.renderer, name));
     v->layer = layer;
     viewer_touch(v);
+}
+
+void viewer_scene_options(const struct viewer *v, char *out, size_t size)
+{
+    snprintf(out, size, "%s%s", v->desc->scene_words, v->desc->light_words);
 }
 
 static float scene_size(struct viewer *v)

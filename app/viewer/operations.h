@@ -5,11 +5,14 @@
 
 extern const char *const viewer_layers[];
 extern const int viewer_layer_count;
+extern const char *const viewer_light_types[3]; // by enum ag_light_type
 
 // Says something in the status line, with the library's sentence where `result` is not AG_OK.
 void viewer_say(struct viewer *v, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void viewer_warn(struct viewer *v, const char *format, ...) __attribute__((format(printf, 2, 3)));
 bool viewer_check(struct viewer *v, enum ag_result result);
+// Writes a text file and says so; false, with a message, if it cannot.
+bool viewer_write_text(struct viewer *v, const char *path, const char *text);
 // The image changes: it is rendered until what accumulates over frames has settled.
 void viewer_touch(struct viewer *v);
 // Scene or camera differ: also the reference begins again.
@@ -20,5 +23,7 @@ bool viewer_set_debug_view(struct viewer *v, const char *name); // NULL: none
 void viewer_set_layer(struct viewer *v, int layer);
 void viewer_set_camera(struct viewer *v, int scene_camera); // -1: that of the command line
 struct region viewer_region(const struct viewer *v);
+// Options of the command line that load and light the scene so, a blank before each word.
+void viewer_scene_options(const struct viewer *v, char *out, size_t size);
 // The size in pixels that the image is to have.
 void viewer_image_size(const struct viewer *v, int *width, int *height);

@@ -1,9 +1,12 @@
 #include "script.h"
 
 #include "bakes.h"
+#include "changes.h"
 #include "command.h"
 #include "operations.h"
 #include "running.h"
+#include "session_file.h"
+#include "undo.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -242,11 +245,23 @@ static bool run_light(const struct words *w)
                                                w->v->time_s, &info)))
         return done(w, false);
     info.light.enabled = on != 0;
-    if (!viewer_check(w->v, ag_scene_set_light(w->v->desc->scene, light, &info.light)))
-        return done(w, false);
-    edits_take_lights(&w->v->edits, w->v->desc->scene, w->v->desc->animation, w->v->time_s);
-    viewer_change(w->v);
+    return done(w, viewer_set_light(w->v, light, &info.light));
+}
+
+static bool run_drop(const struct words *w)
+{
+    struct event event = { .kind = EVENT_DROP };
+    snprintf(event.text, sizeof event.text, "%s", w->rest);
+    event_push(w->queue, &event);
+    w->script->waits = 1;
     return true;
+}
+
+static bool run_session(const struct words *w)
+{
+    if (strncmp(w->rest, "write ", 6) == 0) return done(w, session_file_write(w->v, w->rest + 6));
+    if (strncmp(w->rest, "read ", 5) == 0) return done(w, session_file_read(w->v, w->rest + 5));
+    return wrong(w->script, "session takes write FILE or read FILE:", w->rest);
 }
 
 static bool run_command(const struct words *w)
@@ -254,8 +269,7 @@ static bool run_command(const struct words *w)
     char command[METHOD_SPEC];
     if (!viewer_command(w->v, command, sizeof command - 1)) return done(w, false);
     strcat(command, "\n"); // viewer_command leaves room
-    return w->v->desc->write_text(w->v->desc->user, w->rest, command) ||
-           wrong(w->script, "cannot write", w->rest);
+    return done(w, viewer_write_text(w->v, w->rest, command));
 }
 
 static bool run_errors(const struct words *w)
@@ -268,8 +282,7 @@ static bool run_errors(const struct words *w)
     snprintf(text, sizeof text,
              "{\"samples\": %d, \"flip\": %.9g, \"relmse\": %.9g, \"energy\": %.9g}\n",
              state.samples, state.flip, state.relative_error, state.energy);
-    return w->v->desc->write_text(w->v->desc->user, w->rest, text) ||
-           wrong(w->script, "cannot write", w->rest);
+    return done(w, viewer_write_text(w->v, w->rest, text));
 }
 
 static bool run_screenshot(const struct words *w)
@@ -295,7 +308,10 @@ static bool run(const struct words *w)
         w->script->waits = atoi(w->rest);
         return true;
     }
-    if (is(w, "settle")) return w->script->settles = true;
+    if (is(w, "settle")) {
+        if (w->queue->count > 0) w->script->waits = 1; // for events of the lines before
+        return w->script->settles = true;
+    }
     if (is(w, "mouse") || is(w, "scroll")) return run_mouse(w);
     if (is(w, "button")) return run_button(w);
     if (is(w, "key") || is(w, "press")) return run_key(w);
@@ -312,6 +328,10 @@ static bool run(const struct words *w)
     if (is(w, "camera")) return run_camera(w);
     if (is(w, "look")) return run_look(w);
     if (is(w, "light")) return run_light(w);
+    if (is(w, "undo")) return done(w, undo_back(v));
+    if (is(w, "redo")) return done(w, undo_forward(v));
+    if (is(w, "session")) return run_session(w);
+    if (is(w, "drop")) return run_drop(w);
     if (is(w, "save")) return done(w, viewer_write(v, w->rest));
     if (is(w, "screenshot")) return run_screenshot(w);
     if (is(w, "command")) return run_command(w);

@@ -16,6 +16,9 @@
 //   gi SPEC · split SPEC|reference|off · layer NAME · exposure EV|auto · scale F
 //   camera NAME|given · look X,Y,Z X,Y,Z
 //   light N X                    switches light N on (1) or off (0)
+//   undo · redo                  changes of scene and methods
+//   session write FILE|read FILE
+//   drop FILE                    drops a file on the window
 //   save FILE · screenshot FILE  the image (.png, .exr); the window (.png)
 //   errors FILE                  errors to the reference, as JSON
 //   command FILE                 the command that renders this view

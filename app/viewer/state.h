@@ -6,13 +6,14 @@
 #include "viewer/window/host_image.h"
 #include "look.h"
 #include "method.h"
+#include "path.h"
 #include "rendering.h"
 #include "truth.h"
 #include "viewer.h"
 
 // Frames after a change: until the image has converged, and until the reference begins again.
 enum { SETTLE_FRAMES = 24, REST_FRAMES = 2 };
-enum { VIEWER_LIGHTS = 128, VIEWER_PASSES = 96, VIEWER_HISTORY = 180, VIEWER_MESSAGE = 1024 };
+enum { VIEWER_PASSES = 96, VIEWER_HISTORY = 180, VIEWER_MESSAGE = 1024 };
 
 // The part of the window that shows the image, in pixels.
 struct region {
@@ -27,6 +28,8 @@ struct times {
     float frame_ms[VIEWER_HISTORY];
     uint64_t frame; // number of the newest frame that was added
 };
+
+struct undo;
 
 struct viewer {
     const struct viewer_desc *desc;
@@ -57,7 +60,9 @@ struct viewer {
     float scale;            // of the image
     bool playing;
     double time_s;
+    struct path path;
     struct edits edits;
+    struct undo *undo; // NULL: out of memory
 
     struct bake_job *bake_job;     // NULL: none runs
     struct truth *truth;           // NULL: no comparison with the reference
@@ -81,7 +86,8 @@ struct viewer {
     bool message_warns;
     char screenshot[1024]; // to be written with the next frame; "": none
     bool screenshot_failed;
-    char file[512];  // of the button "Save image"
+    char file[512]; // of the button "Save image"
+    char session[512];
     float budget_ms; // line in the plot of times
     int show_tab;    // to be shown by the next frame; -1: the user's
     struct script *script;

@@ -1,11 +1,14 @@
 // The viewer's life: opening, frames, closing.
+#include "changes.h"
 #include "command.h"
 #include "controls.h"
 #include "operations.h"
 #include "viewer/panels/panels.h"
 #include "running.h"
 #include "script.h"
+#include "session_file.h"
 #include "times.h"
+#include "undo.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -194,6 +197,7 @@ static bool step(struct viewer *v, float seconds)
     if (!shown) return true;
     interface_begin((int)v->swapchain.width, (int)v->swapchain.height, seconds);
     panels_draw(v);
+    undo_step(v, interface_is_held());
     return draw(v);
 }
 
@@ -276,7 +280,14 @@ static bool begin(struct viewer *v, char error[1024])
         snprintf(error, 1024, "%s", ag_context_last_error(desc->context));
         return false;
     }
+    const struct edits_moment at = viewer_moment(v);
+    edits_begin(&v->edits, &at);
+    v->undo = undo_open(v);
     viewer_set_camera(v, -1);
+    if (desc->session && !session_file_read(v, desc->session)) {
+        snprintf(error, 1024, "%s", v->message);
+        return false;
+    }
     v->script = desc->script ? script_open(desc->script, error) : NULL;
     return !desc->script || v->script;
 }
@@ -285,6 +296,7 @@ static void close(struct viewer *v)
 {
     if (v->gpu.device) vkDeviceWaitIdle(v->gpu.device);
     script_close(v->script);
+    undo_close(v->undo);
     running_end(v);
     interface_close();
     swapchain_close(&v->swapchain);
@@ -302,6 +314,10 @@ bool viewer_run(const struct viewer_desc *desc, char error[1024])
     v->split_at = 0.5f;
     v->budget_ms = 16.7f;
     snprintf(v->file, sizeof v->file, "afterglow.png");
+    snprintf(v->session, sizeof v->session, "%s",
+             desc->session ? desc->session : "afterglow-session.json");
+    v->path.seconds = 2.0f;
+    v->path.fps = 30;
     v->scene_camera = -1;
     v->given = desc->camera;
     v->auto_exposure = !desc->has_exposure;

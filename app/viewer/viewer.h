@@ -21,6 +21,7 @@ struct viewer_desc {
     int width, height;      // of the window
     float scale;            // of the image's width and height; 0: chosen by the device
     const char *split;      // a GI spec or "reference" to compare with; NULL: none
+    const char *session;    // a file to begin with, see session_file.h; NULL: none
     const char *script;     // a file, see script.h; NULL: none
     const char *screenshot; // a .png of the last frame's window; NULL: none
     int frames;             // ends after N; 0: when the window is closed
@@ -33,8 +34,8 @@ struct viewer_desc {
                       char error[512]);
     // On any thread: where the bake with that key is kept; false: nowhere, with a sentence.
     bool (*bake_path)(void *user, const char *key, char path[4096], char error[512]);
-    // Writes a text file, completely or not at all.
-    bool (*write_text)(void *user, const char *path, const char *text);
+    // Writes a text file, completely or not at all; false: with a sentence.
+    bool (*write_text)(void *user, const char *path, const char *text, char error[512]);
 };
 
 // False with a sentence in `error`: no display, no device, or a file that cannot be used.

@@ -428,6 +428,62 @@ TEST(errors_are_those_to_the_reference)
     check_fails(CORNELL LEAST, "errors errors.json\n", "script.txt:1: no errors are measured");
 }
 
+TEST(changes_are_undone_and_done_again)
+{
+    require_display();
+    view(CORNELL SMALL " --exposure 9 --gi lpv:dim=16",
+         "settle\nsave first.png\nlight 0 0\nwait 1\ngi none\nwait 1\ntab Light\nclick point\nwait "
+         "2\n"
+         "settle\nsave changed.png\nundo\nundo\nundo\nsettle\nsave undone.png\n"
+         "key control down\nkey shift down\npress z\npress z\npress z\nkey shift up\n"
+         "key control up\nsettle\nsave again.png\n");
+    check_equal("first.png", "undone.png");
+    check_equal("changed.png", "again.png");
+    CHECK(mean_of("changed.png") < 0.9 * mean_of("first.png"));
+    check_fails(CORNELL LEAST, "light 0 0\nundo\nundo\n", "there is nothing to undo");
+    check_fails(CORNELL LEAST, "redo\n", "there is nothing to do again");
+}
+
+static void check_session_is_refused(const char *text, const char *names)
+{
+    write_file("wrong.json", text, strlen(text));
+    check_fails(CORNELL LEAST " --session wrong.json", "wait 1\n", names);
+    check_fails(CORNELL LEAST, "session read wrong.json\n", names);
+}
+
+#define SESSION "{\"afterglow_session\": 1, \"scene\": \"@cornell:light=point\", "
+TEST(a_session_gives_the_view_again)
+{
+    require_display();
+    view(CORNELL SMALL " --gi lpv:dim=16",
+         "look 0.5,2,8 0,2,0\nlight 0 0\ntab Light\nclick spot\nexposure 9\nlayer irradiance\n"
+         "gi lpv:dim=16+vo\nsplit ambient\nsettle\nsave saved.png\nsession write a.json\n");
+    view(CORNELL SMALL " --session a.json", "settle\nsave loaded.png\nsession write b.json\n");
+    check_equal("saved.png", "loaded.png");
+    check_equal("a.json", "b.json");
+    view(CORNELL SMALL " --gi none", "session read a.json\nsettle\nsave read.png\n");
+    check_equal("saved.png", "read.png");
+}
+
+TEST(a_session_that_is_wrong_changes_nothing)
+{
+    require_display();
+    check_session_is_refused("{\"a\": ", "cannot use wrong.json: line 1: ");
+    check_session_is_refused("[]", "it is no session file");
+    check_session_is_refused("{\"afterglow_session\": 1, \"scene\": \"@atrium\"}",
+                             "it belongs to: afterglow view @atrium --session wrong.json");
+    check_session_is_refused(SESSION "\"gl\": 1}", "unknown member gl: did you mean gi?");
+    check_session_is_refused(SESSION "\"lights\": [{\"index\": 3}]}",
+                             "light: the scene has no light");
+    write_file("wrong.json",
+               SESSION "\"gi\": \"lvp\", \"lights\": [{\"index\": 0, \"on\": false}]}",
+               strlen(SESSION "\"gi\": \"lvp\", \"lights\": [{\"index\": 0, \"on\": false}]}"));
+    view(CORNELL SMALL, "settle\nsave first.png\ndrop wrong.json\nsettle\nsave last.png\n");
+    check_equal("first.png", "last.png");
+    check_fails(CORNELL SMALL, "settle\nsession read wrong.json\n", "did you mean lpv");
+    check_fails(CORNELL LEAST, "session write missing/a.json\n", "missing/a.json");
+}
+
 // The window goes while a bake runs: what is finished is kept for the next one.
 TEST(a_bake_is_cancelled_with_the_window_and_goes_on_later)
 {

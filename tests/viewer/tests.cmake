@@ -1,4 +1,5 @@
 # The viewer's parts that need no window; cli.view opens one.
 if(AFTERGLOW_VIEWER)
   ag_test(viewer/light_values LIBRARIES afterglow_viewer)
+  ag_test(viewer/path LIBRARIES afterglow_viewer)
 endif()

@@ -1,17 +1,9 @@
-// Helpers for jansson: exact numbers, names of any bytes, output.
+// JSON on standard output and in files.
 #pragma once
 
 #include "cli/terminal/messages.h"
+#include "shell/json_values.h"
 
-#include <jansson.h>
-
-// The shortest decimal that reads back as the same float: 0.1, not 0.10000000149. Not finite: null.
-json_t *json_float(float value);
-json_t *json_floats(const float *values, int count);
-// A double; null if not finite (PSNR of equal images).
-json_t *json_double(double value);
-// Names and paths may be any bytes: invalid UTF-8 becomes U+FFFD.
-json_t *json_text(const char *text);
 // Prints an indented document to standard output. Takes ownership; NULL: out of memory.
 enum status json_print(json_t *document);
 // Writes a file, complete or not at all. Keeps the document.

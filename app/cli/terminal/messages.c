@@ -20,6 +20,11 @@ static struct {
     double begun_s, line_s;       // when it began and when the last line was written
 } state;
 
+static _Thread_local struct {
+    char *out; // NULL: errors are printed
+    size_t size;
+} kept;
+
 void messages_init(bool quiet, bool verbose)
 {
     state.quiet = quiet;
@@ -69,11 +74,26 @@ __attribute__((format(printf, 1, 0))) static void line(const char *format, va_li
     funlockfile(stderr);
 }
 
+void messages_keep(char *out, size_t size)
+{
+    kept.out = out;
+    kept.size = size;
+}
+
+__attribute__((format(printf, 1, 0))) static void line_or_keep(const char *format,
+                                                               va_list arguments)
+{
+    if (kept.out)
+        vsnprintf(kept.out, kept.size, format, arguments);
+    else
+        line(format, arguments);
+}
+
 enum status fail(const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    line(format, arguments);
+    line_or_keep(format, arguments);
     va_end(arguments);
     return FAILED;
 }
@@ -82,7 +102,7 @@ enum status wrong_usage(const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    line(format, arguments);
+    line_or_keep(format, arguments);
     va_end(arguments);
     return WRONG_USAGE;
 }

@@ -27,6 +27,9 @@ struct printable {
     char s[4096];
 };
 struct printable printable(const char *text);
+// Errors of this thread go to `out` until the next call with NULL, the newest alone, without the
+// name of the program.
+void messages_keep(char *out, size_t size);
 // The callback of ag_context_desc. Errors are not printed here, but by fail_library.
 void log_message(void *user, enum ag_log_level level, const char *message);
 

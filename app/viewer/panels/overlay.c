@@ -23,10 +23,8 @@ static bool in_region(const struct viewer *v, float x, float y)
 
 void overlay_lights(const struct viewer *v)
 {
-    struct ag_scene_info info = { 0 };
     struct ag_light_info light;
-    ag_scene_get_info(v->desc->scene, v->desc->animation, v->time_s, &info);
-    for (int i = 0; i < info.lights && i < VIEWER_LIGHTS; i++) {
+    for (int i = 0; i < v->edits.lights.count; i++) {
         float x, y;
         char text[16];
         if (ag_scene_get_light(v->desc->scene, i, v->desc->animation, v->time_s, &light) != AG_OK ||

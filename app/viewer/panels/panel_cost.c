@@ -93,10 +93,10 @@ static void save_csv(struct viewer *v, const char *path)
         for (int k = 0; k < times->count; k++) fprintf(file, ",%.6g", (double)times->ms[k][at]);
     }
     fprintf(file, "\n");
-    if (fclose(file) == 0 && v->desc->write_text(v->desc->user, path, text))
-        viewer_say(v, "written: %s", path);
+    if (fclose(file) == 0)
+        viewer_write_text(v, path, text);
     else
-        viewer_warn(v, "cannot write %s", path);
+        viewer_warn(v, "cannot write %s: out of memory", path);
     free(text);
 }
 

@@ -2,6 +2,7 @@
 #include "panel.h"
 
 #include "overlay.h"
+#include "viewer/changes.h"
 #include "viewer/operations.h"
 
 #include <stdio.h>
@@ -21,8 +22,7 @@ static void edit_material(struct viewer *v, int index)
         if (m->emissive[i] < 0) m->emissive[i] = 0;
     if (info.base_color_map) ui_faint("base color multiplies a texture");
     if (!changed) return;
-    viewer_check(v, edits_set_material(&v->edits, v->desc->scene, index, m));
-    viewer_change(v);
+    viewer_set_material(v, index, m);
 }
 
 static void move_instance(struct viewer *v, int index, const struct ag_instance_info *instance)
@@ -30,8 +30,7 @@ static void move_instance(struct viewer *v, int index, const struct ag_instance_
     float world[16];
     memcpy(world, instance->world_from_mesh, sizeof world);
     if (!ui_numbers("position (m)", world + 12, 3, 0.01f * v->look.speed, "%.3f")) return;
-    viewer_check(v, edits_move(&v->edits, v->desc->scene, index, world));
-    viewer_change(v);
+    viewer_move_instance(v, index, world);
 }
 
 static void show_instance(struct viewer *v, int index)

@@ -2,6 +2,7 @@
 #include "panel.h"
 
 #include "overlay.h"
+#include "viewer/changes.h"
 #include "viewer/light_values.h"
 #include "viewer/operations.h"
 
@@ -10,7 +11,6 @@
 #include <string.h>
 
 static const float DEGREES = 57.29578f;
-static const char *const type_names[] = { "sun", "point", "spot" };
 static const char *const units[] = { "lux", "cd", "cd" };
 
 static float largest(const float rgb[3])
@@ -72,7 +72,7 @@ static void edit_light(struct viewer *v, int index)
     if (ag_scene_get_light(v->desc->scene, index, v->desc->animation, v->time_s, &info) != AG_OK)
         return;
     struct ag_light_desc *light = &info.light;
-    snprintf(label, sizeof label, "%d %s %.100s", index, type_names[light->type],
+    snprintf(label, sizeof label, "%d %s %.100s", index, viewer_light_types[light->type],
              info.name ? info.name : "");
     ui_push(index);
     bool changed = false;
@@ -87,9 +87,7 @@ static void edit_light(struct viewer *v, int index)
         if (light->type == AG_LIGHT_SPOT) changed |= edit_cone(light);
     }
     ui_pop();
-    if (!changed || !viewer_check(v, ag_scene_set_light(v->desc->scene, index, light))) return;
-    edits_take_lights(&v->edits, v->desc->scene, v->desc->animation, v->time_s);
-    viewer_change(v);
+    if (changed) viewer_set_light(v, index, light);
 }
 
 // Points and spots are where the camera is; a sun is high.
@@ -105,9 +103,7 @@ static void add_light(struct viewer *v, enum ag_light_type type)
         light.direction[2] = 0.3f;
     }
     for (int i = 0; i < 3; i++) light.intensity[i] = type == AG_LIGHT_SUN ? 5e4f : 1000.0f;
-    if (!viewer_check(v, ag_scene_add_light(v->desc->scene, &light, NULL))) return;
-    edits_take_lights(&v->edits, v->desc->scene, v->desc->animation, v->time_s);
-    viewer_change(v);
+    viewer_add_light(v, &light);
 }
 
 static void edit_sky(struct viewer *v)
@@ -116,22 +112,17 @@ static void edit_sky(struct viewer *v)
     if (ag_scene_get_info(v->desc->scene, v->desc->animation, v->time_s, &info) != AG_OK ||
         !ui_section("Sky", false))
         return;
-    if (!edit_intensity(info.sky, "cd/m²", 5e4f)) return;
-    if (!viewer_check(v, ag_scene_set_sky(v->desc->scene, info.sky))) return;
-    edits_take_lights(&v->edits, v->desc->scene, v->desc->animation, v->time_s);
-    viewer_change(v);
+    if (edit_intensity(info.sky, "cd/m²", 5e4f)) viewer_set_sky(v, info.sky);
 }
 
 void panel_light(struct viewer *v)
 {
-    struct ag_scene_info info = { 0 };
-    ag_scene_get_info(v->desc->scene, v->desc->animation, v->time_s, &info);
     overlay_lights(v);
     ui_text("add");
     for (int i = 0; i < 3; i++) {
         ui_same_line();
-        if (ui_small_button(type_names[i])) add_light(v, (enum ag_light_type)i);
+        if (ui_small_button(viewer_light_types[i])) add_light(v, (enum ag_light_type)i);
     }
-    for (int i = 0; i < info.lights && i < VIEWER_LIGHTS; i++) edit_light(v, i);
+    for (int i = 0; i < v->edits.lights.count; i++) edit_light(v, i);
     edit_sky(v);
 }

@@ -2,6 +2,7 @@
 #include "panel.h"
 #include "viewer/command.h"
 #include "viewer/operations.h"
+#include "viewer/session_file.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -79,6 +80,16 @@ static void edit_time(struct viewer *v)
     }
 }
 
+static void keep_session(struct viewer *v)
+{
+    ui_line("session", v->session, sizeof v->session);
+    ui_tooltip(
+        "All that was changed and what is shown, as JSON. A file dropped on the window is read.");
+    if (ui_button("Save session")) session_file_write(v, v->session);
+    ui_same_line();
+    if (ui_button("Load session")) session_file_read(v, v->session);
+}
+
 static void take_away(struct viewer *v)
 {
     ui_line("file", v->file, sizeof v->file);
@@ -112,4 +123,5 @@ void panel_view(struct viewer *v)
     }
     edit_time(v);
     if (ui_section("Take away", true)) take_away(v);
+    if (ui_section("Session", true)) keep_session(v);
 }

@@ -4,6 +4,7 @@
 #include "viewer/operations.h"
 #include "panel.h"
 #include "viewer/running.h"
+#include "viewer/undo.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -49,6 +50,36 @@ static void draw_split_labels(struct viewer *v)
     ui_label(x + 6.0f * scale, r.y0 + 3.0f * scale, 0xffffffff, right);
 }
 
+static bool step_button(const char *label, const char *what, const char *key)
+{
+    char text[128];
+    ui_disable(!what);
+    const bool pressed = ui_small_button(label);
+    ui_enable();
+    snprintf(text, sizeof text, "%s (%s)", what ? what : "nothing", key);
+    ui_tooltip(text);
+    return pressed && what;
+}
+
+static void draw_undo(struct viewer *v)
+{
+    if (step_button("Undo", undo_previous(v->undo), "control Z")) undo_back(v);
+    ui_same_line();
+    if (step_button("Redo", undo_next(v->undo), "control shift Z")) undo_forward(v);
+}
+
+static void draw_tabs(struct viewer *v)
+{
+    if (!ui_tabs_begin("tabs")) return;
+    for (int i = 0; i < (int)(sizeof tabs / sizeof *tabs); i++) {
+        if (!ui_tab_begin(tabs[i].label, v->show_tab == i)) continue;
+        tabs[i].draw(v);
+        ui_tab_end();
+    }
+    ui_tabs_end();
+    v->show_tab = -1;
+}
+
 void panels_draw(struct viewer *v)
 {
     const struct region r = viewer_region(v);
@@ -56,15 +87,9 @@ void panels_draw(struct viewer *v)
     draw_split_labels(v);
     draw_status(v);
     if (ui_panel_begin("panel", r.x1, 0, (float)v->swapchain.width - r.x1,
-                       (float)v->swapchain.height) &&
-        ui_tabs_begin("tabs")) {
-        for (int i = 0; i < (int)(sizeof tabs / sizeof *tabs); i++) {
-            if (!ui_tab_begin(tabs[i].label, v->show_tab == i)) continue;
-            tabs[i].draw(v);
-            ui_tab_end();
-        }
-        ui_tabs_end();
-        v->show_tab = -1;
+                       (float)v->swapchain.height)) {
+        draw_undo(v);
+        draw_tabs(v);
     }
     ui_panel_end();
 }

@@ -279,6 +279,11 @@ bool interface_wants_keys(void)
     return ImGui::GetIO().WantTextInput;
 }
 
+bool interface_is_held(void)
+{
+    return ImGui::IsAnyItemActive();
+}
+
 bool interface_find(const char *label, float *x, float *y)
 {
     for (int i = 0; i < element_count; i++) {

@@ -28,6 +28,7 @@ void interface_end(VkCommandBuffer commands);
 void interface_skip(void);
 bool interface_wants_mouse(void);
 bool interface_wants_keys(void);
+bool interface_is_held(void); // an element is being changed: its mouse button is down
 // The centre of an element of the last frame by its label, for scripts; false: it is not shown.
 bool interface_find(const char *label, float *x, float *y);
 

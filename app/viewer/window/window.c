@@ -59,12 +59,19 @@ static int modifier_bits(int modifiers)
            (modifiers & GLFW_MOD_ALT ? MODIFIER_ALT : 0);
 }
 
+// Keys that move are where they are on the keyboard; with control they are the letter on the key.
+static int key_code(int key, int scan_code, int modifiers)
+{
+    const char *name = modifiers & GLFW_MOD_CONTROL ? glfwGetKeyName(key, scan_code) : NULL;
+    const bool letter = name && name[0] >= 'a' && name[0] <= 'z' && name[1] == 0;
+    return letter ? GLFW_KEY_A + name[0] - 'a' : key;
+}
+
 static void on_key(GLFWwindow *handle, int key, int scan_code, int action, int modifiers)
 {
-    (void)scan_code;
     if (key == GLFW_KEY_UNKNOWN) return;
     push(handle, &(struct event){ .kind = EVENT_KEY,
-                                  .code = key,
+                                  .code = key_code(key, scan_code, modifiers),
                                   .down = action != GLFW_RELEASE,
                                   .modifiers = modifier_bits(modifiers) });
 }

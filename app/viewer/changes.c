@@ -1,0 +1,48 @@
+#include "changes.h"
+
+#include "operations.h"
+#include "undo.h"
+
+struct edits_moment viewer_moment(const struct viewer *v)
+{
+    return (struct edits_moment){ v->desc->scene, v->desc->animation, v->time_s };
+}
+
+static bool finish(struct viewer *v, enum ag_result result, const char *what, int index)
+{
+    if (result == AG_ERROR_MEMORY)
+        viewer_warn(v, "cannot change %s %d: as many others are changed already", what, index);
+    else if (viewer_check(v, result)) {
+        viewer_change(v);
+        undo_note(v, what, index);
+    }
+    return result == AG_OK;
+}
+
+bool viewer_move_instance(struct viewer *v, int instance, const float world_from_mesh[16])
+{
+    const struct edits_moment at = viewer_moment(v);
+    return finish(v, edits_move(&v->edits, &at, instance, world_from_mesh), "instance", instance);
+}
+
+bool viewer_set_material(struct viewer *v, int material, const struct ag_material_desc *desc)
+{
+    const struct edits_moment at = viewer_moment(v);
+    return finish(v, edits_set_material(&v->edits, &at, material, desc), "material", material);
+}
+
+bool viewer_set_light(struct viewer *v, int light, const struct ag_light_desc *desc)
+{
+    return finish(v, edits_set_light(&v->edits, v->desc->scene, light, desc), "light", light);
+}
+
+bool viewer_add_light(struct viewer *v, const struct ag_light_desc *desc)
+{
+    const int light = v->edits.lights.count;
+    return finish(v, edits_add_light(&v->edits, v->desc->scene, desc), "light", light);
+}
+
+bool viewer_set_sky(struct viewer *v, const float radiance[3])
+{
+    return finish(v, edits_set_sky(&v->edits, v->desc->scene, radiance), "sky", -1);
+}

@@ -1,0 +1,156 @@
+#include "undo.h"
+
+#include "operations.h"
+#include "running.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STEPS = 64, WHAT_SIZE = 48 };
+
+struct state {
+    char what[WHAT_SIZE]; // changed since the step before
+    struct edits edits;
+    char gi[METHOD_SPEC], other_gi[METHOD_SPEC]; // of the right part; "": none
+};
+
+struct undo {
+    struct state *steps[STEPS]; // the oldest first
+    int count, at;              // at: index of the present one
+    char what[WHAT_SIZE];       // of changes that are no step yet; "": none
+    bool restoring;
+};
+
+static struct state *take(const struct viewer *v, const char *what)
+{
+    struct state *state = malloc(sizeof *state);
+    if (!state) return NULL;
+    snprintf(state->what, sizeof state->what, "%s", what);
+    state->edits = v->edits;
+    snprintf(state->gi, sizeof state->gi, "%s", v->gi);
+    snprintf(state->other_gi, sizeof state->other_gi, "%s", v->split ? v->other_gi : "");
+    return state;
+}
+
+struct undo *undo_open(const struct viewer *v)
+{
+    struct undo *undo = calloc(1, sizeof *undo);
+    if (undo) undo->steps[0] = take(v, "");
+    if (undo && undo->steps[0]) {
+        undo->count = 1;
+        return undo;
+    }
+    free(undo);
+    return NULL;
+}
+
+void undo_close(struct undo *undo)
+{
+    for (int i = 0; undo && i < undo->count; i++) free(undo->steps[i]);
+    free(undo);
+}
+
+void undo_note(struct viewer *v, const char *what, int index)
+{
+    struct undo *undo = v->undo;
+    if (!undo || undo->restoring) return;
+    if (index < 0)
+        snprintf(undo->what, sizeof undo->what, "%s", what);
+    else
+        snprintf(undo->what, sizeof undo->what, "%s %d", what, index);
+}
+
+// Steps that were undone are forgotten; the oldest makes room.
+static void push(struct undo *undo, struct state *state)
+{
+    while (undo->count > undo->at + 1) free(undo->steps[--undo->count]);
+    if (undo->count == STEPS) {
+        free(undo->steps[0]);
+        memmove(undo->steps, undo->steps + 1, (STEPS - 1) * sizeof *undo->steps);
+        undo->count--;
+    }
+    undo->at = undo->count;
+    undo->steps[undo->count++] = state;
+}
+
+static bool runs(const struct viewer *v, const struct state *state)
+{
+    return strcmp(v->gi, state->gi) == 0 &&
+           strcmp(v->split ? v->other_gi : "", state->other_gi) == 0;
+}
+
+void undo_step(struct viewer *v, bool held)
+{
+    struct undo *undo = v->undo;
+    if (!undo || !undo->what[0] || held) return;
+    const bool method = strcmp(undo->what, UNDO_METHOD) == 0;
+    if (method && runs(v, undo->steps[undo->at])) { // after a bake, for a step that was restored
+        undo->what[0] = 0;
+        return;
+    }
+    struct state *state = take(v, undo->what);
+    undo->what[0] = 0;
+    if (state)
+        push(undo, state);
+    else
+        viewer_warn(v, "the last change cannot be undone: out of memory");
+}
+
+const char *undo_previous(const struct undo *undo)
+{
+    if (!undo) return NULL;
+    if (undo->what[0]) return undo->what;
+    return undo->at > 0 ? undo->steps[undo->at]->what : NULL;
+}
+
+const char *undo_next(const struct undo *undo)
+{
+    const bool exists = undo && !undo->what[0] && undo->at + 1 < undo->count;
+    return exists ? undo->steps[undo->at + 1]->what : NULL;
+}
+
+static bool restore_methods(struct viewer *v, const struct state *state)
+{
+    if (strcmp(v->gi, state->gi) != 0 && !viewer_set_gi(v, state->gi)) return false;
+    if (strcmp(v->split ? v->other_gi : "", state->other_gi) == 0) return true;
+    return viewer_set_split(v, state->other_gi[0] ? state->other_gi : NULL);
+}
+
+static bool go_to(struct viewer *v, int step)
+{
+    struct undo *undo = v->undo;
+    const struct state *state = undo->steps[step];
+    undo->restoring = true;
+    const bool done = viewer_check(v, edits_restore(&v->edits, &state->edits, v->desc->scene)) &&
+                      restore_methods(v, state);
+    undo->restoring = false;
+    undo->at = step;
+    viewer_change(v);
+    return done;
+}
+
+bool undo_back(struct viewer *v)
+{
+    undo_step(v, false);
+    const char *what = undo_previous(v->undo);
+    if (!what) {
+        viewer_say(v, "there is nothing to undo");
+        return false;
+    }
+    const bool done = go_to(v, v->undo->at - 1);
+    if (done) viewer_say(v, "undone: %s", what);
+    return done;
+}
+
+bool undo_forward(struct viewer *v)
+{
+    const char *what = undo_next(v->undo);
+    if (!what) {
+        viewer_say(v, "there is nothing to do again");
+        return false;
+    }
+    const bool done = go_to(v, v->undo->at + 1);
+    if (done) viewer_say(v, "done again: %s", what);
+    return done;
+}
