@@ -37,6 +37,8 @@ static void move_mouse(struct viewer *v, float x, float y)
     const struct region r = viewer_region(v);
     v->mouse_x = x;
     v->mouse_y = y;
+    if (v->gizmo.held) gizmo_drag(v);
+    if (in_image(v)) gizmo_hover(v);
     if (v->dragging_split) v->split_at = fminf(fmaxf((x - r.x0) / (r.x1 - r.x0), 0.0f), 1.0f);
     if (v->inspecting && in_image(v) && v->dirty < FRAMES_OF_A_PICK) v->dirty = FRAMES_OF_A_PICK;
     if (!v->turning && !v->orbiting) return;
@@ -63,6 +65,7 @@ static void press(struct viewer *v, int button, bool down)
         if (button == RIGHT && v->turning) window_capture_mouse(v->window, v->turning = false);
         if (button == MIDDLE) v->orbiting = false;
         if (button == LEFT) v->dragging_split = v->orbiting = false;
+        if (button == LEFT) gizmo_release(v);
         return;
     }
     if (!in_image(v)) return;
@@ -73,7 +76,7 @@ static void press(struct viewer *v, int button, bool down)
         v->dragging_split = true;
     else if (v->keys[GLFW_KEY_LEFT_ALT])
         v->orbiting = true;
-    else
+    else if (!gizmo_press(v))
         pick(v);
 }
 

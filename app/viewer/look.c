@@ -122,3 +122,16 @@ bool look_project(const struct look *look, float aspect, const float point[3], f
     out[1] = -y / (z * half);
     return true;
 }
+
+void look_ray(const struct look *look, float aspect, const float at[2], float out[3])
+{
+    float right[3], forward[3], up[3];
+    right_of(look, right);
+    look_forward(look, forward);
+    up_of(right, forward, up);
+    const float half = tanf(0.5f * look->fov_deg * PI / 180.0f);
+    for (int i = 0; i < 3; i++)
+        out[i] = forward[i] + at[0] * half * aspect * right[i] - at[1] * half * up[i];
+    const float length = length_of(out);
+    for (int i = 0; i < 3; i++) out[i] /= length;
+}

@@ -23,5 +23,7 @@ void look_orbit(struct look *look, float yaw, float pitch); // around the target
 void look_zoom(struct look *look, float steps);             // towards the target
 // Looks at a point from a distance at which a sphere of this radius fills most of the image.
 void look_focus(struct look *look, const float centre[3], float radius);
+// The direction, a unit vector, that projects to a place, −1…1 from the left and the top.
+void look_ray(const struct look *look, float aspect, const float at[2], float out[3]);
 // Projects a point to −1…1 from the left and the top; false: it is behind the camera.
 bool look_project(const struct look *look, float aspect, const float point[3], float out[2]);

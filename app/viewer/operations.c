@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { SIDEBAR_UNITS = 360, LEAST_SIZE = 16 };
 static const double MESSAGE_S = 8.0;
@@ -77,6 +78,30 @@ struct region viewer_region(const struct viewer *v)
     const float sidebar = SIDEBAR_UNITS * window_scale(v->window);
     const float width = (float)v->swapchain.width, height = (float)v->swapchain.height;
     return (struct region){ 0, 0, fmaxf(width - sidebar, 0.25f * width), height };
+}
+
+static float aspect_of(const struct region *r)
+{
+    return (r->x1 - r->x0) / (r->y1 - r->y0);
+}
+
+bool viewer_project(const struct viewer *v, const float point[3], float *x, float *y)
+{
+    const struct region r = viewer_region(v);
+    float at[2];
+    if (!look_project(&v->look, aspect_of(&r), point, at)) return false;
+    *x = r.x0 + 0.5f * (at[0] + 1.0f) * (r.x1 - r.x0);
+    *y = r.y0 + 0.5f * (at[1] + 1.0f) * (r.y1 - r.y0);
+    return true;
+}
+
+void viewer_ray(const struct viewer *v, float x, float y, float eye[3], float direction[3])
+{
+    const struct region r = viewer_region(v);
+    const float at[2] = { 2.0f * (x - r.x0) / (r.x1 - r.x0) - 1.0f,
+                          2.0f * (y - r.y0) / (r.y1 - r.y0) - 1.0f };
+    memcpy(eye, v->look.eye, sizeof v->look.eye);
+    look_ray(&v->look, aspect_of(&r), at, direction);
 }
 
 void viewer_image_size(const struct viewer *v, int *width, int *height)

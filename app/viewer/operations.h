@@ -25,5 +25,9 @@ void viewer_set_camera(struct viewer *v, int scene_camera); // -1: that of the c
 struct region viewer_region(const struct viewer *v);
 // Options of the command line that load and light the scene so, a blank before each word.
 void viewer_scene_options(const struct viewer *v, char *out, size_t size);
+// The pixel of the window at which a point of the scene appears; false: it is behind the camera.
+bool viewer_project(const struct viewer *v, const float point[3], float *x, float *y);
+// The ray of a pixel of the window, from the eye; `direction` is a unit vector.
+void viewer_ray(const struct viewer *v, float x, float y, float eye[3], float direction[3]);
 // The size in pixels that the image is to have.
 void viewer_image_size(const struct viewer *v, int *width, int *height);

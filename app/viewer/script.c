@@ -19,11 +19,13 @@ struct script {
     FILE *file;
     const char *path;
     int line;
-    int waits;    // further frames
-    bool settles; // until the image is complete
-    int samples;  // until the reference has N; 0: none
+    char text[LINE_SIZE]; // the next line; "": to be read
+    int waits;            // further frames
+    bool settles;         // until the image is complete
+    int samples;          // until the reference has N; 0: none
     float click_x, click_y;
-    int click; // steps of a click that are left: down, up
+    int click;            // steps of a click that are left: down, up
+    float drag_x, drag_y; // of the mouse in between
     uint64_t random;
     int random_left;
     char error[1024]; // "": none
@@ -140,7 +142,39 @@ static bool run_click(const struct words *w)
     event_push(w->queue,
                &(struct event){ .kind = EVENT_MOUSE, .x = script->click_x, .y = script->click_y });
     script->click = 2;
+    script->drag_x = script->drag_y = 0;
     return true;
+}
+
+static bool run_choose(const struct words *w)
+{
+    int index = -1;
+    if (sscanf(w->rest, "light %d", &index) == 1)
+        w->v->gizmo.light = index;
+    else if (sscanf(w->rest, "instance %d", &index) == 1)
+        w->v->picked_instance = index;
+    else
+        return wrong(w->script, "choose takes light N or instance N:", w->rest);
+    return true;
+}
+
+static bool run_drag(const struct words *w)
+{
+    struct script *script = w->script;
+    char name[8];
+    if (sscanf(w->rest, "%7s %f %f", name, &script->drag_x, &script->drag_y) != 3)
+        return wrong(script, "drag takes x|y|z|turn DX DY:", w->rest);
+    for (int i = 0; i < HANDLE_COUNT; i++)
+        if (strcmp(name, gizmo_handles[i]) == 0 &&
+            gizmo_find(w->v, (enum gizmo_handle)i, &script->click_x, &script->click_y)) {
+            event_push(
+                w->queue,
+                &(struct event){ .kind = EVENT_MOUSE, .x = script->click_x, .y = script->click_y });
+            script->waits = 1; // the panels let go of the mouse
+            script->click = 2;
+            return true;
+        }
+    return wrong(script, "no handle is shown with the name", name);
 }
 
 static bool run_tab(const struct words *w)
@@ -308,10 +342,7 @@ static bool run(const struct words *w)
         w->script->waits = atoi(w->rest);
         return true;
     }
-    if (is(w, "settle")) {
-        if (w->queue->count > 0) w->script->waits = 1; // for events of the lines before
-        return w->script->settles = true;
-    }
+    if (is(w, "settle")) return w->script->settles = true;
     if (is(w, "mouse") || is(w, "scroll")) return run_mouse(w);
     if (is(w, "button")) return run_button(w);
     if (is(w, "key") || is(w, "press")) return run_key(w);
@@ -331,6 +362,8 @@ static bool run(const struct words *w)
     if (is(w, "undo")) return done(w, undo_back(v));
     if (is(w, "redo")) return done(w, undo_forward(v));
     if (is(w, "session")) return run_session(w);
+    if (is(w, "choose")) return run_choose(w);
+    if (is(w, "drag")) return run_drag(w);
     if (is(w, "drop")) return run_drop(w);
     if (is(w, "save")) return done(w, viewer_write(v, w->rest));
     if (is(w, "screenshot")) return run_screenshot(w);
@@ -420,7 +453,15 @@ static bool lacks_samples(struct script *script, struct viewer *v)
 // A line goes on for further frames.
 static bool goes_on(struct script *script, struct viewer *v, struct event_queue *queue)
 {
+    if (script->waits > 0) {
+        script->waits--;
+        return true;
+    }
     if (script->click > 0) {
+        if (script->click == 1)
+            event_push(queue, &(struct event){ .kind = EVENT_MOUSE,
+                                               .x = script->click_x + script->drag_x,
+                                               .y = script->click_y + script->drag_y });
         event_push(queue, &(struct event){ .kind = EVENT_BUTTON, .down = script->click == 2 });
         script->click--;
         return true;
@@ -430,22 +471,31 @@ static bool goes_on(struct script *script, struct viewer *v, struct event_queue 
         push_random(script, v, queue);
         return true;
     }
-    if (script->waits > 0) {
-        script->waits--;
-        return true;
-    }
     if (v->screenshot[0]) return true; // the window had no image
     script->settles = script->settles && (v->dirty > 0 || bakes_running(v));
     return script->settles || lacks_samples(script, v);
 }
 
+// Other commands wait for the events of the lines before.
+static bool is_event(const char *line)
+{
+    static const char *const names[] = { "mouse", "button", "scroll", "key", "press", "text" };
+    line += strspn(line, " \t");
+    for (int i = 0; i < (int)(sizeof names / sizeof *names); i++) {
+        const size_t length = strlen(names[i]);
+        if (strncmp(line, names[i], length) == 0 && strchr(" \t", line[length])) return true;
+    }
+    return false;
+}
+
 bool script_step(struct script *script, struct viewer *v, struct event_queue *queue)
 {
-    char line[LINE_SIZE];
     if (v->screenshot_failed) return wrong(script, v->message, "");
     while (!goes_on(script, v, queue)) {
-        if (!read_line(script, line)) return false;
-        if (!run_line(script, v, queue, line)) return false;
+        if (!script->text[0] && !read_line(script, script->text)) return false;
+        if (queue->count > 0 && !is_event(script->text)) return true;
+        if (!run_line(script, v, queue, script->text)) return false;
+        script->text[0] = 0;
     }
     return true;
 }

@@ -16,6 +16,8 @@
 //   gi SPEC · split SPEC|reference|off · layer NAME · exposure EV|auto · scale F
 //   camera NAME|given · look X,Y,Z X,Y,Z
 //   light N X                    switches light N on (1) or off (0)
+//   choose light N|instance N    it gets handles in the tabs Light and Inspect
+//   drag x|y|z|turn DX DY        drags a handle by pixels
 //   undo · redo                  changes of scene and methods
 //   session write FILE|read FILE
 //   drop FILE                    drops a file on the window

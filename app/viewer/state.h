@@ -3,6 +3,7 @@
 
 #include "viewer/window/interface.h"
 #include "edits.h"
+#include "gizmo.h"
 #include "viewer/window/host_image.h"
 #include "look.h"
 #include "method.h"
@@ -71,6 +72,8 @@ struct viewer {
     bool changed;                  // since the reference began
     bool offered;                  // the reference has the image of this method
 
+    bool lighting; // the tab Light is shown
+    struct gizmo gizmo;
     bool inspecting;     // the surface under the mouse is shown
     bool picking;        // a click waits for its frame
     int pick_at[2];      // pixels of the rendering

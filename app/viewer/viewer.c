@@ -197,7 +197,7 @@ static bool step(struct viewer *v, float seconds)
     if (!shown) return true;
     interface_begin((int)v->swapchain.width, (int)v->swapchain.height, seconds);
     panels_draw(v);
-    undo_step(v, interface_is_held());
+    undo_step(v, interface_is_held() || v->gizmo.held);
     return draw(v);
 }
 
@@ -322,7 +322,8 @@ bool viewer_run(const struct viewer_desc *desc, char error[1024])
     v->given = desc->camera;
     v->auto_exposure = !desc->has_exposure;
     v->exposure_ev = desc->exposure_ev;
-    v->picked_instance = v->show_tab = -1;
+    v->picked_instance = v->show_tab = v->gizmo.light = -1;
+    v->gizmo.handle = HANDLE_NONE;
     v->time_s = desc->time_s;
     bool done = open(v, error) && begin(v, error) && loop(v, error);
     if (done && v->script && script_failed(v->script, error)) done = false;

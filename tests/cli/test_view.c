@@ -444,6 +444,47 @@ TEST(changes_are_undone_and_done_again)
     check_fails(CORNELL LEAST, "redo\n", "there is nothing to do again");
 }
 
+// The object with that index of a session's list.
+static json_t *entry(json_t *session, const char *list, int index)
+{
+    size_t at;
+    json_t *object;
+    json_array_foreach(json_object_get(session, list), at, object)
+    {
+        if (json_integer_value(json_object_get(object, "index")) == index) return object;
+    }
+    fail_msg("%s: no %d", list, index);
+    return NULL;
+}
+
+static double component(const json_t *object, const char *name, size_t i)
+{
+    return json_number_value(json_array_get(json_object_get(object, name), i));
+}
+
+// To the right in the image is +x; a sun's light comes from its handle.
+TEST(handles_move_and_turn)
+{
+    require_display();
+    view(CORNELL SMALL,
+         "look 0,2,9 0,2,0\nsettle\nsave first.png\ntab Light\nchoose light 0\nwait 1\n"
+         "drag x 40 0\nclick sun\nwait 1\ndrag turn 40 0\nsession write a.json\n"
+         "tab Inspect\nchoose instance 0\nwait 1\ndrag y 0 -30\nsettle\n"
+         "save moved.png\nsession write b.json\nundo\nundo\nundo\nundo\nsettle\n"
+         "save last.png\n");
+    json_t *a = json_load_file("a.json", 0, NULL), *b = json_load_file("b.json", 0, NULL);
+    assert_true(a && b);
+    CHECK(component(entry(a, "lights", 0), "position", 0) > 0.2);
+    CHECK_NEAR(component(entry(a, "lights", 0), "position", 1), 5.188, 0.01);
+    CHECK(component(entry(a, "lights", 1), "direction", 0) < 0.1);
+    CHECK(json_array_size(json_object_get(a, "instances")) == 0);
+    CHECK(component(entry(b, "instances", 0), "world_from_mesh", 13) > 0.1);
+    json_decref(a);
+    json_decref(b);
+    check_equal("first.png", "last.png");
+    if (files_are_equal("first.png", "moved.png")) fail_msg("nothing has moved");
+}
+
 static void check_session_is_refused(const char *text, const char *names)
 {
     write_file("wrong.json", text, strlen(text));

@@ -4,17 +4,6 @@
 
 #include <stdio.h>
 
-// The pixel of the window at which a point appears; false: it is behind the camera.
-static bool place(const struct viewer *v, const float point[3], float *x, float *y)
-{
-    const struct region r = viewer_region(v);
-    float at[2];
-    if (!look_project(&v->look, (r.x1 - r.x0) / (r.y1 - r.y0), point, at)) return false;
-    *x = r.x0 + 0.5f * (at[0] + 1.0f) * (r.x1 - r.x0);
-    *y = r.y0 + 0.5f * (at[1] + 1.0f) * (r.y1 - r.y0);
-    return true;
-}
-
 static bool in_region(const struct viewer *v, float x, float y)
 {
     const struct region r = viewer_region(v);
@@ -28,7 +17,7 @@ void overlay_lights(const struct viewer *v)
         float x, y;
         char text[16];
         if (ag_scene_get_light(v->desc->scene, i, v->desc->animation, v->time_s, &light) != AG_OK ||
-            light.light.type == AG_LIGHT_SUN || !place(v, light.light.position, &x, &y) ||
+            light.light.type == AG_LIGHT_SUN || !viewer_project(v, light.light.position, &x, &y) ||
             !in_region(v, x, y))
             continue;
         snprintf(text, sizeof text, "%d", i);
@@ -62,7 +51,7 @@ void overlay_selection(const struct viewer *v)
             if (i & axis) continue;
             corner(&mesh, instance.world_from_mesh, i, from);
             corner(&mesh, instance.world_from_mesh, i | axis, to);
-            if (place(v, from, &x0, &y0) && place(v, to, &x1, &y1))
+            if (viewer_project(v, from, &x0, &y0) && viewer_project(v, to, &x1, &y1))
                 ui_stroke(x0, y0, x1, y1, 0xffc040c0, 1.5f);
         }
 }

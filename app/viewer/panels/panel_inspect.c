@@ -53,6 +53,7 @@ void panel_inspect(struct viewer *v)
     struct ag_pick pick;
     v->inspecting = true;
     overlay_selection(v);
+    gizmo_draw(v);
     if (ag_renderer_picked(v->main.renderer, &pick) == AG_OK && pick.frame > 0 &&
         pick.instance >= 0)
         ui_faint("under the mouse: instance %d, triangle %d", pick.instance, pick.triangle);

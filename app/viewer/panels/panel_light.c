@@ -87,7 +87,7 @@ static void edit_light(struct viewer *v, int index)
         if (light->type == AG_LIGHT_SPOT) changed |= edit_cone(light);
     }
     ui_pop();
-    if (changed) viewer_set_light(v, index, light);
+    if (changed && viewer_set_light(v, index, light)) v->gizmo.light = index;
 }
 
 // Points and spots are where the camera is; a sun is high.
@@ -103,7 +103,7 @@ static void add_light(struct viewer *v, enum ag_light_type type)
         light.direction[2] = 0.3f;
     }
     for (int i = 0; i < 3; i++) light.intensity[i] = type == AG_LIGHT_SUN ? 5e4f : 1000.0f;
-    viewer_add_light(v, &light);
+    if (viewer_add_light(v, &light)) v->gizmo.light = v->edits.lights.count - 1;
 }
 
 static void edit_sky(struct viewer *v)
@@ -117,7 +117,9 @@ static void edit_sky(struct viewer *v)
 
 void panel_light(struct viewer *v)
 {
+    v->lighting = true;
     overlay_lights(v);
+    gizmo_draw(v);
     ui_text("add");
     for (int i = 0; i < 3; i++) {
         ui_same_line();

@@ -83,7 +83,7 @@ static void draw_tabs(struct viewer *v)
 void panels_draw(struct viewer *v)
 {
     const struct region r = viewer_region(v);
-    v->inspecting = false;
+    v->inspecting = v->lighting = false;
     draw_split_labels(v);
     draw_status(v);
     if (ui_panel_begin("panel", r.x1, 0, (float)v->swapchain.width - r.x1,
