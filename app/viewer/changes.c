@@ -1,7 +1,6 @@
 #include "changes.h"
 
 #include "operations.h"
-#include "undo.h"
 
 struct edits_moment viewer_moment(const struct viewer *v)
 {
@@ -14,7 +13,7 @@ static bool finish(struct viewer *v, enum ag_result result, const char *what, in
         viewer_warn(v, "cannot change %s %d: as many others are changed already", what, index);
     else if (viewer_check(v, result)) {
         viewer_change(v);
-        undo_note(v, what, index);
+        viewer_note(v, what, index);
     }
     return result == AG_OK;
 }

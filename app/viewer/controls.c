@@ -2,9 +2,9 @@
 #include "controls.h"
 
 #include "command.h"
+#include "opening.h"
 #include "operations.h"
 #include "running.h"
-#include "session_file.h"
 #include "undo.h"
 
 #include <GLFW/glfw3.h>
@@ -132,19 +132,11 @@ static void press_key(struct viewer *v, int key, bool down)
         press_control_key(v, key);
         return;
     }
+    if (key == GLFW_KEY_ESCAPE) record_end(v);
     if (key == GLFW_KEY_F) focus(v);
     if (key == GLFW_KEY_HOME) viewer_set_camera(v, v->scene_camera);
     if (key == GLFW_KEY_SPACE) v->playing = !v->playing;
     if (key == GLFW_KEY_F12) viewer_write(v, "afterglow.png");
-}
-
-static void drop(struct viewer *v, const char *path)
-{
-    const char *end = strrchr(path, '.');
-    if (end && strcmp(end, ".json") == 0)
-        session_file_read(v, path);
-    else
-        viewer_warn(v, "begin again to open %s", path);
 }
 
 void controls_event(struct viewer *v, const struct event *event)
@@ -173,7 +165,7 @@ void controls_event(struct viewer *v, const struct event *event)
         if (v->turning) window_capture_mouse(v->window, v->turning = false);
         break;
     case EVENT_DROP:
-        drop(v, event->text);
+        viewer_open(v, event->text);
         break;
     case EVENT_TEXT:
         break;

@@ -183,7 +183,8 @@ static bool place_on_axis(const struct viewer *v, const float centre[3], enum gi
     return true;
 }
 
-// Where the ray under the mouse meets the sphere of the fourth handle, on the side of `before`.
+// The direction to the point at which the ray under the mouse meets the sphere of the fourth
+// handle, on the side of `before`.
 static void direction_at(const struct viewer *v, const float centre[3], const float before[3],
                          float out[3])
 {

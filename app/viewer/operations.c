@@ -1,7 +1,5 @@
 #include "operations.h"
 
-#include "undo.h"
-
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -73,6 +71,15 @@ void viewer_change(struct viewer *v)
     viewer_touch(v);
 }
 
+void viewer_note(struct viewer *v, const char *what, int index)
+{
+    if (v->restoring) return;
+    if (index < 0)
+        snprintf(v->change, sizeof v->change, "%s", what);
+    else
+        snprintf(v->change, sizeof v->change, "%s %d", what, index);
+}
+
 struct region viewer_region(const struct viewer *v)
 {
     const float sidebar = SIDEBAR_UNITS * window_scale(v->window);
@@ -130,7 +137,7 @@ void viewer_runs(struct viewer *v, bool other, const char *gi)
     struct rendering *rendering = other ? &v->other : &v->main;
     snprintf(other ? v->other_gi : v->gi, METHOD_SPEC, "%s", gi);
     method_parse(other ? &v->other_method : &v->method, ag_renderer_gi(rendering->renderer));
-    undo_note(v, UNDO_METHOD, -1);
+    viewer_note(v, CHANGE_METHOD, -1);
     if (!other && v->debug_view && !find_debug_view(&v->method, v->debug_view))
         viewer_set_debug_view(v, NULL);
     viewer_touch(v);

@@ -17,6 +17,9 @@ bool viewer_write_text(struct viewer *v, const char *path, const char *text);
 void viewer_touch(struct viewer *v);
 // Scene or camera differ: also the reference begins again.
 void viewer_change(struct viewer *v);
+// Something has changed that undo brings back: "light 2". index: -1: there is one alone.
+#define CHANGE_METHOD "method"
+void viewer_note(struct viewer *v, const char *what, int index);
 // Takes note of the spec that a rendering runs now.
 void viewer_runs(struct viewer *v, bool other, const char *gi);
 bool viewer_set_debug_view(struct viewer *v, const char *name); // NULL: none
@@ -27,7 +30,7 @@ struct region viewer_region(const struct viewer *v);
 void viewer_scene_options(const struct viewer *v, char *out, size_t size);
 // The pixel of the window at which a point of the scene appears; false: it is behind the camera.
 bool viewer_project(const struct viewer *v, const float point[3], float *x, float *y);
-// The ray of a pixel of the window, from the eye; `direction` is a unit vector.
+// The ray of a pixel of the window, from the camera; `direction` is a unit vector.
 void viewer_ray(const struct viewer *v, float x, float y, float eye[3], float direction[3]);
 // The size in pixels that the image is to have.
 void viewer_image_size(const struct viewer *v, int *width, int *height);

@@ -3,6 +3,7 @@
 #include "bakes.h"
 #include "changes.h"
 #include "command.h"
+#include "opening.h"
 #include "operations.h"
 #include "running.h"
 #include "session_file.h"
@@ -282,6 +283,26 @@ static bool run_light(const struct words *w)
     return done(w, viewer_set_light(w->v, light, &info.light));
 }
 
+static bool run_path(const struct words *w)
+{
+    struct viewer *v = w->v;
+    if (strcmp(w->rest, "add") == 0)
+        return path_add(&v->path, &v->look) || wrong(w->script, "the path is full", "");
+    if (sscanf(w->rest, "every %f %d", &v->path.seconds, &v->path.fps) == 2)
+        return (v->path.seconds > 0 && v->path.fps > 0) ||
+               wrong(w->script, "above 0 are expected:", w->rest);
+    if (strncmp(w->rest, "record ", 7) != 0)
+        return wrong(w->script, "path takes add, every S FPS or record FOLDER:", w->rest);
+    snprintf(v->record.folder, sizeof v->record.folder, "%s", w->rest + 7);
+    return done(w, record_begin(v));
+}
+
+static bool run_open(const struct words *w)
+{
+    viewer_open(w->v, w->rest);
+    return true;
+}
+
 static bool run_drop(const struct words *w)
 {
     struct event event = { .kind = EVENT_DROP };
@@ -364,6 +385,8 @@ static bool run(const struct words *w)
     if (is(w, "session")) return run_session(w);
     if (is(w, "choose")) return run_choose(w);
     if (is(w, "drag")) return run_drag(w);
+    if (is(w, "path")) return run_path(w);
+    if (is(w, "open")) return run_open(w);
     if (is(w, "drop")) return run_drop(w);
     if (is(w, "save")) return done(w, viewer_write(v, w->rest));
     if (is(w, "screenshot")) return run_screenshot(w);
@@ -471,7 +494,9 @@ static bool goes_on(struct script *script, struct viewer *v, struct event_queue 
         push_random(script, v, queue);
         return true;
     }
-    if (v->screenshot[0]) return true; // the window had no image
+    if (v->screenshot[0]) return true;         // the window had no image
+    if (v->record.runs) return true;           // until the last image is written
+    if (v->opening[0] || v->next) return true; // until the scene is there
     script->settles = script->settles && (v->dirty > 0 || bakes_running(v));
     return script->settles || lacks_samples(script, v);
 }

@@ -18,6 +18,10 @@
 //   light N X                    switches light N on (1) or off (0)
 //   choose light N|instance N    it gets handles in the tabs Light and Inspect
 //   drag x|y|z|turn DX DY        drags a handle by pixels
+//   path add|every S FPS|record FOLDER
+//                                adds the view as a key; seconds from key to key and images a
+//                                second; writes the flight's images
+//   open FILE                    another scene or session, in this window
 //   undo · redo                  changes of scene and methods
 //   session write FILE|read FILE
 //   drop FILE                    drops a file on the window

@@ -23,9 +23,12 @@
 #pragma once
 
 #include <stdbool.h>
+#include <stddef.h>
 
 struct viewer;
 
+// The scene that a session file belongs to; false: it is no session file.
+bool session_file_scene(const char *path, char *out, size_t size);
 // False, with a message, if the file cannot be written.
 bool session_file_write(struct viewer *v, const char *path);
 // False, with a message that names the file and what is wrong with it.

@@ -5,7 +5,6 @@
 #include "changes.h"
 #include "operations.h"
 #include "running.h"
-#include "undo.h"
 
 #include <jansson.h>
 
@@ -441,6 +440,16 @@ static bool use(struct viewer *v, const char *path, json_t *document)
     return done;
 }
 
+bool session_file_scene(const char *path, char *out, size_t size)
+{
+    json_t *document = json_load_file(path, 0, NULL);
+    const char *scene = json_string_value(json_object_get(document, "scene"));
+    const bool found = scene && json_object_get(document, "afterglow_session");
+    if (found) snprintf(out, size, "%s", scene);
+    json_decref(document);
+    return found;
+}
+
 bool session_file_read(struct viewer *v, const char *path)
 {
     json_error_t error;
@@ -454,7 +463,7 @@ bool session_file_read(struct viewer *v, const char *path)
     }
     const bool done = use(v, path, document);
     json_decref(document);
-    if (done) undo_note(v, "session", -1);
+    if (done) viewer_note(v, "session", -1);
     if (done) viewer_say(v, "read: %s", path);
     return done;
 }

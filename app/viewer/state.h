@@ -8,6 +8,7 @@
 #include "look.h"
 #include "method.h"
 #include "path.h"
+#include "record.h"
 #include "rendering.h"
 #include "truth.h"
 #include "viewer.h"
@@ -62,8 +63,11 @@ struct viewer {
     bool playing;
     double time_s;
     struct path path;
+    struct record record;
     struct edits edits;
     struct undo *undo; // NULL: out of memory
+    char change[48];   // by the user, no step of undo yet; "": none
+    bool restoring;    // changes are those of undo
 
     struct bake_job *bake_job;     // NULL: none runs
     struct truth *truth;           // NULL: no comparison with the reference
@@ -80,7 +84,10 @@ struct viewer {
     int picked_instance; // chosen by a click; -1: none
 
     struct times times;
-    int dirty; // further frames to render, until what accumulates has settled
+    char opening[1024];             // a file that the next frame opens; "": none
+    bool opening_said;              // a frame has shown that
+    const struct viewer_desc *next; // its scene; NULL: none
+    int dirty;                      // further frames to render, until what accumulates has settled
     bool quit;
     uint64_t frame;               // frames of the window so far
     float frame_s;                // smoothed duration of a frame of the window
@@ -91,6 +98,7 @@ struct viewer {
     bool screenshot_failed;
     char file[512]; // of the button "Save image"
     char session[512];
+    char scene_file[1024];
     float budget_ms; // line in the plot of times
     int show_tab;    // to be shown by the next frame; -1: the user's
     struct script *script;

@@ -18,8 +18,6 @@ struct state {
 struct undo {
     struct state *steps[STEPS]; // the oldest first
     int count, at;              // at: index of the present one
-    char what[WHAT_SIZE];       // of changes that are no step yet; "": none
-    bool restoring;
 };
 
 static struct state *take(const struct viewer *v, const char *what)
@@ -51,16 +49,6 @@ void undo_close(struct undo *undo)
     free(undo);
 }
 
-void undo_note(struct viewer *v, const char *what, int index)
-{
-    struct undo *undo = v->undo;
-    if (!undo || undo->restoring) return;
-    if (index < 0)
-        snprintf(undo->what, sizeof undo->what, "%s", what);
-    else
-        snprintf(undo->what, sizeof undo->what, "%s %d", what, index);
-}
-
 // Steps that were undone are forgotten; the oldest makes room.
 static void push(struct undo *undo, struct state *state)
 {
@@ -83,30 +71,32 @@ static bool runs(const struct viewer *v, const struct state *state)
 void undo_step(struct viewer *v, bool held)
 {
     struct undo *undo = v->undo;
-    if (!undo || !undo->what[0] || held) return;
-    const bool method = strcmp(undo->what, UNDO_METHOD) == 0;
+    if (!undo || !v->change[0] || held) return;
+    const bool method = strcmp(v->change, CHANGE_METHOD) == 0;
     if (method && runs(v, undo->steps[undo->at])) { // after a bake, for a step that was restored
-        undo->what[0] = 0;
+        v->change[0] = 0;
         return;
     }
-    struct state *state = take(v, undo->what);
-    undo->what[0] = 0;
+    struct state *state = take(v, v->change);
+    v->change[0] = 0;
     if (state)
         push(undo, state);
     else
         viewer_warn(v, "the last change cannot be undone: out of memory");
 }
 
-const char *undo_previous(const struct undo *undo)
+const char *undo_previous(const struct viewer *v)
 {
+    const struct undo *undo = v->undo;
     if (!undo) return NULL;
-    if (undo->what[0]) return undo->what;
+    if (v->change[0]) return v->change;
     return undo->at > 0 ? undo->steps[undo->at]->what : NULL;
 }
 
-const char *undo_next(const struct undo *undo)
+const char *undo_next(const struct viewer *v)
 {
-    const bool exists = undo && !undo->what[0] && undo->at + 1 < undo->count;
+    const struct undo *undo = v->undo;
+    const bool exists = undo && !v->change[0] && undo->at + 1 < undo->count;
     return exists ? undo->steps[undo->at + 1]->what : NULL;
 }
 
@@ -121,10 +111,10 @@ static bool go_to(struct viewer *v, int step)
 {
     struct undo *undo = v->undo;
     const struct state *state = undo->steps[step];
-    undo->restoring = true;
+    v->restoring = true;
     const bool done = viewer_check(v, edits_restore(&v->edits, &state->edits, v->desc->scene)) &&
                       restore_methods(v, state);
-    undo->restoring = false;
+    v->restoring = false;
     undo->at = step;
     viewer_change(v);
     return done;
@@ -133,7 +123,7 @@ static bool go_to(struct viewer *v, int step)
 bool undo_back(struct viewer *v)
 {
     undo_step(v, false);
-    const char *what = undo_previous(v->undo);
+    const char *what = undo_previous(v);
     if (!what) {
         viewer_say(v, "there is nothing to undo");
         return false;
@@ -145,7 +135,7 @@ bool undo_back(struct viewer *v)
 
 bool undo_forward(struct viewer *v)
 {
-    const char *what = undo_next(v->undo);
+    const char *what = undo_next(v);
     if (!what) {
         viewer_say(v, "there is nothing to do again");
         return false;

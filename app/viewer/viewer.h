@@ -4,6 +4,8 @@
 
 #include <afterglow/afterglow.h>
 
+enum { VIEWER_RECENT = 10 };
+
 struct viewer_desc {
     struct ag_context *context;
     struct ag_scene *scene; // lit; the viewer changes it
@@ -34,6 +36,13 @@ struct viewer_desc {
                       char error[512]);
     // On any thread: where the bake with that key is kept; false: nowhere, with a sentence.
     bool (*bake_path)(void *user, const char *key, char path[4096], char error[512]);
+    // Another scene, or the scene of a session file, with this method; NULL: with a sentence. Its
+    // description and the present one stay valid until the next call.
+    const struct viewer_desc *(*open_scene)(void *user, const char *path, const char *gi,
+                                            char error[512]);
+    // Scenes that were opened lately, the newest first; their number. The texts stay valid until
+    // the next call.
+    int (*recent_scenes)(void *user, const char *paths[VIEWER_RECENT]);
     // Writes a text file, completely or not at all; false: with a sentence.
     bool (*write_text)(void *user, const char *path, const char *text, char error[512]);
 };

@@ -537,6 +537,32 @@ TEST(a_bake_is_cancelled_with_the_window_and_goes_on_later)
     CHECK(mean_of("indirect.png") > 0.01);
 }
 
+// A broken file leaves the scene that is shown.
+TEST(other_scenes_open_in_the_window)
+{
+    require_display();
+    view(CORNELL LEAST, "settle\nsave first.png\nsession write a.json\ndrop missing.glb\nwait 3\n"
+                        "settle\nsave kept.png\nopen @maze\nsettle\nsave other.png\n"
+                        "open a.json\nsettle\nsave last.png\n");
+    check_equal("first.png", "kept.png");
+    check_equal("first.png", "last.png");
+    if (files_are_equal("first.png", "other.png")) fail_msg("the other scene is not shown");
+    view("view a.json --quiet" LEAST, "settle\nsave file.png\n");
+    check_equal("first.png", "file.png");
+}
+
+TEST(a_flight_is_recorded_to_numbered_images)
+{
+    require_display();
+    view(CORNELL LEAST, "look 0,2,9 0,2,0\nsettle\nsave first.png\npath add\nlook 1,2,8 0,2,0\n"
+                        "settle\nsave last.png\npath add\npath every 0.5 4\npath record flight\n");
+    check_equal("first.png", "flight/00000.png");
+    check_equal("last.png", "flight/00002.png");
+    CHECK(!file_exists("flight/00003.png"));
+    check_fails(CORNELL LEAST, "path record flight\n", "the camera's path has no keys");
+    check_fails(CORNELL LEAST, "path add\npath record missing/flight\n", "missing/flight");
+}
+
 // ---- wrong scripts
 
 TEST(a_line_that_fails_is_named)

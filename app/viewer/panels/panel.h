@@ -4,6 +4,7 @@
 #include "viewer/state.h"
 
 void panel_view(struct viewer *v);
+void panel_path(struct viewer *v); // a section of panel_view
 void panel_light(struct viewer *v);
 void panel_method(struct viewer *v);
 void panel_compare(struct viewer *v);

@@ -1,6 +1,7 @@
 // Camera, exposure, layer, animation, and what is taken away.
 #include "panel.h"
 #include "viewer/command.h"
+#include "viewer/opening.h"
 #include "viewer/operations.h"
 #include "viewer/session_file.h"
 
@@ -80,6 +81,21 @@ static void edit_time(struct viewer *v)
     }
 }
 
+static void open_file(struct viewer *v)
+{
+    const char *recent[VIEWER_RECENT];
+    ui_line("scene", v->scene_file, sizeof v->scene_file);
+    ui_tooltip(
+        "A glTF file, a built-in scene (@atrium …) or a saved session. Files can be dropped on "
+        "the window.");
+    ui_disable(!v->scene_file[0]);
+    if (ui_button("Open")) viewer_open(v, v->scene_file);
+    ui_enable();
+    const int count = v->desc->recent_scenes(v->desc->user, recent);
+    for (int i = 0; i < count; i++)
+        if (ui_selectable(recent[i], false)) viewer_open(v, recent[i]);
+}
+
 static void keep_session(struct viewer *v)
 {
     ui_line("session", v->session, sizeof v->session);
@@ -122,6 +138,8 @@ void panel_view(struct viewer *v)
                    "Smaller is faster.");
     }
     edit_time(v);
+    if (ui_section("Camera path", false)) panel_path(v);
     if (ui_section("Take away", true)) take_away(v);
     if (ui_section("Session", true)) keep_session(v);
+    if (ui_section("Open", false)) open_file(v);
 }

@@ -63,9 +63,9 @@ static bool step_button(const char *label, const char *what, const char *key)
 
 static void draw_undo(struct viewer *v)
 {
-    if (step_button("Undo", undo_previous(v->undo), "control Z")) undo_back(v);
+    if (step_button("Undo", undo_previous(v), "control Z")) undo_back(v);
     ui_same_line();
-    if (step_button("Redo", undo_next(v->undo), "control shift Z")) undo_forward(v);
+    if (step_button("Redo", undo_next(v), "control shift Z")) undo_forward(v);
 }
 
 static void draw_tabs(struct viewer *v)

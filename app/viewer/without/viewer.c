@@ -1,4 +1,5 @@
 // In place of the viewer, in a build without it.
+#include "viewer/session_file.h"
 #include "viewer/viewer.h"
 
 #include <stdio.h>
@@ -8,5 +9,13 @@ bool viewer_run(const struct viewer_desc *desc, char error[1024])
     (void)desc;
     snprintf(error, 1024,
              "cannot open a window: this build is without the viewer (AFTERGLOW_VIEWER)");
+    return false;
+}
+
+bool session_file_scene(const char *path, char *out, size_t size)
+{
+    (void)path;
+    (void)out;
+    (void)size;
     return false;
 }

@@ -1,6 +1,6 @@
 #include "view_words.h"
 
-#include "values.h"
+#include "cli/values.h"
 #include "shell/words.h"
 
 static void describe_scene(const struct arguments *a, struct words *w)

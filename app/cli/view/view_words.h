@@ -1,7 +1,7 @@
 // The options of the command line that give the scene of view again, for "Copy as command".
 #pragma once
 
-#include "session.h"
+#include "cli/session.h"
 
 enum { VIEW_WORDS_SIZE = 8192 };
 
