@@ -1,6 +1,7 @@
 #include "bakes.h"
 
 #include "operations.h"
+#include "yielding.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -80,6 +81,7 @@ static void *run(void *user)
     struct bake_job *job = user;
     struct ag_context *context = NULL;
     struct ag_scene *scene = NULL;
+    thread_yields();
     bool done = job->desc->open_copy(job->desc->user, &context, &scene, job->error) &&
                 (edits_apply(&job->edits, scene) == AG_OK || fail(job, context));
     for (int i = 0; done; i++) {

@@ -175,3 +175,33 @@ void method_set_preset(struct method *method, int technique, int preset)
     set_defaults(method, technique);
     set_options(method, technique, options, strlen(options));
 }
+
+static bool has_preset(int technique, const char *wanted)
+{
+    const char *name, *options;
+    for (int i = 0; ag_technique_preset_get(technique, i, &name, &options); i++)
+        if (strcmp(name, wanted) == 0) return true;
+    return false;
+}
+
+static bool can_be_lowered(const char *name, size_t length)
+{
+    struct ag_technique_info info;
+    for (int i = 0; ag_technique_get(i, &info); i++)
+        if (strlen(info.name) == length && strncmp(info.name, name, length) == 0)
+            return !info.needs_bake && has_preset(i, "low");
+    return false;
+}
+
+void method_lower(const char *gi, char out[METHOD_SPEC])
+{
+    size_t used = 0;
+    out[0] = 0;
+    for (const char *part = gi; *part && used < METHOD_SPEC;) {
+        const size_t length = strcspn(part, "+");
+        const bool lowered = can_be_lowered(part, length);
+        used += (size_t)snprintf(out + used, METHOD_SPEC - used, "%.*s%s%s", (int)length, part,
+                                 lowered ? ":quality=low" : "", part[length] ? "+" : "");
+        part += length + (part[length] == '+');
+    }
+}

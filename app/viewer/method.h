@@ -28,5 +28,7 @@ int method_choice(const struct ag_option_info *option, const char *value);
 // Names of a choice, at most `capacity`, in `buffer`.
 int method_choices(const struct ag_option_info *option, char *buffer, size_t size,
                    const char **names, int capacity);
+// A GI spec in which techniques without options, and without a bake, have the preset "low".
+void method_lower(const char *gi, char out[METHOD_SPEC]);
 // Sets the options of a preset, the others to their defaults.
 void method_set_preset(struct method *method, int technique, int preset);

@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 // ---- methods
 
@@ -42,7 +43,12 @@ static bool open_with(struct viewer *v, const char *gi, bool other)
 
 bool running_begin(struct viewer *v, const char *gi)
 {
-    return open_with(v, gi, false);
+    char low[METHOD_SPEC];
+    if (!v->device_info.software || v->desc->session) return open_with(v, gi, false);
+    method_lower(gi, low);
+    if (strcmp(low, gi) != 0)
+        viewer_say(v, "a software device begins with quality=low: see the tab Method");
+    return open_with(v, low, false);
 }
 
 bool viewer_set_gi(struct viewer *v, const char *gi)

@@ -4,7 +4,7 @@
 
 #include "state.h"
 
-// Opens the first rendering.
+// Opens the first rendering; on a software device with the preset "low" where `gi` has no options.
 bool running_begin(struct viewer *v, const char *gi);
 // Runs another method from the next frame on, or when its bake is there; false, with a message, if
 // it cannot.

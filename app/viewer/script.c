@@ -340,6 +340,19 @@ static bool run_errors(const struct words *w)
     return done(w, viewer_write_text(w->v, w->rest, text));
 }
 
+static bool run_pace(const struct words *w)
+{
+    struct pace_summary pace;
+    char text[256];
+    pace_get(&w->v->pace, &pace);
+    pace_clear(&w->v->pace);
+    if (strcmp(w->rest, "clear") == 0) return true;
+    snprintf(text, sizeof text,
+             "{\"frames\": %d, \"mean_ms\": %.4g, \"p95_ms\": %.4g, \"most_ms\": %.4g}\n",
+             pace.frames, (double)pace.mean_ms, (double)pace.p95_ms, (double)pace.most_ms);
+    return done(w, viewer_write_text(w->v, w->rest, text));
+}
+
 static bool run_screenshot(const struct words *w)
 {
     snprintf(w->v->screenshot, sizeof w->v->screenshot, "%s", w->rest);
@@ -392,6 +405,7 @@ static bool run(const struct words *w)
     if (is(w, "screenshot")) return run_screenshot(w);
     if (is(w, "command")) return run_command(w);
     if (is(w, "errors")) return run_errors(w);
+    if (is(w, "pace")) return run_pace(w);
     if (is(w, "random")) return run_random(w);
     if (is(w, "quit")) return v->quit = true;
     return wrong(w->script, "unknown command", w->name);

@@ -27,6 +27,7 @@
 //   drop FILE                    drops a file on the window
 //   save FILE · screenshot FILE  the image (.png, .exr); the window (.png)
 //   errors FILE                  errors to the reference, as JSON
+//   pace clear|FILE              durations of the window's frames since the last pace, as JSON
 //   command FILE                 the command that renders this view
 //   random SEED N                N random events
 //   quit

@@ -7,6 +7,7 @@
 #include "viewer/window/host_image.h"
 #include "look.h"
 #include "method.h"
+#include "pace.h"
 #include "path.h"
 #include "record.h"
 #include "rendering.h"
@@ -84,6 +85,7 @@ struct viewer {
     int picked_instance; // chosen by a click; -1: none
 
     struct times times;
+    struct pace pace;
     char opening[1024];             // a file that the next frame opens; "": none
     bool opening_said;              // a frame has shown that
     const struct viewer_desc *next; // its scene; NULL: none

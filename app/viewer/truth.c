@@ -1,5 +1,7 @@
 #include "truth.h"
 
+#include "yielding.h"
+
 #include "viewer/window/window.h"
 
 #include <pthread.h>
@@ -69,53 +71,83 @@ static bool begin(struct truth *t)
     return done;
 }
 
-static void publish(struct ag_image *slot, const struct ag_image *image)
+// The lock is held for moments only: the interface waits for it, and this thread yields.
+static struct ag_image copy_of(const struct ag_image *image)
 {
     const size_t bytes = (size_t)image->width * (size_t)image->height * (size_t)image->channels *
                          sizeof *image->pixels;
-    free(slot->pixels);
-    *slot = *image;
-    slot->pixels = malloc(bytes);
-    if (slot->pixels) memcpy(slot->pixels, image->pixels, bytes);
+    struct ag_image copy = *image;
+    copy.pixels = malloc(bytes);
+    if (copy.pixels) memcpy(copy.pixels, image->pixels, bytes);
+    return copy;
 }
 
-// The errors of the offered image: its copy is measured without the lock.
-static void measure(struct truth *t, const struct ag_image *color)
+static void swap(struct ag_image *a, struct ag_image *b)
 {
-    struct ag_image copy = { 0 }, *map = NULL;
-    struct ag_compare_desc desc;
-    struct ag_metrics metrics;
-    ag_compare_desc_default(&desc);
-    desc.radiance = true;
+    const struct ag_image image = *a;
+    *a = *b;
+    *b = image;
+}
+
+// Takes the offered image, as far as it fits; its pixels are NULL if there is none.
+static struct ag_image take_offered(struct truth *t, const struct ag_image *color, float *ev)
+{
+    struct ag_image image = { 0 };
     pthread_mutex_lock(&t->mutex);
-    desc.ev = t->view.ev;
-    if (t->offered.pixels && t->offered.width == color->width && t->offered.height == color->height)
-        publish(&copy, &t->offered);
+    *ev = t->view.ev;
+    if (t->offered.width == color->width && t->offered.height == color->height)
+        swap(&image, &t->offered);
     t->unmeasured = false;
     pthread_mutex_unlock(&t->mutex);
-    if (!copy.pixels) return;
-    desc.ignore_not_finite = true;
-    const bool done =
-        ag_image_metrics(t->context, &copy, color, &desc, &metrics) == AG_OK &&
-        ag_image_error_map(t->context, &copy, color, &desc, AG_DIFFERENCE_FLIP, 0, &map) == AG_OK;
-    free(copy.pixels);
-    if (!done) return;
+    return image;
+}
+
+// For further samples, if there is no newer one.
+static void give_back(struct truth *t, struct ag_image *image)
+{
+    pthread_mutex_lock(&t->mutex);
+    if (t->request == t->running && !t->offered.pixels) swap(image, &t->offered);
+    pthread_mutex_unlock(&t->mutex);
+    free(image->pixels);
+}
+
+static void report(struct truth *t, const struct ag_metrics *metrics, const struct ag_image *map)
+{
     static const double weights[3] = { 0.2126, 0.7152, 0.0722 };
+    struct ag_image copy = copy_of(map);
     double a = 0, b = 0;
     for (int i = 0; i < 3; i++) {
-        a += weights[i] * metrics.mean_a[i];
-        b += weights[i] * metrics.mean_b[i];
+        a += weights[i] * metrics->mean_a[i];
+        b += weights[i] * metrics->mean_b[i];
     }
     pthread_mutex_lock(&t->mutex);
     if (t->request == t->running && !t->unmeasured) {
-        publish(&t->images[1], map);
+        swap(&copy, &t->images[1]);
         t->state.measured = true;
-        t->state.flip = metrics.flip;
-        t->state.relative_error = metrics.relmse;
+        t->state.flip = metrics->flip;
+        t->state.relative_error = metrics->relmse;
         t->state.energy = b > 0 ? a / b : 0.0;
     }
     pthread_mutex_unlock(&t->mutex);
+    free(copy.pixels);
+}
+
+// The errors of the offered image.
+static void measure(struct truth *t, const struct ag_image *color)
+{
+    struct ag_image *map = NULL;
+    struct ag_compare_desc desc;
+    struct ag_metrics metrics;
+    ag_compare_desc_default(&desc);
+    struct ag_image image = take_offered(t, color, &desc.ev);
+    if (!image.pixels) return;
+    desc.radiance = true;
+    desc.ignore_not_finite = true;
+    if (ag_image_metrics(t->context, &image, color, &desc, &metrics) == AG_OK &&
+        ag_image_error_map(t->context, &image, color, &desc, AG_DIFFERENCE_FLIP, 0, &map) == AG_OK)
+        report(t, &metrics, map);
     ag_image_destroy(t->context, map);
+    give_back(t, &image);
 }
 
 static void show(struct truth *t)
@@ -127,12 +159,14 @@ static void show(struct truth *t)
         fail(t);
         return;
     }
+    struct ag_image copy = copy_of(color);
     pthread_mutex_lock(&t->mutex);
     if (t->request == t->running) {
-        publish(&t->images[0], color);
+        swap(&copy, &t->images[0]);
         t->state.samples = info.samples;
     }
     pthread_mutex_unlock(&t->mutex);
+    free(copy.pixels);
     measure(t, color);
     ag_image_destroy(t->context, color);
     window_wake();
@@ -167,6 +201,7 @@ static void *run(void *user)
 {
     struct truth *t = user;
     char error[512] = "";
+    thread_yields();
     const bool loaded = t->desc->open_copy(t->desc->user, &t->context, &t->scene, error);
     pthread_mutex_lock(&t->mutex);
     snprintf(t->state.error, sizeof t->state.error, "%s", error);
@@ -236,15 +271,17 @@ void truth_restart(struct truth *t, const struct truth_view *view)
 
 bool truth_offer(struct truth *t, const struct ag_image *color)
 {
+    struct ag_image copy = copy_of(color);
     pthread_mutex_lock(&t->mutex);
     const bool fits = color->width == t->view.width && color->height == t->view.height;
     if (fits) {
-        publish(&t->offered, color);
+        swap(&copy, &t->offered);
         t->unmeasured = true;
         t->state.measured = false;
         pthread_cond_signal(&t->changed);
     }
     pthread_mutex_unlock(&t->mutex);
+    free(copy.pixels);
     return fits;
 }
 

@@ -22,6 +22,7 @@ static bool loop(struct viewer *v, char error[1024])
         const double now = window_seconds();
         const float seconds = v->script ? 1.0f / 60.0f : fminf((float)(now - last), 0.25f);
         v->frame_s += 0.1f * ((float)(now - last) - v->frame_s);
+        if (v->frame > 0) pace_add(&v->pace, 1000.0f * (float)(now - last));
         last = now;
         if (!frame_step(v, seconds)) {
             snprintf(error, 1024,
