@@ -405,6 +405,7 @@ static bool run(const struct words *w)
     if (is(w, "screenshot")) return run_screenshot(w);
     if (is(w, "command")) return run_command(w);
     if (is(w, "errors")) return run_errors(w);
+    if (is(w, "lose")) return v->swapchain.loses_device = true;
     if (is(w, "pace")) return run_pace(w);
     if (is(w, "random")) return run_random(w);
     if (is(w, "quit")) return v->quit = true;

@@ -29,6 +29,7 @@
 //   errors FILE                  errors to the reference, as JSON
 //   pace clear|FILE              durations of the window's frames since the last pace, as JSON
 //   command FILE                 the command that renders this view
+//   lose                         as if the device were lost
 //   random SEED N                N random events
 //   quit
 //

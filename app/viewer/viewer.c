@@ -14,6 +14,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+// The device is lost: what the user did is not.
+static void rescue(struct viewer *v, char error[1024])
+{
+    static const char *const PATH = "afterglow-rescued.json";
+    const bool kept = session_file_write(v, PATH);
+    snprintf(error, 1024,
+             "the Vulkan device was lost or gives no more images: begin again with a smaller "
+             "--size or --scale%s%s",
+             kept ? " and --session " : "", kept ? PATH : "");
+}
+
 static bool loop(struct viewer *v, char error[1024])
 {
     double last = window_seconds();
@@ -25,9 +36,7 @@ static bool loop(struct viewer *v, char error[1024])
         if (v->frame > 0) pace_add(&v->pace, 1000.0f * (float)(now - last));
         last = now;
         if (!frame_step(v, seconds)) {
-            snprintf(error, 1024,
-                     "the Vulkan device was lost or gives no more images: begin again "
-                     "with a smaller --size or --scale");
+            rescue(v, error);
             return false;
         }
         v->frame++;

@@ -563,6 +563,16 @@ TEST(a_flight_is_recorded_to_numbered_images)
     check_fails(CORNELL LEAST, "path add\npath record missing/flight\n", "missing/flight");
 }
 
+TEST(a_lost_device_leaves_a_session)
+{
+    require_display();
+    check_fails(CORNELL LEAST " --gi lpv:dim=16",
+                "light 0 0\nsettle\nsave lost.png\nlose\nwait 2\n",
+                "--session afterglow-rescued.json");
+    view(CORNELL LEAST " --session afterglow-rescued.json", "settle\nsave rescued.png\n");
+    check_equal("lost.png", "rescued.png");
+}
+
 // ---- wrong scripts
 
 TEST(a_line_that_fails_is_named)

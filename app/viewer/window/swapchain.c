@@ -223,6 +223,7 @@ bool swapchain_begin(struct swapchain *s, VkCommandBuffer *commands)
     const VkDevice device = s->gpu->device;
     struct swapchain_frame *frame = &s->frames[s->frame];
     *commands = VK_NULL_HANDLE;
+    if (s->loses_device) return false;
     if (!s->handle || !s->count || s->stale) return true;
     if (vkWaitForFences(device, 1, &frame->done, VK_TRUE, UINT64_MAX) != VK_SUCCESS) return false;
     const VkResult result = vkAcquireNextImageKHR(device, s->handle, UINT64_MAX, frame->acquired,

@@ -10,6 +10,7 @@ struct swapchain {
     VkSwapchainKHR handle; // NULL while the window has no pixels
     VkSurfaceFormatKHR format;
     VkRenderPass pass;
+    bool loses_device; // for a test: the next frame is one of a device that is lost
     uint32_t width, height, count, least; // least: of the surface
     VkImage images[SWAPCHAIN_IMAGES];
     VkImageView views[SWAPCHAIN_IMAGES];
