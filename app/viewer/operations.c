@@ -62,6 +62,7 @@ bool viewer_write_text(struct viewer *v, const char *path, const char *text)
 void viewer_touch(struct viewer *v)
 {
     v->dirty = SETTLE_FRAMES;
+    v->version++;
     v->offered = false;
 }
 
@@ -109,6 +110,14 @@ void viewer_ray(const struct viewer *v, float x, float y, float eye[3], float di
                           2.0f * (y - r.y0) / (r.y1 - r.y0) - 1.0f };
     memcpy(eye, v->look.eye, sizeof v->look.eye);
     look_ray(&v->look, aspect_of(&r), at, direction);
+}
+
+float viewer_exposure(const struct viewer *v)
+{
+    struct ag_finished_frame finished = { 0 };
+    if (!v->auto_exposure) return v->exposure_ev;
+    ag_renderer_finished(v->main.renderer, &finished);
+    return finished.exposure_ev;
 }
 
 void viewer_image_size(const struct viewer *v, int *width, int *height)

@@ -32,5 +32,7 @@ void viewer_scene_options(const struct viewer *v, char *out, size_t size);
 bool viewer_project(const struct viewer *v, const float point[3], float *x, float *y);
 // The ray of a pixel of the window, from the camera; `direction` is a unit vector.
 void viewer_ray(const struct viewer *v, float x, float y, float eye[3], float direction[3]);
+// EV of the image that is shown.
+float viewer_exposure(const struct viewer *v);
 // The size in pixels that the image is to have.
 void viewer_image_size(const struct viewer *v, int *width, int *height);

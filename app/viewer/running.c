@@ -91,14 +91,6 @@ bool viewer_set_reference(struct viewer *v, bool on)
     return v->truth != NULL;
 }
 
-static float exposure(const struct viewer *v)
-{
-    struct ag_finished_frame finished = { 0 };
-    if (!v->auto_exposure) return v->exposure_ev;
-    ag_renderer_finished(v->main.renderer, &finished);
-    return finished.exposure_ev;
-}
-
 static void restart(struct viewer *v)
 {
     const struct truth_view view = { .camera = v->camera,
@@ -106,7 +98,7 @@ static void restart(struct viewer *v)
                                      .height = v->main.height,
                                      .animation = v->desc->animation,
                                      .time_s = v->time_s,
-                                     .ev = exposure(v),
+                                     .ev = viewer_exposure(v),
                                      .edits = &v->edits };
     truth_restart(v->truth, &view);
     v->changed = v->offered = false;
@@ -127,7 +119,8 @@ static void take(struct viewer *v)
     if (!truth_take(v->truth, v->difference, &image)) return;
     if (v->difference)
         host_image_set(&v->truth_image, &v->gpu, &image);
-    else if (viewer_check(v, ag_image_tonemap(v->desc->context, &image, exposure(v), &display)))
+    else if (viewer_check(v,
+                          ag_image_tonemap(v->desc->context, &image, viewer_exposure(v), &display)))
         host_image_set(&v->truth_image, &v->gpu, display);
     ag_image_destroy(v->desc->context, display);
     free(image.pixels);

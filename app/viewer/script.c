@@ -353,6 +353,20 @@ static bool run_pace(const struct words *w)
     return done(w, viewer_write_text(w->v, w->rest, text));
 }
 
+static bool run_inspect(const struct words *w)
+{
+    struct viewer *v = w->v;
+    struct pixel_at at;
+    struct pixel pixel;
+    char text[4096];
+    if (!pixel_chosen(v, &at)) return wrong(w->script, "the mouse is not in the image", "");
+    if (!pixels_read(v, at.other) || !pixel_get(v, &at, &pixel))
+        return wrong(w->script, "the image has not settled: use settle", "");
+    if (!pixel_print(&at, &pixel, text, sizeof text))
+        return wrong(w->script, "a name of the scene is too long", "");
+    return done(w, viewer_write_text(v, w->rest, text));
+}
+
 static bool run_screenshot(const struct words *w)
 {
     snprintf(w->v->screenshot, sizeof w->v->screenshot, "%s", w->rest);
@@ -407,6 +421,7 @@ static bool run(const struct words *w)
     if (is(w, "errors")) return run_errors(w);
     if (is(w, "lose")) return v->swapchain.loses_device = true;
     if (is(w, "pace")) return run_pace(w);
+    if (is(w, "inspect")) return run_inspect(w);
     if (is(w, "random")) return run_random(w);
     if (is(w, "quit")) return v->quit = true;
     return wrong(w->script, "unknown command", w->name);

@@ -28,6 +28,7 @@
 //   save FILE · screenshot FILE  the image (.png, .exr); the window (.png)
 //   errors FILE                  errors to the reference, as JSON
 //   pace clear|FILE              durations of the window's frames since the last pace, as JSON
+//   inspect FILE                 the layers at the pixel under the mouse, as JSON
 //   command FILE                 the command that renders this view
 //   lose                         as if the device were lost
 //   random SEED N                N random events

@@ -9,6 +9,7 @@
 #include "method.h"
 #include "pace.h"
 #include "path.h"
+#include "pixel.h"
 #include "record.h"
 #include "rendering.h"
 #include "truth.h"
@@ -89,7 +90,9 @@ struct viewer {
     char opening[1024];             // a file that the next frame opens; "": none
     bool opening_said;              // a frame has shown that
     const struct viewer_desc *next; // its scene; NULL: none
-    int dirty;                      // further frames to render, until what accumulates has settled
+    struct pixels pixels;
+    unsigned version; // of the image: viewer_touch counts it up
+    int dirty;        // further frames to render, until what accumulates has settled
     bool quit;
     uint64_t frame;               // frames of the window so far
     float frame_s;                // smoothed duration of a frame of the window

@@ -104,6 +104,7 @@ static void set_defaults(struct viewer *v)
     v->record.frames_each = 4;
     snprintf(v->record.folder, sizeof v->record.folder, "afterglow-flight");
     v->scene_camera = v->picked_instance = v->show_tab = v->gizmo.light = -1;
+    v->pick_at[0] = -1;
     v->gizmo.handle = HANDLE_NONE;
     snprintf(v->file, sizeof v->file, "afterglow.png");
     snprintf(v->session, sizeof v->session, "%s",
@@ -154,6 +155,7 @@ static void end(struct viewer *v)
 {
     if (v->gpu.device) vkDeviceWaitIdle(v->gpu.device);
     undo_close(v->undo);
+    pixels_forget(v);
     running_end(v);
     ag_device_destroy(v->device);
 }

@@ -2,6 +2,7 @@
 // program. AFTERGLOW_TEST_VIEW_TECHNIQUES=lpv,vct also tests each option of these alone.
 #include "cli/program.h"
 
+#include "image/exr.h"
 #include "image/png_file.h"
 
 #include <afterglow/afterglow.h>
@@ -251,6 +252,48 @@ TEST(the_command_of_a_view_has_its_camera_and_lights)
                   "-3,1.5,-9 --fov 66.6666666 --light area:-2,2,-4:0,-1,-0.3:1,1:900,800,700 "
                   "--light spot:-2,2,-4:0,-1,-0.3:11.1:37.7:900,800,700",
                   "light 0 0\nlight 0 1\nmouse 10 10\nscroll 0 1\n");
+}
+
+// ---- one pixel
+
+static void check_layer(const json_t *pixel, const char *layer, int x, int y)
+{
+    struct image image;
+    const json_t *values = json_object_get(pixel, layer);
+    CHECK(exr_read(test_host(), "layers.exr", layer, &image));
+    for (int c = 0; c < image.channels; c++) {
+        const float *at = image.pixels + (size_t)image.channels * (size_t)(image.width * y + x);
+        const json_t *value = json_is_array(values) ? json_array_get(values, (size_t)c) : values;
+        CHECK(json_is_number(value));
+        if (fabs(json_number_value(value) - (double)at[c]) > 1e-6 * fabs((double)at[c]))
+            fail_msg("%s[%d] is %g, not %g", layer, c, json_number_value(value), (double)at[c]);
+    }
+    image_finish(&image, test_host());
+}
+
+TEST(a_pixel_has_the_values_of_rendered_layers)
+{
+    static const char *const layers[] = { "color",  "direct", "indirect", "specular", "irradiance",
+                                          "albedo", "normal", "position", "depth" };
+    require_display();
+    view(CORNELL LEAST " --gi lpv:dim=8,cascades=1",
+         "settle\ntab Inspect\nmouse 62 142\nsettle\ninspect pixel.json\n"
+         "command command.sh\n");
+    run_line("command.sh", "layers.exr --aov color,direct,indirect,specular,irradiance,albedo,"
+                           "normal,position,depth,id");
+    json_t *pixel = json_load_file("pixel.json", 0, NULL);
+    assert_true(pixel);
+    const int x = (int)json_integer_value(json_array_get(json_object_get(pixel, "pixel"), 0));
+    const int y = (int)json_integer_value(json_array_get(json_object_get(pixel, "pixel"), 1));
+    CHECK(x == 12 && y == 28); // at a fifth of the window's size
+    for (size_t i = 0; i < sizeof layers / sizeof *layers; i++) check_layer(pixel, layers[i], x, y);
+    CHECK(json_number_value(json_object_get(pixel, "luminance")) > 0);
+    json_t *id = json_pack("[i, i]", (int)json_integer_value(json_object_get(pixel, "instance")),
+                           (int)json_integer_value(json_object_get(pixel, "triangle")));
+    json_object_set_new(pixel, "id", id);
+    check_layer(pixel, "id", x, y);
+    CHECK(json_string_length(json_object_get(pixel, "instance_name")) > 0);
+    json_decref(pixel);
 }
 
 // ---- methods

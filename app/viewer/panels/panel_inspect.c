@@ -1,4 +1,4 @@
-// The surface under the mouse: its instance, mesh and material.
+// The pixel under the mouse; the surface that was clicked: its instance, mesh and material.
 #include "panel.h"
 
 #include "overlay.h"
@@ -50,16 +50,11 @@ static void show_instance(struct viewer *v, int index)
 
 void panel_inspect(struct viewer *v)
 {
-    struct ag_pick pick;
     v->inspecting = true;
     overlay_selection(v);
     gizmo_draw(v);
-    if (ag_renderer_picked(v->main.renderer, &pick) == AG_OK && pick.frame > 0 &&
-        pick.instance >= 0)
-        ui_faint("under the mouse: instance %d, triangle %d", pick.instance, pick.triangle);
-    else
-        ui_faint("under the mouse: no surface");
-    ui_separator();
+    panel_pixel(v);
+    if (!ui_section("Surface", true)) return;
     if (v->picked_instance < 0)
         ui_text("Click a surface in the image.");
     else

@@ -92,4 +92,5 @@ void panels_draw(struct viewer *v)
         draw_tabs(v);
     }
     ui_panel_end();
+    if (!v->inspecting) pixels_forget(v);
 }
