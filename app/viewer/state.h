@@ -10,6 +10,7 @@
 #include "pace.h"
 #include "path.h"
 #include "pixel.h"
+#include "probe_balls.h"
 #include "record.h"
 #include "rendering.h"
 #include "truth.h"
@@ -91,6 +92,7 @@ struct viewer {
     bool opening_said;              // a frame has shown that
     const struct viewer_desc *next; // its scene; NULL: none
     struct pixels pixels;
+    struct probe_balls probe_balls;
     unsigned version; // of the image: viewer_touch counts it up
     int dirty;        // further frames to render, until what accumulates has settled
     bool quit;

@@ -156,6 +156,7 @@ static void end(struct viewer *v)
     if (v->gpu.device) vkDeviceWaitIdle(v->gpu.device);
     undo_close(v->undo);
     pixels_forget(v);
+    probe_balls_close(v);
     running_end(v);
     ag_device_destroy(v->device);
 }

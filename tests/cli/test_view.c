@@ -296,6 +296,21 @@ TEST(a_pixel_has_the_values_of_rendered_layers)
     json_decref(pixel);
 }
 
+TEST(probes_are_balls_in_the_image)
+{
+    char command[1024] = "";
+    require_display();
+    view(CORNELL " --size 640x480 --scale 0.1 --gi lpv:dim=8,cascades=1",
+         "settle\ntab Inspect\nmouse 620 470\nwait 2\nscreenshot without.png\n"
+         "click probes as balls\nsettle\nmouse 620 470\nwait 2\nscreenshot with.png\n"
+         "command command.sh\n");
+    FILE *file = fopen("command.sh", "r");
+    CHECK(file && fgets(command, sizeof command, file));
+    fclose(file);
+    if (!strstr(command, "lpv:dim=8,cascades=1,probes=true")) fail_msg("no probes: %s", command);
+    CHECK(fabs(mean_of("with.png") - mean_of("without.png")) > 0.001);
+}
+
 // ---- methods
 
 // Two values that exclude each other are an error only on a device.

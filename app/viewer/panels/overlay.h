@@ -1,7 +1,8 @@
-// Marks in the image: lights, and the box of the surface that was clicked.
+// Marks in the image: lights, the box of the surface that was clicked, probes.
 #pragma once
 
 #include "viewer/state.h"
 
 void overlay_lights(const struct viewer *v);
 void overlay_selection(const struct viewer *v);
+void overlay_probes(struct viewer *v);

@@ -54,9 +54,11 @@ void panel_inspect(struct viewer *v)
     overlay_selection(v);
     gizmo_draw(v);
     panel_pixel(v);
-    if (!ui_section("Surface", true)) return;
-    if (v->picked_instance < 0)
-        ui_text("Click a surface in the image.");
-    else
-        show_instance(v, v->picked_instance);
+    if (ui_section("Surface", true)) {
+        if (v->picked_instance < 0)
+            ui_text("Click a surface in the image.");
+        else
+            show_instance(v, v->picked_instance);
+    }
+    panel_probes(v);
 }

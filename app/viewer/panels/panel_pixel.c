@@ -15,8 +15,7 @@ static const float INV_PI = 0.31830989f;
 static uint32_t srgb_byte(float linear)
 {
     const float s = fminf(fmaxf(linear, 0.0f), 1.0f); // fmaxf also removes NaN
-    const float encoded =
-        s <= 0.0031308f ? 12.92f * s : 1.055f * powf(s, 1.0f / 2.4f) - 0.055f;
+    const float encoded = s <= 0.0031308f ? 12.92f * s : 1.055f * powf(s, 1.0f / 2.4f) - 0.055f;
     return (uint32_t)(255.0f * encoded + 0.5f);
 }
 
@@ -80,6 +79,7 @@ static const struct row layer_rows[] = {
 };
 enum { ROWS = sizeof layer_rows / sizeof *layer_rows };
 
+// values NULL: none.
 static void show_row(struct viewer *v, const struct row *row, const float *values, int count)
 {
     const float unit = window_scale(v->window), height = 15.0f * unit;
@@ -88,6 +88,7 @@ static void show_row(struct viewer *v, const struct row *row, const float *value
     char text[32];
     ui_tooltip(row->tooltip);
     ui_area_text(area.x, area.y, 0xb0b0b0ff, row->label);
+    if (!values) return;
     if (row->layer >= 0)
         ui_area_box(x, area.y + unit, x + 14.0f * unit, area.y + height - unit,
                     swatch(v, row->layer, values));
@@ -103,36 +104,40 @@ static void show_row(struct viewer *v, const struct row *row, const float *value
 static void show_layer(struct viewer *v, const struct pixel *pixel, int index)
 {
     struct row row = layer_rows[index];
-    const float *values = pixel->layers[row.layer];
-    if (row.layer == PIXEL_POSITION) row.layer = -1;
-    show_row(v, &row, values, 3);
+    const int layer = row.layer;
+    const bool shown = pixel && (pixel->instance >= 0 || layer <= PIXEL_DIRECT);
+    if (layer == PIXEL_POSITION) row.layer = -1;
+    show_row(v, &row, shown ? pixel->layers[layer] : NULL, 3);
 }
 
 static void show_name(const char *what, int index, const char *name)
 {
-    if (index >= 0) ui_faint("%s %d  %s", what, index, name);
+    if (index >= 0)
+        ui_faint("%s %d  %.30s", what, index, name);
+    else
+        ui_faint("%s", what);
 }
 
+// The rows stay where they are when there are no values, so that what is below does not move. pixel
+// NULL: none.
 static void show(struct viewer *v, const struct pixel *pixel)
 {
+    static const struct pixel none = {
+        .instance = -1, .mesh = -1, .material = -1, .ev = -INFINITY
+    };
     static const struct row depth = { "depth", "m", "Distance along the view axis.", -1, "%8.3f" },
                             luminance = { "luminance", "cd/m²", "Of the color.", -1, "%8.4g" },
                             ev = { "exposure", "EV",
                                    "At ISO 100: shows this luminance as middle grey.", -1,
                                    "%8.2f" };
-    const bool surface = pixel->instance >= 0;
-    show_row(v, &luminance, &pixel->luminance, 1);
-    if (isfinite(pixel->ev)) show_row(v, &ev, &pixel->ev, 1);
-    for (int i = 0; i < ROWS; i++)
-        if (surface || layer_rows[i].layer <= PIXEL_DIRECT) show_layer(v, pixel, i);
-    if (!surface) {
-        ui_faint("no surface");
-        return;
-    }
-    show_row(v, &depth, pixel->layers[PIXEL_DEPTH], 1);
-    show_name("instance", pixel->instance, pixel->instance_name);
-    show_name("mesh", pixel->mesh, pixel->mesh_name);
-    show_name("material", pixel->material, pixel->material_name);
+    const struct pixel *p = pixel ? pixel : &none;
+    show_row(v, &luminance, pixel ? &pixel->luminance : NULL, 1);
+    show_row(v, &ev, isfinite(p->ev) ? &p->ev : NULL, 1);
+    for (int i = 0; i < ROWS; i++) show_layer(v, pixel, i);
+    show_row(v, &depth, p->instance >= 0 ? p->layers[PIXEL_DEPTH] : NULL, 1);
+    show_name("instance", p->instance, p->instance_name);
+    show_name("mesh", p->mesh, p->mesh_name);
+    show_name("material", p->material, p->material_name);
 }
 
 // A small frame around the clicked pixel.
@@ -155,16 +160,18 @@ void panel_pixel(struct viewer *v)
     struct pixel_at at;
     struct pixel pixel;
     if (!ui_section("Pixel", true)) return;
-    if (!pixel_chosen(v, &at)) {
-        ui_faint("Move the mouse over the image, or click a pixel to keep it.");
-        return;
-    }
-    if (at.clicked) mark(v, &at);
-    ui_text("%d, %d%s", at.x, at.y,
-            at.clicked ? ", clicked" : at.other ? ", of the method at the right" : "");
-    ui_tooltip("From the left and the top, in pixels of the rendered image.");
-    if (pixels_read(v, at.other) && pixel_get(v, &at, &pixel))
-        show(v, &pixel);
+    const bool chosen = pixel_chosen(v, &at);
+    if (!chosen)
+        ui_text("Point at the image; a click keeps a pixel.");
+    else if (!pixels_read(v, at.other))
+        ui_text("%d, %d: once the image has settled", at.x, at.y);
     else
-        ui_faint("Values follow when the image has settled.");
+        ui_text("%d, %d%s", at.x, at.y,
+                at.clicked ? ", clicked"
+                : at.other ? ", of the method at the right"
+                           : "");
+    ui_tooltip("From the left and the top, in pixels of the rendered image.");
+    if (chosen && at.clicked) mark(v, &at);
+    const bool has = chosen && pixels_read(v, at.other) && pixel_get(v, &at, &pixel);
+    show(v, has ? &pixel : NULL);
 }

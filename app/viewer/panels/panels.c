@@ -3,6 +3,7 @@
 
 #include "viewer/operations.h"
 #include "panel.h"
+#include "overlay.h"
 #include "viewer/running.h"
 #include "viewer/undo.h"
 
@@ -84,6 +85,7 @@ void panels_draw(struct viewer *v)
 {
     const struct region r = viewer_region(v);
     v->inspecting = v->lighting = false;
+    overlay_probes(v);
     draw_split_labels(v);
     draw_status(v);
     if (ui_panel_begin("panel", r.x1, 0, (float)v->swapchain.width - r.x1,

@@ -520,6 +520,19 @@ void ui_disk(float x, float y, float radius, uint32_t rgba)
     ImGui::GetBackgroundDrawList()->AddCircleFilled(ImVec2(x, y), radius, color(rgba));
 }
 
+void ui_triangles(const struct ui_vertex *vertices, int vertex_count, const int *indices,
+                  int index_count)
+{
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    const ImVec2 white = ImGui::GetFontTexUvWhitePixel();
+    list->PrimReserve(index_count, vertex_count);
+    const unsigned first = list->_VtxCurrentIdx; // after PrimReserve, which may begin a new range
+    for (int i = 0; i < index_count; i++)
+        list->PrimWriteIdx(static_cast<ImDrawIdx>(first + static_cast<unsigned>(indices[i])));
+    for (int i = 0; i < vertex_count; i++)
+        list->PrimWriteVtx(ImVec2(vertices[i].x, vertices[i].y), white, color(vertices[i].rgba));
+}
+
 void ui_label(float x, float y, uint32_t rgba, const char *text)
 {
     ImGui::GetBackgroundDrawList()->AddText(ImVec2(x, y), color(rgba), text);

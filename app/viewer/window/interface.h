@@ -75,6 +75,13 @@ bool ui_released(void); // whether the last element's change ended, as a slider'
 void ui_stroke(float x0, float y0, float x1, float y1, uint32_t rgba, float width);
 void ui_box(float x0, float y0, float x1, float y1, uint32_t rgba);
 void ui_disk(float x, float y, float radius, uint32_t rgba);
+struct ui_vertex {
+    float x, y;
+    uint32_t rgba;
+};
+// Triangles with interpolated colours; three indices each.
+void ui_triangles(const struct ui_vertex *vertices, int vertex_count, const int *indices,
+                  int index_count);
 void ui_label(float x, float y, uint32_t rgba, const char *text);
 float ui_label_width(const char *text);
 

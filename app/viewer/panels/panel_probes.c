@@ -1,0 +1,70 @@
+// The switch of the balls that show probes, and why there are none.
+#include "panel.h"
+
+#include "viewer/bakes.h"
+#include "viewer/operations.h"
+#include "viewer/probe_balls.h"
+#include "viewer/running.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// The technique of the method that can publish probes; -1: none.
+static int publisher(const struct viewer *v)
+{
+    struct ag_technique_info info;
+    for (int i = 0; i < ROLE_COUNT; i++)
+        if (ag_technique_get(v->method.chosen[i], &info) && info.publishes_probes)
+            return v->method.chosen[i];
+    return -1;
+}
+
+static void say_who_publishes(const struct viewer *v)
+{
+    struct ag_technique_info info;
+    char list[256] = "";
+    for (int i = 0; ag_technique_get(i, &info); i++) {
+        const size_t used = strlen(list);
+        if (info.publishes_probes)
+            snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", info.name);
+    }
+    ui_faint("%.60s publishes no probes; these do: %s.", v->gi, list);
+}
+
+// The method publishes probes from now on.
+static bool publish(struct viewer *v, int technique)
+{
+    struct ag_option_info option;
+    char gi[METHOD_SPEC];
+    for (int k = 0; k < METHOD_OPTIONS && ag_technique_option_get(technique, k, &option); k++)
+        if (strcmp(option.name, "probes") == 0)
+            snprintf(v->method.values[technique][k], METHOD_VALUE, "true");
+    method_print(&v->method, gi);
+    return viewer_set_gi(v, gi);
+}
+
+static void show_counts(const struct probe_balls *b)
+{
+    if (b->count < b->in_view)
+        ui_faint("The nearest %d of %d probes in view.", b->count, b->in_view);
+    else
+        ui_faint("%d probes in view.", b->count);
+    if (b->dark > 0) ui_faint("Violet: %d without light, as inside geometry.", b->dark);
+}
+
+void panel_probes(struct viewer *v)
+{
+    struct probe_balls *b = &v->probe_balls;
+    const int technique = publisher(v);
+    if (!ui_section("Probes", true)) return;
+    if (technique < 0) {
+        say_who_publishes(v);
+        return;
+    }
+    if (ui_switch("probes as balls", &b->shown)) b->version = 0;
+    ui_tooltip("A white ball at each probe, lit by the irradiance that the probe has for each "
+               "direction. Sets the option probes=true of the method.");
+    if (!b->shown) return;
+    if (!probe_balls_published(v) && !bakes_running(v) && !publish(v, technique)) b->shown = false;
+    show_counts(b);
+}
