@@ -26,6 +26,11 @@ static const struct technique_preset presets[] = {
     { NULL, NULL },
 };
 
+static const struct technique_debug_view debug_views[] = {
+    { LIGHT_MAP_TEXELS_VIEW, LIGHT_MAP_TEXELS_VIEW_HELP, NULL },
+    { NULL, NULL, NULL },
+};
+
 // Light that has scattered leaves the surface: no lobe reflects it.
 static bool has_specular(const struct ort_options *options)
 {
@@ -171,6 +176,15 @@ static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     if (view->layers[FRAME_ID].id && s->map.texel_count > 0) ort_record_apply(s, cmd, view);
 }
 
+// The only view is that of texels.
+static void debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
+                       const char *name, gpu_image out)
+{
+    const struct ort *s = state;
+    (void)name;
+    light_map_record_texels_view(&s->light_map, cmd, view, out);
+}
+
 static gpu_image light_map(void *state)
 {
     const struct ort *s = state;
@@ -230,6 +244,7 @@ const struct technique technique_ort = {
     .bake_version = 7,
     .options = OPTION_TABLE(struct ort_options, option_rows, NULL),
     .presets = presets,
+    .debug_views = debug_views,
     .state_size = sizeof(struct ort),
     .more_needs = more_needs,
     .bake = ort_bake,
@@ -241,6 +256,7 @@ const struct technique technique_ort = {
     .follow = follow,
     .update = update,
     .record = record,
+    .debug_view = debug_view,
     .charts = ort_charts,
     .light_map = light_map,
     .paint = paint,

@@ -50,6 +50,7 @@ static bool create(void *state, const struct technique_create *how)
 }
 
 static const struct technique_debug_view views[] = {
+    { LIGHT_MAP_TEXELS_VIEW, LIGHT_MAP_TEXELS_VIEW_HELP, NULL },
     { PROBES_VIEW, PROBES_VIEW_HELP, NULL },
     { NULL, NULL, NULL },
 };
@@ -239,6 +240,15 @@ static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     probe_apply_record(&s->probes.apply, &s->probes.volume, cmd, view, has_map);
 }
 
+// Black where transfer is at vertices.
+static void debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
+                       const char *name, gpu_image out)
+{
+    const struct prt *s = state;
+    (void)name;
+    light_map_record_texels_view(&s->light_map, cmd, view, out);
+}
+
 static bool probes(void *state, struct probe_volume *out)
 {
     const struct prt *s = state;
@@ -330,6 +340,7 @@ const struct technique technique_prt = {
     .follow = follow,
     .update = update,
     .record = record,
+    .debug_view = debug_view,
     .has_light_map = has_light_map,
     .charts = prt_charts,
     .light_map = light_map,

@@ -38,9 +38,8 @@ struct radiosity_gpu_label {
 #define RADIOSITY_NO_TEXEL          4
 
 #define RADIOSITY_VIEW_CHARTS   0
-#define RADIOSITY_VIEW_TEXELS   1
-#define RADIOSITY_VIEW_CLUSTERS 2
-#define RADIOSITY_VIEW_VALIDITY 3
+#define RADIOSITY_VIEW_CLUSTERS 1
+#define RADIOSITY_VIEW_VALIDITY 2
 
 // Passes over rows `first` … `first` + `count` − 1: of texels, clusters or places.
 struct radiosity_direct_push {

@@ -5,10 +5,10 @@
 
 const struct technique_debug_view radiosity_views[] = {
     { "charts", "a colour for each chart of the light map", NULL },
-    { "texels", "a checkerboard of the light map's texels", NULL },
     { "clusters", "a colour for each cluster, a source of bounced light", NULL },
     { "validity", "texels inside geometry: yellow sampled beside it, red filled, violet black",
       NULL },
+    { LIGHT_MAP_TEXELS_VIEW, LIGHT_MAP_TEXELS_VIEW_HELP, NULL },
     { PROBES_VIEW, PROBES_VIEW_HELP, NULL },
     { NULL, NULL, NULL },
 };
@@ -59,6 +59,10 @@ void radiosity_view_record(struct radiosity *s, struct gpu_cmd *cmd, const struc
                            const char *name, gpu_image out)
 {
     const gpu_image *layers = view->layers;
+    if (strcmp(name, LIGHT_MAP_TEXELS_VIEW) == 0) {
+        light_map_record_texels_view(&s->light_map, cmd, view, out);
+        return;
+    }
     const struct radiosity_view_push push = { light_map_instances(&s->light_map.surfaces),
                                               s->map.charts.width, s->map.charts.height,
                                               number_of(name) };

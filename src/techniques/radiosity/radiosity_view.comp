@@ -1,4 +1,4 @@
-// Debug views: charts, texels and clusters of the light map, on its surfaces.
+// Debug views: charts, clusters and valid texels of the light map, on its surfaces.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -47,8 +47,6 @@ vec3 colour_at(vec3 at)
     uint place = (uint(at.z) * push.height + texel.y) * push.width + texel.x;
     radiosity_gpu_label label = label_table[place];
     if (label.state == uint(RADIOSITY_NO_TEXEL)) return NONE;
-    if (push.view == uint(RADIOSITY_VIEW_TEXELS))
-        return vec3((texel.x + texel.y & 1u) == 0u ? 0.5 : 0.15);
     if (push.view == uint(RADIOSITY_VIEW_CHARTS)) return colour_of(label.chart);
     if (push.view == uint(RADIOSITY_VIEW_CLUSTERS)) return colour_of(label.cluster);
     return VALIDITY[label.state];

@@ -54,6 +54,7 @@ static void list_pipelines(const struct light_map *map, size_t base, struct gpu_
     GPU_ADD(out, base,
             { GPU_PIPELINE, PIPELINE(show), .shader = &shader_common_light_map_show_comp },
             { GPU_PIPELINE, PIPELINE(seams), .shader = &shader_common_light_map_seams_comp },
+            { GPU_PIPELINE, PIPELINE(checker), .shader = &shader_common_light_map_checker_comp },
             { GPU_PIPELINE, PIPELINE(apply[0][0]), .shader = apply, .consts = still | 1u << 4 },
             { GPU_PIPELINE, PIPELINE(apply[0][1]), .shader = apply, .consts = still | 1u << 5 },
             { GPU_PIPELINE, PIPELINE(apply[1][0]), .shader = apply, .consts = moved | 1u << 4 },
@@ -291,5 +292,27 @@ void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
                  { .name = "specular", .image = layers[FRAME_SPECULAR] }),
         &push, sizeof push, gpu_groups(view->width, map->columns.width),
         gpu_groups(view->height, map->columns.height * map->columns.rows), 1);
+    gpu_scope_end(cmd);
+}
+
+void light_map_record_texels_view(const struct light_map *map, struct gpu_cmd *cmd,
+                                  const struct frame_view *view, gpu_image out)
+{
+    const gpu_image *layers = view->layers;
+    const struct light_map_checker_push push = { light_map_instances(&map->surfaces) };
+    if (!layers[FRAME_ID].id || !map->charts || map->charts->side_texel_count == 0) {
+        gpu_clear_image(cmd, out, (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
+        return;
+    }
+    gpu_scope_begin(cmd, "texels");
+    gpu_dispatch(cmd, map->checker,
+                 GPU_BIND(view->constants_binding,
+                          { .name = "depth", .image = layers[FRAME_DEPTH] },
+                          { .name = "normal", .image = layers[FRAME_NORMAL] },
+                          { .name = "id", .image = layers[FRAME_ID] },
+                          LIGHT_MAP_SURFACE_BINDINGS(&map->surfaces, cmd),
+                          { .name = "target", .image = out }),
+                 &push, sizeof push, gpu_groups(view->width, LIGHT_MAP_LOCAL_2D),
+                 gpu_groups(view->height, LIGHT_MAP_LOCAL_2D), 1);
     gpu_scope_end(cmd);
 }

@@ -30,7 +30,7 @@ struct light_map {
     int front;                        // the image that lookups read
     gpu_image reflected;              // with LIGHT_MAP_REFLECTED, of the newest view
     gpu_sampler linear;
-    gpu_pipeline show, seams;
+    gpu_pipeline show, seams, checker;
     gpu_pipeline apply[2][2]; // [with moves][whether there is FRAME_DIELECTRIC]
     gpu_pipeline mirror[2];   // of `apply` if `specular`, and with the environment's map
     struct light_map_columns columns;
@@ -66,3 +66,8 @@ void light_map_record_reflected(const struct light_map *map, struct gpu_cmd *cmd
 // Irradiance and specular light of a view's pixels, from the front image. Needs FRAME_ID.
 void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
                             const struct frame_view *view);
+// A debug view of techniques with a light map. `out`: as in struct technique.
+#define LIGHT_MAP_TEXELS_VIEW      "texels"
+#define LIGHT_MAP_TEXELS_VIEW_HELP "a checkerboard of the light map's texels"
+void light_map_record_texels_view(const struct light_map *map, struct gpu_cmd *cmd,
+                                  const struct frame_view *view, gpu_image out);

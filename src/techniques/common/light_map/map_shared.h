@@ -6,7 +6,8 @@
 
 #include "techniques/common/light_map/surface_shared.h"
 
-#define LIGHT_MAP_LOCAL 64 // workgroup size over texels and places
+#define LIGHT_MAP_LOCAL    64 // workgroup size over texels and places
+#define LIGHT_MAP_LOCAL_2D 8  // over pixels of the debug view
 
 // Tables are images of this width (table.h).
 #define LIGHT_MAP_TABLE_WIDTH 4096u
@@ -60,6 +61,10 @@ struct light_map_apply_push {
     AG_STRUCT(light_map_instances) instances;
 };
 
+struct light_map_checker_push {
+    AG_STRUCT(light_map_instances) instances;
+};
+
 // Specialization constants: the size of a workgroup; whether there is FRAME_DIELECTRIC; whether the
 // environment has a map; pixels of an invocation, which are in a column, at most 32.
 #define LIGHT_MAP_APPLY_WIDTH      0
@@ -75,6 +80,7 @@ _Static_assert(sizeof(struct light_map_paint_push) == 4, "layout is shared with 
 _Static_assert(sizeof(struct light_map_show_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_seams_push) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_apply_push) == 24, "layout is shared with GLSL");
+_Static_assert(sizeof(struct light_map_checker_push) == 8, "layout is shared with GLSL");
 #endif
 
 #endif
