@@ -61,4 +61,5 @@ void panel_inspect(struct viewer *v)
             show_instance(v, v->picked_instance);
     }
     panel_probes(v);
+    panel_texels(v);
 }

@@ -21,14 +21,15 @@ static int publisher(const struct viewer *v)
 
 static void say_who_publishes(const struct viewer *v)
 {
-    struct ag_technique_info info;
+    struct ag_technique_info source = { .name = "none" }, info;
     char list[256] = "";
+    ag_technique_get(v->method.chosen[ROLE_SOURCE], &source);
     for (int i = 0; ag_technique_get(i, &info); i++) {
         const size_t used = strlen(list);
         if (info.publishes_probes)
             snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", info.name);
     }
-    ui_faint("%.60s publishes no probes; these do: %s.", v->gi, list);
+    ui_faint("%s publishes no probes; these do: %s.", source.name, list);
 }
 
 // The method publishes probes from now on.
