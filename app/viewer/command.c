@@ -71,6 +71,10 @@ bool viewer_command(struct viewer *v, char *out, size_t size)
                     edits_changed_materials(&v->edits) ? "material" : "place of an object");
         return false;
     }
+    if (paint_has(v)) {
+        viewer_warn(v, "there is no option for painted light: the command cannot render this view");
+        return false;
+    }
     words_add(&w, "afterglow render");
     words_add_word(&w, v->desc->scene_name);
     words_add(&w, "%s", v->desc->scene_words);

@@ -39,6 +39,7 @@ static void move_mouse(struct viewer *v, float x, float y)
     v->mouse_y = y;
     if (v->gizmo.held) gizmo_drag(v);
     if (in_image(v)) gizmo_hover(v);
+    paint_move(v);
     if (v->dragging_split) v->split_at = fminf(fmaxf((x - r.x0) / (r.x1 - r.x0), 0.0f), 1.0f);
     if (v->inspecting && in_image(v) && v->dirty < FRAMES_OF_A_PICK) v->dirty = FRAMES_OF_A_PICK;
     if (!v->turning && !v->orbiting) return;
@@ -66,6 +67,7 @@ static void press(struct viewer *v, int button, bool down)
         if (button == MIDDLE) v->orbiting = false;
         if (button == LEFT) v->dragging_split = v->orbiting = false;
         if (button == LEFT) gizmo_release(v);
+        if (button == LEFT) paint_release(v);
         return;
     }
     if (!in_image(v)) return;
@@ -76,7 +78,7 @@ static void press(struct viewer *v, int button, bool down)
         v->dragging_split = true;
     else if (v->keys[GLFW_KEY_LEFT_ALT])
         v->orbiting = true;
-    else if (!gizmo_press(v))
+    else if (!paint_press(v) && !gizmo_press(v))
         pick(v);
 }
 

@@ -202,6 +202,7 @@ bool frame_step(struct viewer *v, float seconds)
     const bool shown = v->swapchain.handle != VK_NULL_HANDLE;
     if (shown && fit_renderings(v) && (v->dirty > 0 || v->playing) && render(v)) record_take(v);
     running_step(v);
+    paint_step(v);
     if (!shown) return true;
     interface_begin((int)v->swapchain.width, (int)v->swapchain.height, seconds);
     panels_draw(v);

@@ -8,6 +8,7 @@
 #include "look.h"
 #include "method.h"
 #include "pace.h"
+#include "paint.h"
 #include "path.h"
 #include "pixel.h"
 #include "probe_balls.h"
@@ -93,6 +94,7 @@ struct viewer {
     const struct viewer_desc *next; // its scene; NULL: none
     struct pixels pixels;
     struct probe_balls probe_balls;
+    struct paint paint;
     unsigned version; // of the image: viewer_touch counts it up
     int dirty;        // further frames to render, until what accumulates has settled
     bool quit;

@@ -97,6 +97,7 @@ static void close(struct viewer *v)
 static void set_defaults(struct viewer *v)
 {
     const struct viewer_desc *desc = v->desc;
+    paint_init(v);
     v->split_at = 0.5f;
     v->budget_ms = 16.7f;
     v->path.seconds = 2.0f;
@@ -157,6 +158,7 @@ static void end(struct viewer *v)
     undo_close(v->undo);
     pixels_forget(v);
     probe_balls_close(v);
+    paint_close(v);
     running_end(v);
     ag_device_destroy(v->device);
 }

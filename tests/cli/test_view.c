@@ -296,19 +296,36 @@ TEST(a_pixel_has_the_values_of_rendered_layers)
     json_decref(pixel);
 }
 
-TEST(probes_are_balls_in_the_image)
+static double irradiance_in(const char *path)
+{
+    json_t *pixel = json_load_file(path, 0, NULL);
+    assert_true(pixel);
+    const json_t *values = json_object_get(pixel, "irradiance");
+    const double lux = json_number_value(json_array_get(values, 1));
+    json_decref(pixel);
+    return lux;
+}
+
+// The probes' switch sets an option; painted light arrives at the pixel under the brush.
+TEST(probes_are_balls_and_light_is_painted)
 {
     char command[1024] = "";
     require_display();
-    view(CORNELL " --size 640x480 --scale 0.1 --gi lpv:dim=8,cascades=1",
-         "settle\ntab Inspect\nmouse 620 470\nwait 2\nscreenshot without.png\n"
-         "click probes as balls\nsettle\nmouse 620 470\nwait 2\nscreenshot with.png\n"
-         "command command.sh\n");
+    view(CORNELL " --size 480x480 --scale 0.1 --gi radiosity:texels=4096,rays=16",
+         "mouse 60 240\nsettle\ninspect dark.json\ntab Inspect\nmouse 470 470\nwait 2\nscreenshot "
+         "without.png\n"
+         "click probes as balls\nwait 4\nmouse 470 470\nwait 2\nscreenshot with.png\n"
+         "command command.sh\ntab Light\nclick Painted light\nwait 2\nclick paint with the left "
+         "button\nwait 2\n"
+         "mouse 60 240\nwait 1\nbutton left down\nwait 1\nbutton left up\nsettle\n"
+         "inspect bright.json\n");
     FILE *file = fopen("command.sh", "r");
     CHECK(file && fgets(command, sizeof command, file));
     fclose(file);
-    if (!strstr(command, "lpv:dim=8,cascades=1,probes=true")) fail_msg("no probes: %s", command);
+    if (!strstr(command, "rays=16,probes=true")) fail_msg("no probes: %s", command);
     CHECK(fabs(mean_of("with.png") - mean_of("without.png")) > 0.001);
+    const double added = irradiance_in("bright.json") - irradiance_in("dark.json");
+    if (added < 100 || added > 1100) fail_msg("a brush of 1000 lux adds %g lux", added);
 }
 
 // ---- methods

@@ -127,4 +127,5 @@ void panel_light(struct viewer *v)
     }
     for (int i = 0; i < v->edits.lights.count; i++) edit_light(v, i);
     edit_sky(v);
+    panel_paint(v);
 }
