@@ -13,7 +13,7 @@
 #include <string.h>
 
 static const double PI = 3.14159265358979324;
-static const double IDLE_WAIT_S = 0.1;
+static const double IDLE_WAIT_S = 0.1, UPDATE_S = 3.0;
 
 // ---- the image
 
@@ -40,6 +40,13 @@ static void take_pick(struct viewer *v)
         return;
     v->picked_instance = pick.instance;
     v->picking = false;
+}
+
+// drt finds the light of objects that moved on a thread, which nothing tells about.
+static bool is_updating(const struct viewer *v)
+{
+    const char *gi = ag_renderer_gi(v->main.renderer);
+    return gi && strstr(gi, "update=background") && window_seconds() < v->touched_s + UPDATE_S;
 }
 
 static bool render(struct viewer *v)
@@ -71,7 +78,7 @@ static bool render(struct viewer *v)
         result = rendering_render(&v->other, &frame);
     }
     if (v->picking) take_pick(v);
-    if (v->dirty > 0) v->dirty--;
+    if (v->dirty > (is_updating(v) ? 1 : 0)) v->dirty--;
     times_add(v);
     return viewer_check(v, result);
 }

@@ -95,6 +95,7 @@ struct viewer {
     struct pixels pixels;
     struct probe_balls probe_balls;
     struct paint paint;
+    double touched_s; // time of the newest change of the image
     unsigned version; // of the image: viewer_touch counts it up
     int dirty;        // further frames to render, until what accumulates has settled
     bool quit;

@@ -16,6 +16,7 @@ void panel_pixel(struct viewer *v);
 void panel_probes(struct viewer *v);
 void panel_texels(struct viewer *v);
 void panel_paint(struct viewer *v);
+void panel_blocks(struct viewer *v);
 
 // Edits the method of a rendering: that of the right part of a split screen, or the first.
 void panel_edit_method(struct viewer *v, bool other);

@@ -218,6 +218,7 @@ void panel_method(struct viewer *v)
 {
     show_bake(v);
     panel_edit_method(v, false);
+    panel_blocks(v);
     choose_debug_view(v);
     show_bytes(v);
 }
