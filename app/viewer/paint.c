@@ -248,14 +248,17 @@ static void dab_side(struct viewer *v, int side, const float position[3], const 
             to[0] = x >= to[0] ? x + 1 : to[0];
             to[1] = y + 1;
         }
-    if (to[1] > 0 && !upload(v, side, from, to)) p->stroke = false;
+    if (to[1] == 0 || upload(v, side, from, to)) return;
+    p->on = p->stroke = false; // another method runs by now, which takes no paint
+    forget_paint(p);
 }
 
 static void dab(struct viewer *v, float x, float y)
 {
     float position[3], normal[3];
     if (!paint_surface(v, x, y, position, normal)) return;
-    for (int side = 0; side < v->paint.sides; side++) dab_side(v, side, position, normal);
+    for (int side = 0; side < v->paint.sides && v->paint.stroke; side++)
+        dab_side(v, side, position, normal);
 }
 
 bool paint_press(struct viewer *v)
