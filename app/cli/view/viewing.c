@@ -174,7 +174,7 @@ static enum status find_session(struct viewing *viewing)
     return DONE;
 }
 
-// What the command line says of the scene alone does not hold for another one.
+// Options that describe the scene of the command line do not hold for another one.
 static void forget_scene(struct arguments *a)
 {
     a->camera = a->animation = a->environment = a->session = NULL;
