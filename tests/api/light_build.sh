@@ -1,15 +1,15 @@
 #!/bin/sh
-# light_build.sh SOURCE LIBRARY CC CXX LAUNCHER: a library without the reference, bakes, files and OpenMP needs the Vulkan
+# light_build.sh SOURCE LIBRARY SHADERS CC CXX LAUNCHER: a library without the reference, bakes, files and OpenMP needs the Vulkan
 # loader alone beside the C library. It renders the images of the full LIBRARY, refuses in words what it is without, and exports
-# the same functions. Installed, its static library needs no more.
+# the same functions. Installed, its static library needs no more. It takes over the SPIR-V in the folder SHADERS.
 set -eu
 export CMAKE_GENERATOR=Ninja
-source=$1 library=$2 cc=$3 cxx=$4 launcher=$5
+source=$1 library=$2 shaders=$3 cc=$4 cxx=$5 launcher=$6
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cmake -S "$source" -B "$work/build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_C_COMPILER_LAUNCHER="$launcher" \
     -DCMAKE_BUILD_TYPE=None -DAFTERGLOW_TESTS=OFF -DAFTERGLOW_PROGRAMS=OFF -DAFTERGLOW_REFERENCE=OFF -DAFTERGLOW_FILES=OFF \
-    -DAFTERGLOW_OPENMP=OFF >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+    -DAFTERGLOW_OPENMP=OFF -DAFTERGLOW_SPIRV_FROM="$shaders" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 cmake --build "$work/build" --parallel 2 >"$work/log" 2>&1 || { tail -40 "$work/log"; exit 1; }
 light=$work/build/libafterglow.so
 ! grep -q 'warning:' "$work/log" || { grep -A4 'warning:' "$work/log"; exit 1; }

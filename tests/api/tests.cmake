@@ -65,8 +65,8 @@ if(NOT AFTERGLOW_SANITIZE)
     COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/versions.sh $<TARGET_FILE:afterglow_shared> ${CMAKE_SOURCE_DIR}/include ${CMAKE_C_COMPILER}
       ${CMAKE_CXX_COMPILER})
   add_test(NAME api.light_build
-    COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/light_build.sh ${CMAKE_SOURCE_DIR} $<TARGET_FILE:afterglow_shared> ${CMAKE_C_COMPILER}
-      ${CMAKE_CXX_COMPILER} "${CMAKE_C_COMPILER_LAUNCHER}")
+    COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/light_build.sh ${CMAKE_SOURCE_DIR} $<TARGET_FILE:afterglow_shared> ${CMAKE_BINARY_DIR}/shaders
+      ${CMAKE_C_COMPILER} ${CMAKE_CXX_COMPILER} "${CMAKE_C_COMPILER_LAUNCHER}")
   set_tests_properties(api.light_build PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 300 LABELS api)
   set_tests_properties(api.exports api.install api.subproject api.versions PROPERTIES TIMEOUT 300 LABELS api)
 endif()

@@ -27,7 +27,7 @@ function(ag_fuzz name)
   if(AFTERGLOW_FUZZ_DRIVER)
     add_test(NAME fuzz.${name} COMMAND fuzz_${name} ${folder}/corpus/${name})
     set_tests_properties(fuzz.${name} PROPERTIES LABELS fuzz TIMEOUT 300
-      ENVIRONMENT "ASAN_OPTIONS=detect_leaks=1;UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1;LSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/framework/lsan.supp,print_suppressions=0")
+      ENVIRONMENT "ASAN_OPTIONS=${ag_asan_options};UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1;LSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/framework/lsan.supp,print_suppressions=0")
   endif()
 endfunction()
 
