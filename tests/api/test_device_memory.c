@@ -1,6 +1,7 @@
 // Device memory from the program's callbacks: all of it, wholly returned, and refused at every
 // call.
 #include "api/renderer_fixture.h"
+#include "framework/shared_pipelines.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -9,6 +10,7 @@
 
 static long memories, views, wrong_allocators;
 static const VkAllocationCallbacks *expected_allocator;
+static bool share_pipelines; // of the devices of a test
 
 static VKAPI_ATTR VkResult VKAPI_CALL allocate_memory(VkDevice device,
                                                       const VkMemoryAllocateInfo *info,
@@ -33,6 +35,8 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL device_function(VkDevice device,
 {
     if (strcmp(name, "vkAllocateMemory") == 0) return (PFN_vkVoidFunction)allocate_memory;
     if (strcmp(name, "vkCreateImageView") == 0) return (PFN_vkVoidFunction)create_image_view;
+    const PFN_vkVoidFunction shared = share_pipelines ? shared_pipelines_function(name) : NULL;
+    if (shared) return shared;
     return vkGetDeviceProcAddr(device, name);
 }
 
@@ -219,6 +223,7 @@ static void check_every_refusal(bool rest, uint64_t most_bytes)
     const struct ag_memory_callbacks callbacks = callbacks_of(&m);
     struct ag_device_adopt adopt = lend(&own);
     adopt.memory = &callbacks;
+    share_pipelines = true;
     if (use_device(context, &adopt) != AG_OK) fail_msg("%s", ag_context_last_error(context));
     const long calls = m.calls;
     CHECK(calls > 2);
@@ -233,7 +238,9 @@ static void check_every_refusal(bool rest, uint64_t most_bytes)
         if (result != AG_ERROR_MEMORY && (rest || result != AG_OK))
             fail_msg("refusal %ld of %ld gives \"%s\"", k, calls, ag_result_string(result));
     }
+    share_pipelines = false;
     ag_context_destroy(context);
+    shared_pipelines_close(own.device);
     own_device_close(&own);
 }
 

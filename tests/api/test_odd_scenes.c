@@ -30,33 +30,46 @@ static void check_said(enum ag_log_level level, const char *gi, const char *what
     fail_msg("not said by %s at level %d: %s; but\n%s", gi, (int)level, what, said);
 }
 
-// One device for the scenes of a test: pipelines are compiled once.
+// One device for all tests, one after the other: pipelines are compiled once.
 struct floor_test {
     struct ag_context *context;
     struct ag_device *device;
+    int messages; // of validation, before the test
 };
+static struct floor_test shared_test;
 
-static struct floor_test floor_test_open(void)
+static bool close_device(void)
 {
-    test_gpu_require();
-    struct floor_test test = { 0 };
+    ag_device_destroy(shared_test.device);
+    ag_context_destroy(shared_test.context);
+    return true;
+}
+
+static void open_device(void)
+{
     struct ag_context_desc context;
     ag_context_desc_default(&context);
     context.log = listen;
     context.log_up_to = AG_LOG_INFO;
-    assert_int_equal(ag_context_create(&context, &test.context), AG_OK);
+    assert_int_equal(ag_context_create(&context, &shared_test.context), AG_OK);
     struct ag_device_desc device;
     ag_device_desc_default(&device);
     device.validation = true;
-    assert_int_equal(ag_device_create(test.context, &device, &test.device), AG_OK);
-    return test;
+    assert_int_equal(ag_device_create(shared_test.context, &device, &shared_test.device), AG_OK);
+    test_register_end(close_device);
 }
 
-static void floor_test_close(struct floor_test *test)
+static struct floor_test floor_test_open(void)
 {
-    assert_int_equal(ag_device_validation_messages(test->device), 0);
-    ag_device_destroy(test->device);
-    ag_context_destroy(test->context);
+    test_gpu_require();
+    if (!shared_test.device) open_device();
+    shared_test.messages = ag_device_validation_messages(shared_test.device);
+    return shared_test;
+}
+
+static void floor_test_close(const struct floor_test *test)
+{
+    assert_int_equal(ag_device_validation_messages(test->device), test->messages);
 }
 
 // A floor of `side` metres with a wall at one end, below a point light.
