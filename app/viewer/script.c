@@ -485,12 +485,34 @@ static bool read_line(struct script *script, char line[LINE_SIZE])
     return false;
 }
 
+static bool run_line(struct script *script, struct viewer *v, struct event_queue *queue,
+                     char *line);
+
+static bool run_says(const struct words *w)
+{
+    return strstr(w->v->message, w->rest) ||
+           wrong(w->script, "the status line has no such text, but:", w->v->message);
+}
+
+// The rest of the line must fail; its sentence goes to the status line.
+static bool run_fails(const struct words *w)
+{
+    struct script *script = w->script;
+    if (run_line(script, w->v, w->queue, w->rest))
+        return wrong(script, "the line did not fail:", w->name);
+    if (script->error[0]) viewer_warn(w->v, "%s", script->error);
+    script->error[0] = 0;
+    return true;
+}
+
 static bool run_line(struct script *script, struct viewer *v, struct event_queue *queue, char *line)
 {
     char *name = line + strspn(line, " \t"), *rest = name + strcspn(name, " \t");
     if (*rest) *rest++ = 0;
     rest += strspn(rest, " \t");
-    return run(&(struct words){ v, script, queue, name, rest });
+    const struct words w = { v, script, queue, name, rest };
+    if (is(&w, "fails")) return run_fails(&w);
+    return is(&w, "says") ? run_says(&w) : run(&w);
 }
 
 static bool lacks_samples(struct script *script, struct viewer *v)

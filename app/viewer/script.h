@@ -30,6 +30,7 @@
 //   pace clear|FILE              durations of the window's frames since the last pace, as JSON
 //   inspect FILE                 the layers at the pixel under the mouse, as JSON
 //   command FILE                 the command that renders this view
+//   fails LINE · says TEXT       a line that must fail; the status line must have a text
 //   lose                         as if the device were lost
 //   random SEED N                N random events
 //   quit

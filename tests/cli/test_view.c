@@ -487,6 +487,7 @@ TEST(errors_are_those_to_the_reference)
 {
     require_display();
     view(CORNELL SMALL " --gi lpv:dim=16 --split reference",
+         "fails errors early.json\nsays no errors are measured\n"
          "settle\nsamples 32\nerrors errors.json\ngi none\nsettle\nsamples 64\nwait 2\n"
          "errors none.json\n");
     json_t *lpv = json_load_file("errors.json", 0, NULL),
@@ -500,23 +501,22 @@ TEST(errors_are_those_to_the_reference)
           json_number_value(json_object_get(lpv, "flip")));
     json_decref(lpv);
     json_decref(none);
-    check_fails(CORNELL LEAST, "errors errors.json\n", "script.txt:1: no errors are measured");
 }
 
 TEST(changes_are_undone_and_done_again)
 {
     require_display();
-    view(CORNELL SMALL " --exposure 9 --gi lpv:dim=16",
-         "settle\nsave first.png\nlight 0 0\nwait 1\ngi none\nwait 1\ntab Light\nclick point\nwait "
-         "2\n"
-         "settle\nsave changed.png\nundo\nundo\nundo\nsettle\nsave undone.png\n"
-         "key control down\nkey shift down\npress z\npress z\npress z\nkey shift up\n"
-         "key control up\nsettle\nsave again.png\n");
+    view(
+        CORNELL SMALL " --exposure 9 --gi lpv:dim=16",
+        "settle\nsave first.png\nlight 0 0\nwait 1\ngi none\nwait 1\ntab Light\nclick point\nwait "
+        "2\n"
+        "settle\nsave changed.png\nundo\nundo\nundo\nsettle\nsave undone.png\n"
+        "key control down\nkey shift down\npress z\npress z\npress z\nkey shift up\n"
+        "key control up\nsettle\nsave again.png\nfails redo\nsays nothing to do again\nundo\nundo\n"
+        "undo\nfails undo\nsays nothing to undo\n");
     check_equal("first.png", "undone.png");
     check_equal("changed.png", "again.png");
     CHECK(mean_of("changed.png") < 0.9 * mean_of("first.png"));
-    check_fails(CORNELL LEAST, "light 0 0\nundo\nundo\n", "there is nothing to undo");
-    check_fails(CORNELL LEAST, "redo\n", "there is nothing to do again");
 }
 
 // The object with that index of a session's list.
@@ -560,11 +560,15 @@ TEST(handles_move_and_turn)
     if (files_are_equal("first.png", "moved.png")) fail_msg("nothing has moved");
 }
 
-static void check_session_is_refused(const char *text, const char *names)
+// A line of a script that reads a session with a text, which must be refused with a sentence.
+static void add_refused(char script[1024], const char *text, const char *sentence)
 {
-    write_file("wrong.json", text, strlen(text));
-    check_fails(CORNELL LEAST " --session wrong.json", "wait 1\n", names);
-    check_fails(CORNELL LEAST, "session read wrong.json\n", names);
+    static int count;
+    char name[32];
+    const size_t used = strlen(script);
+    snprintf(name, sizeof name, "wrong-%d.json", count++);
+    write_file(name, text, strlen(text));
+    snprintf(script + used, 1024 - used, "fails session read %s\nsays %s\n", name, sentence);
 }
 
 #define SESSION "{\"afterglow_session\": 1, \"scene\": \"@cornell:light=point\", "
@@ -583,21 +587,21 @@ TEST(a_session_gives_the_view_again)
 
 TEST(a_session_that_is_wrong_changes_nothing)
 {
+    char script[1024] = "settle\nsave first.png\n";
     require_display();
-    check_session_is_refused("{\"a\": ", "cannot use wrong.json: line 1: ");
-    check_session_is_refused("[]", "it is no session file");
-    check_session_is_refused("{\"afterglow_session\": 1, \"scene\": \"@atrium\"}",
-                             "it belongs to: afterglow view @atrium --session wrong.json");
-    check_session_is_refused(SESSION "\"gl\": 1}", "unknown member gl: did you mean gi?");
-    check_session_is_refused(SESSION "\"lights\": [{\"index\": 3}]}",
-                             "light: the scene has no light");
-    write_file("wrong.json",
-               SESSION "\"gi\": \"lvp\", \"lights\": [{\"index\": 0, \"on\": false}]}",
-               strlen(SESSION "\"gi\": \"lvp\", \"lights\": [{\"index\": 0, \"on\": false}]}"));
-    view(CORNELL SMALL, "settle\nsave first.png\ndrop wrong.json\nsettle\nsave last.png\n");
+    add_refused(script, "{\"a\": ", "wrong-0.json: line 1: ");
+    add_refused(script, "[]", "it is no session file");
+    add_refused(script, "{\"afterglow_session\": 1, \"scene\": \"@atrium\"}",
+                "it belongs to: afterglow view @atrium --session wrong-2.json");
+    add_refused(script, SESSION "\"gl\": 1}", "unknown member gl: did you mean gi?");
+    add_refused(script, SESSION "\"lights\": [{\"index\": 3}]}", "light: the scene has no light");
+    add_refused(script, SESSION "\"gi\": \"lvp\", \"lights\": [{\"index\": 0, \"on\": false}]}",
+                "did you mean lpv");
+    strcat(script, "fails session write missing/a.json\nsays missing/a.json\n"
+                   "drop wrong-5.json\nsettle\nsave last.png\n");
+    view(CORNELL SMALL, script);
     check_equal("first.png", "last.png");
-    check_fails(CORNELL SMALL, "settle\nsession read wrong.json\n", "did you mean lpv");
-    check_fails(CORNELL LEAST, "session write missing/a.json\n", "missing/a.json");
+    check_fails(CORNELL LEAST " --session wrong-3.json", "wait 1\n", "unknown member gl");
 }
 
 // The window goes while a bake runs: what is finished is kept for the next one.
@@ -629,13 +633,13 @@ TEST(other_scenes_open_in_the_window)
 TEST(a_flight_is_recorded_to_numbered_images)
 {
     require_display();
-    view(CORNELL LEAST, "look 0,2,9 0,2,0\nsettle\nsave first.png\npath add\nlook 1,2,8 0,2,0\n"
-                        "settle\nsave last.png\npath add\npath every 0.5 4\npath record flight\n");
+    view(CORNELL LEAST, "fails path record flight\nsays the camera's path has no keys\n"
+                        "look 0,2,9 0,2,0\nsettle\nsave first.png\npath add\nlook 1,2,8 0,2,0\n"
+                        "settle\nsave last.png\npath add\npath every 0.5 4\npath record flight\n"
+                        "fails path record missing/flight\nsays missing/flight\n");
     check_equal("first.png", "flight/00000.png");
     check_equal("last.png", "flight/00002.png");
     CHECK(!file_exists("flight/00003.png"));
-    check_fails(CORNELL LEAST, "path record flight\n", "the camera's path has no keys");
-    check_fails(CORNELL LEAST, "path add\npath record missing/flight\n", "missing/flight");
 }
 
 TEST(a_lost_device_leaves_a_session)
@@ -653,12 +657,13 @@ TEST(a_lost_device_leaves_a_session)
 TEST(a_line_that_fails_is_named)
 {
     require_display();
-    check_fails(CORNELL LEAST, "# first\n\nwait 2\nclick no such label\n",
-                "script.txt:4: no element is shown with the label no such label");
-    check_fails(CORNELL LEAST, "frobnicate 1\n", "script.txt:1: unknown command frobnicate");
-    check_fails(CORNELL LEAST, "wait 1\ngi lvp\n", "script.txt:2: ");
-    check_fails(CORNELL LEAST, "wait 1\nsave missing/a.png\n", "script.txt:2: ");
+    check_fails(CORNELL LEAST,
+                "# first\n\nfails frobnicate 1\nsays script.txt:3: unknown command frobnicate\n"
+                "fails gi lvp\nsays did you mean lpv\nwait 2\n"
+                "fails save missing/a.png\nsays missing/a.png\nclick no such label\n",
+                "script.txt:10: no element is shown with the label no such label");
     check_fails(CORNELL LEAST, "screenshot missing/a.png\nwait 1\n", "script.txt:1: ");
+    check_fails(CORNELL LEAST, "fails wait 1\n", "script.txt:1: the line did not fail");
 }
 
 TEST(files_that_cannot_be_used_are_named)
