@@ -130,8 +130,11 @@ void running_step(struct viewer *v)
 {
     bakes_step(v);
     if (!v->truth || !v->main.shown.vk_image) return;
-    // Each restart begins from nothing: the camera rests before.
-    if (v->changed && v->dirty <= SETTLE_FRAMES - REST_FRAMES) restart(v);
+    // Each restart begins from nothing: the camera rests before. A software device shares its
+    // processors with the reference: the image comes first.
+    const int rest = v->device_info.software ? 0 : SETTLE_FRAMES - REST_FRAMES;
+    if (v->changed && v->dirty > rest) truth_pause(v->truth);
+    if (v->changed && v->dirty <= rest) restart(v);
     if (!v->offered && v->dirty == 0) offer(v);
     take(v);
 }

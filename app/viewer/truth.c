@@ -23,6 +23,7 @@ struct truth {
     struct truth_view view;
     struct edits edits;
     struct ag_image offered;   // pixels NULL: none
+    bool paused;               // until the next restart
     bool unmeasured;           // it is newer than the errors
     struct ag_image images[2]; // radiance and FLIP, until they are taken
     struct truth_state state;
@@ -175,7 +176,8 @@ static void show(struct truth *t)
 static bool wait_for_work(struct truth *t)
 {
     pthread_mutex_lock(&t->mutex);
-    while (!t->quit && t->request == t->running && !(t->unmeasured && t->reference))
+    while (!t->quit &&
+           (t->paused || (t->request == t->running && !(t->unmeasured && t->reference))))
         pthread_cond_wait(&t->changed, &t->mutex);
     pthread_mutex_unlock(&t->mutex);
     return !t->quit;
@@ -253,9 +255,18 @@ static void forget(struct ag_image *image)
     *image = (struct ag_image){ 0 };
 }
 
+void truth_pause(struct truth *t)
+{
+    pthread_mutex_lock(&t->mutex);
+    if (!t->paused) t->request++;
+    t->paused = true;
+    pthread_mutex_unlock(&t->mutex);
+}
+
 void truth_restart(struct truth *t, const struct truth_view *view)
 {
     pthread_mutex_lock(&t->mutex);
+    t->paused = false;
     t->view = *view;
     t->edits = *view->edits;
     t->view.edits = NULL;

@@ -18,6 +18,8 @@ struct truth_view {
 // NULL: no thread. The scene is loaded there a second time.
 struct truth *truth_open(const struct viewer_desc *desc);
 void truth_close(struct truth *truth); // accepts NULL
+// The view changes: nothing is traced until truth_restart.
+void truth_pause(struct truth *t);
 // Begins again with another view.
 void truth_restart(struct truth *truth, const struct truth_view *view);
 // The image whose error is measured, radiance; copied. false: it is of another size.
