@@ -2,10 +2,10 @@
 #include "controls.h"
 
 #include "command.h"
-#include "opening.h"
+#include "viewer/scene/opening.h"
 #include "operations.h"
-#include "running.h"
-#include "undo.h"
+#include "viewer/methods/running.h"
+#include "viewer/scene/undo.h"
 
 #include <GLFW/glfw3.h>
 

@@ -2,10 +2,10 @@
 
 #include "controls.h"
 #include "operations.h"
-#include "running.h"
+#include "viewer/methods/running.h"
 #include "script.h"
-#include "times.h"
-#include "undo.h"
+#include "viewer/methods/times.h"
+#include "viewer/scene/undo.h"
 #include "viewer/panels/panels.h"
 
 #include <math.h>

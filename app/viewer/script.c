@@ -1,13 +1,13 @@
 #include "script.h"
 
-#include "bakes.h"
-#include "changes.h"
+#include "viewer/methods/bakes.h"
+#include "viewer/scene/changes.h"
 #include "command.h"
-#include "opening.h"
+#include "viewer/scene/opening.h"
 #include "operations.h"
-#include "running.h"
-#include "session_file.h"
-#include "undo.h"
+#include "viewer/methods/running.h"
+#include "viewer/scene/session_file.h"
+#include "viewer/scene/undo.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -1,13 +1,13 @@
 // The viewer's life: a window, and in it one scene after another.
 #include "viewer.h"
 
-#include "changes.h"
+#include "viewer/scene/changes.h"
 #include "frame.h"
 #include "operations.h"
-#include "running.h"
+#include "viewer/methods/running.h"
 #include "script.h"
-#include "session_file.h"
-#include "undo.h"
+#include "viewer/scene/session_file.h"
+#include "viewer/scene/undo.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 // Colour temperatures and directions of lights in the panels.
-#include "viewer/light_values.h"
+#include "viewer/scene/light_values.h"
 
 #include "framework/test.h"
 

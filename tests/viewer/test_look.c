@@ -1,5 +1,5 @@
 // The viewer's camera: rays and projections are inverse; orbits keep their point.
-#include "viewer/look.h"
+#include "viewer/camera/look.h"
 
 #include "framework/test.h"
 

@@ -1,5 +1,5 @@
 // Methods as text: what a software device begins with.
-#include "viewer/method.h"
+#include "viewer/methods/method.h"
 
 #include "framework/test.h"
 

@@ -1,6 +1,6 @@
 // The camera's path: it meets its keys, takes the shorter way around, and is straight where they
 // are.
-#include "viewer/path.h"
+#include "viewer/camera/path.h"
 
 #include "framework/test.h"
 

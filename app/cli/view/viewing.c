@@ -5,7 +5,7 @@
 #include "cli/files/whole_file.h"
 #include "cli/output.h"
 #include "view_words.h"
-#include "viewer/session_file.h"
+#include "viewer/scene/session_file.h"
 #include "viewer/viewer.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 // Draws the balls that show probes.
 #include "overlay.h"
 
-#include "viewer/probe_balls.h"
+#include "viewer/inspect/probe_balls.h"
 
 enum { MOST_INDICES = 8192 };
 

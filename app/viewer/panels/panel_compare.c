@@ -2,7 +2,7 @@
 #include "panel.h"
 
 #include "viewer/operations.h"
-#include "viewer/running.h"
+#include "viewer/methods/running.h"
 
 static void show_errors(struct viewer *v)
 {

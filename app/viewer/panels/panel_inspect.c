@@ -2,7 +2,7 @@
 #include "panel.h"
 
 #include "overlay.h"
-#include "viewer/changes.h"
+#include "viewer/scene/changes.h"
 #include "viewer/operations.h"
 
 #include <stdio.h>

@@ -2,8 +2,8 @@
 #include "panel.h"
 
 #include "overlay.h"
-#include "viewer/changes.h"
-#include "viewer/light_values.h"
+#include "viewer/scene/changes.h"
+#include "viewer/scene/light_values.h"
 #include "viewer/operations.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 // The method: techniques of the catalogue, their options, presets and debug views.
 #include "panel.h"
-#include "viewer/bakes.h"
+#include "viewer/methods/bakes.h"
 #include "viewer/operations.h"
-#include "viewer/running.h"
+#include "viewer/methods/running.h"
 
 #include <stdio.h>
 #include <string.h>

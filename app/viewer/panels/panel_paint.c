@@ -2,7 +2,7 @@
 #include "panel.h"
 
 #include "viewer/operations.h"
-#include "viewer/paint.h"
+#include "viewer/inspect/paint.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 #include "panel.h"
 
 #include "viewer/operations.h"
-#include "viewer/pixel.h"
+#include "viewer/inspect/pixel.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,10 +1,10 @@
 // The switch of the balls that show probes, and why there are none.
 #include "panel.h"
 
-#include "viewer/bakes.h"
+#include "viewer/methods/bakes.h"
 #include "viewer/operations.h"
-#include "viewer/probe_balls.h"
-#include "viewer/running.h"
+#include "viewer/inspect/probe_balls.h"
+#include "viewer/methods/running.h"
 
 #include <stdio.h>
 #include <string.h>

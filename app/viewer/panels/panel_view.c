@@ -1,9 +1,9 @@
 // Camera, exposure, layer, animation, and what is taken away.
 #include "panel.h"
 #include "viewer/command.h"
-#include "viewer/opening.h"
+#include "viewer/scene/opening.h"
 #include "viewer/operations.h"
-#include "viewer/session_file.h"
+#include "viewer/scene/session_file.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -4,8 +4,8 @@
 #include "viewer/operations.h"
 #include "panel.h"
 #include "overlay.h"
-#include "viewer/running.h"
-#include "viewer/undo.h"
+#include "viewer/methods/running.h"
+#include "viewer/scene/undo.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // In place of the viewer, in a build without it.
-#include "viewer/session_file.h"
+#include "viewer/scene/session_file.h"
 #include "viewer/viewer.h"
 
 #include <stdio.h>

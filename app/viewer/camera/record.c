@@ -1,7 +1,7 @@
 #include "record.h"
 
-#include "command.h"
-#include "operations.h"
+#include "viewer/command.h"
+#include "viewer/operations.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 #include "bakes.h"
 
-#include "operations.h"
+#include "viewer/operations.h"
 #include "yielding.h"
 
 #include <pthread.h>

@@ -1,7 +1,7 @@
 #include "probe_balls.h"
 
-#include "operations.h"
-#include "running.h"
+#include "viewer/operations.h"
+#include "viewer/methods/running.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 #include "opening.h"
 
-#include "operations.h"
+#include "viewer/operations.h"
 #include "session_file.h"
 
 #include <stdio.h>

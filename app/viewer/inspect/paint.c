@@ -1,7 +1,7 @@
 #include "paint.h"
 
-#include "bakes.h"
-#include "operations.h"
+#include "viewer/methods/bakes.h"
+#include "viewer/operations.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 #include "undo.h"
 
-#include "operations.h"
-#include "running.h"
+#include "viewer/operations.h"
+#include "viewer/methods/running.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "gizmo.h"
 
-#include "changes.h"
-#include "operations.h"
+#include "viewer/scene/changes.h"
+#include "viewer/operations.h"
 
 #include <math.h>
 #include <string.h>

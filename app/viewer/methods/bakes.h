@@ -1,7 +1,7 @@
 // Bakes of the running method: from files, or run on a thread beside the frames.
 #pragma once
 
-#include "state.h"
+#include "viewer/state.h"
 
 enum { VIEWER_BAKES = 4 };
 

@@ -1,7 +1,7 @@
 #include "running.h"
 
 #include "bakes.h"
-#include "operations.h"
+#include "viewer/operations.h"
 
 #include <stdio.h>
 #include <stdlib.h>

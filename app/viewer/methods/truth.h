@@ -2,8 +2,8 @@
 // anything changes.
 #pragma once
 
-#include "edits.h"
-#include "viewer.h"
+#include "viewer/scene/edits.h"
+#include "viewer/viewer.h"
 
 struct truth;
 

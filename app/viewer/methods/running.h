@@ -2,7 +2,7 @@
 // and the reference.
 #pragma once
 
-#include "state.h"
+#include "viewer/state.h"
 
 // Opens the first rendering; on a software device with the preset "low" where `gi` has no options.
 bool running_begin(struct viewer *v, const char *gi);

@@ -1,6 +1,6 @@
 #include "pixel.h"
 
-#include "operations.h"
+#include "viewer/operations.h"
 
 #include <math.h>
 #include <stdarg.h>

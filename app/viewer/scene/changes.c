@@ -1,6 +1,6 @@
 #include "changes.h"
 
-#include "operations.h"
+#include "viewer/operations.h"
 
 struct edits_moment viewer_moment(const struct viewer *v)
 {

@@ -2,7 +2,7 @@
 // (ag_renderer_paint_light).
 #pragma once
 
-#include "method.h"
+#include "viewer/methods/method.h"
 
 struct viewer;
 

@@ -1,7 +1,7 @@
 // Changes of the scene by panels, handles and scripts: shown at once, remembered for undo.
 #pragma once
 
-#include "state.h"
+#include "viewer/state.h"
 
 struct edits_moment viewer_moment(const struct viewer *v);
 // False, with a message, if the scene refuses.

@@ -1,8 +1,8 @@
 // Writes session files.
 #include "session_file.h"
 
-#include "operations.h"
-#include "running.h"
+#include "viewer/operations.h"
+#include "viewer/methods/running.h"
 
 #include "shell/json_values.h"
 

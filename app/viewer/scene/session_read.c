@@ -1,10 +1,10 @@
 // Reads session files: all members are checked, then all are applied, or none.
 #include "session_file.h"
 
-#include "bakes.h"
+#include "viewer/methods/bakes.h"
 #include "changes.h"
-#include "operations.h"
-#include "running.h"
+#include "viewer/operations.h"
+#include "viewer/methods/running.h"
 
 #include <jansson.h>
 
