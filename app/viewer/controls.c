@@ -27,14 +27,17 @@ static bool in_image(const struct viewer *v)
 static bool on_split(const struct viewer *v)
 {
     const struct region r = viewer_region(v);
-    return running_is_divided(v) &&
+    return viewer_is_divided(v) && !v->side_by_side &&
            fabsf(v->mouse_x - (r.x0 + v->split_at * (r.x1 - r.x0))) < SPLIT_PIXELS;
 }
 
 static void move_mouse(struct viewer *v, float x, float y)
 {
-    const float dx = x - v->mouse_x, dy = y - v->mouse_y;
+    const float dx = x - v->mouse_from_x, dy = y - v->mouse_y;
     const struct region r = viewer_region(v);
+    v->mouse_from_x = x;
+    v->mouse_right = viewer_is_side_by_side(v) && x >= r.x1 && x < r.x1 + (r.x1 - r.x0);
+    if (v->mouse_right) x -= r.x1 - r.x0;
     v->mouse_x = x;
     v->mouse_y = y;
     if (v->gizmo.held) gizmo_drag(v);

@@ -83,25 +83,32 @@ static bool render(struct viewer *v)
     return viewer_check(v, result);
 }
 
+static bool fit(struct viewer *v, struct rendering *rendering, int width, int height)
+{
+    if (width == rendering->width && height == rendering->height) return true;
+    viewer_change(v);
+    return viewer_check(v, rendering_resize(rendering, width, height));
+}
+
 static bool fit_renderings(struct viewer *v)
 {
     int width, height;
     viewer_image_size(v, &width, &height);
-    if (width == v->main.width && height == v->main.height) return true;
-    viewer_change(v);
-    return viewer_check(v, rendering_resize(&v->main, width, height)) &&
-           (!v->split || viewer_check(v, rendering_resize(&v->other, width, height)));
+    return fit(v, &v->main, width, height) && (!v->split || fit(v, &v->other, width, height));
 }
 
 static void draw_renderings(struct viewer *v)
 {
     const struct region r = viewer_region(v);
+    const bool side = viewer_is_side_by_side(v);
+    const float by = side ? r.x1 - r.x0 : 0.0f, first = viewer_first_share(v);
     const float rectangle[4] = { r.x0, r.y0, r.x1, r.y1 };
+    const float second[4] = { r.x0 + by, r.y0, r.x1 + by, r.y1 };
+    const float from = side ? 0.0f : first;
     swapchain_clear(&v->swapchain);
-    const float at = running_is_divided(v) ? v->split_at : 1.0f;
-    rendering_draw(&v->main, &v->swapchain, rectangle, 0.0f, at);
-    if (v->truth) host_image_draw(&v->truth_image, &v->swapchain, rectangle, at, 1.0f);
-    if (v->split) rendering_draw(&v->other, &v->swapchain, rectangle, v->split_at, 1.0f);
+    rendering_draw(&v->main, &v->swapchain, rectangle, 0.0f, first);
+    if (v->truth) host_image_draw(&v->truth_image, &v->swapchain, second, from, 1.0f);
+    if (v->split) rendering_draw(&v->other, &v->swapchain, second, from, 1.0f);
 }
 
 // ---- the window

@@ -82,11 +82,40 @@ void viewer_note(struct viewer *v, const char *what, int index)
         snprintf(v->change, sizeof v->change, "%s %d", what, index);
 }
 
-struct region viewer_region(const struct viewer *v)
+struct region viewer_images(const struct viewer *v)
 {
     const float sidebar = SIDEBAR_UNITS * window_scale(v->window);
     const float width = (float)v->swapchain.width, height = (float)v->swapchain.height;
     return (struct region){ 0, 0, fmaxf(width - sidebar, 0.25f * width), height };
+}
+
+struct region viewer_region(const struct viewer *v)
+{
+    struct region r = viewer_images(v);
+    if (viewer_is_side_by_side(v)) r.x1 = floorf(0.5f * (r.x0 + r.x1));
+    return r;
+}
+
+bool viewer_is_divided(const struct viewer *v)
+{
+    return v->split || v->truth;
+}
+
+bool viewer_is_side_by_side(const struct viewer *v)
+{
+    return v->side_by_side && viewer_is_divided(v);
+}
+
+float viewer_first_share(const struct viewer *v)
+{
+    return viewer_is_divided(v) && !v->side_by_side ? v->split_at : 1.0f;
+}
+
+void viewer_set_side_by_side(struct viewer *v, bool on)
+{
+    v->side_by_side = on;
+    v->mouse_right = false; // until it moves
+    viewer_change(v);
 }
 
 static float aspect_of(const struct region *r)

@@ -25,7 +25,15 @@ void viewer_runs(struct viewer *v, bool other, const char *gi);
 bool viewer_set_debug_view(struct viewer *v, const char *name); // NULL: none
 void viewer_set_layer(struct viewer *v, int layer);
 void viewer_set_camera(struct viewer *v, int scene_camera); // -1: that of the command line
+// The part of the window beside the panels, and the first image in it: all of that part, or its
+// left half with images side by side.
+struct region viewer_images(const struct viewer *v);
 struct region viewer_region(const struct viewer *v);
+bool viewer_is_divided(const struct viewer *v); // a second method or the reference is shown
+bool viewer_is_side_by_side(const struct viewer *v);
+// The first method's share of the first image's width: 1 without a split line.
+float viewer_first_share(const struct viewer *v);
+void viewer_set_side_by_side(struct viewer *v, bool on);
 // Options of the command line that load and light the scene so, a blank before each word.
 void viewer_scene_options(const struct viewer *v, char *out, size_t size);
 // The pixel of the window at which a point of the scene appears; false: it is behind the camera.

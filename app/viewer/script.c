@@ -400,6 +400,10 @@ static bool run(const struct words *w)
     if (is(w, "size")) return run_size(w);
     if (is(w, "gi")) return done(w, viewer_set_gi(v, w->rest));
     if (is(w, "split")) return run_split(w);
+    if (is(w, "side")) {
+        viewer_set_side_by_side(v, strcmp(w->rest, "on") == 0);
+        return true;
+    }
     if (is(w, "samples")) return run_samples(w);
     if (is(w, "layer")) return run_layer(w);
     if (is(w, "exposure")) return run_exposure(w);

@@ -50,13 +50,16 @@ struct viewer {
     char gi[METHOD_SPEC], other_gi[METHOD_SPEC]; // running
     bool split;
     float split_at; // 0…1 of the region
+    bool side_by_side;
 
     struct look look;
     struct ag_camera camera; // of the next frame
     int scene_camera;        // its index while it is shown unchanged; -1: not of the scene
     struct ag_camera given;  // of the command line
     bool turning, orbiting, dragging_split;
-    float mouse_x, mouse_y;
+    float mouse_x, mouse_y; // pixels; in the right one of two images: the place in the left one
+    bool mouse_right;       // it is in the right one
+    float mouse_from_x;     // of the mouse as it moves, pixels of the window
     bool keys[512];
 
     bool auto_exposure;

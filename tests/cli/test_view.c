@@ -462,6 +462,7 @@ TEST(images_are_resized_and_removed_while_the_window_shows_them)
 {
     require_display();
     view(CORNELL LEAST, "settle\nsave first.png\nsplit ambient\nwait 1\nscale 0.4\nwait 1\n"
+                        "side on\nwait 2\nscale 0.5\nwait 1\nside off\nwait 1\n"
                         "scale 0.3\nwait 1\nsplit off\nwait 1\nlayer normal\nwait 1\n"
                         "scale 0.2\nlayer color\nsettle\nsave last.png\n");
     check_equal("first.png", "last.png");

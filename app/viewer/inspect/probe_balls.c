@@ -264,7 +264,7 @@ static void make(struct viewer *v, const struct ag_probes *probes, const struct 
                         .scale = v->scale,
                         .radius = RADIUS * probes->spacing };
     const struct region r = viewer_region(v);
-    s.right = r.x0 + (running_is_divided(v) ? v->split_at : 1.0f) * (r.x1 - r.x0);
+    s.right = r.x0 + viewer_first_share(v) * (r.x1 - r.x0);
     struct candidate *list = choose(&s, &v->probe_balls.in_view);
     const int in_view = v->probe_balls.in_view;
     if (list) shade(v, &s, list, in_view < BALLS_MOST ? in_view : BALLS_MOST);

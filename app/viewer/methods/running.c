@@ -139,11 +139,6 @@ void running_step(struct viewer *v)
     take(v);
 }
 
-bool running_is_divided(const struct viewer *v)
-{
-    return v->split || v->truth;
-}
-
 void running_end(struct viewer *v)
 {
     bakes_cancel(v);

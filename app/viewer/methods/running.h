@@ -13,6 +13,4 @@ bool viewer_set_split(struct viewer *v, const char *gi); // NULL: ends the split
 bool viewer_set_reference(struct viewer *v, bool on);    // the reference in the right part
 // After a frame: gives the reference its view and takes its image.
 void running_step(struct viewer *v);
-// The right part of the window's image is not the first method's.
-bool running_is_divided(const struct viewer *v);
 void running_end(struct viewer *v);

@@ -33,6 +33,8 @@ void panel_compare(struct viewer *v)
         viewer_set_split(v, with == 1 ? "none" : NULL);
     }
     ui_tooltip("A line divides the image: drag it.");
+    bool side = v->side_by_side;
+    if (with > 0 && ui_switch("side by side", &side)) viewer_set_side_by_side(v, side);
     if (v->truth) {
         ui_switch("show the difference", &v->difference);
         ui_tooltip("FLIP at each pixel, from dark to bright, from the next samples on.");

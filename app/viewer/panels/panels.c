@@ -18,7 +18,7 @@ static const struct {
 
 static void draw_status(struct viewer *v)
 {
-    const struct region r = viewer_region(v);
+    const struct region r = viewer_images(v);
     const float scale = window_scale(v->window), height = 20.0f * scale;
     char text[VIEWER_MESSAGE + 128];
     const bool message = v->message[0] && window_seconds() < v->message_until_s;
@@ -35,8 +35,8 @@ static void draw_status(struct viewer *v)
 static void draw_split_labels(struct viewer *v)
 {
     const struct region r = viewer_region(v);
-    const float x = r.x0 + v->split_at * (r.x1 - r.x0), scale = window_scale(v->window);
-    if (!running_is_divided(v)) return;
+    const float x = r.x0 + viewer_first_share(v) * (r.x1 - r.x0), scale = window_scale(v->window);
+    if (!viewer_is_divided(v)) return;
     ui_stroke(x, r.y0, x, r.y1, 0xffffffc0, 2.0f);
     char left[128], right[128];
     snprintf(left, sizeof left, "%.120s", v->gi);
@@ -83,7 +83,7 @@ static void draw_tabs(struct viewer *v)
 
 void panels_draw(struct viewer *v)
 {
-    const struct region r = viewer_region(v);
+    const struct region r = viewer_images(v);
     v->inspecting = v->lighting = v->paint.armed = false;
     overlay_probes(v);
     draw_split_labels(v);

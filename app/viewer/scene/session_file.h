@@ -8,7 +8,7 @@
 //   time_s              of the animation
 //   exposure_ev         null: automatic
 //   layer, debug_view   shown; debug_view null: none
-//   scale, split_at, difference, budget_ms   as in the panels
+//   scale, split_at, side_by_side, difference, budget_ms   as in the panels
 //   gi                  the method
 //   compare             null, "reference", or the second method
 //   lights              those that were changed or added: "index", "type": sun, point or spot,

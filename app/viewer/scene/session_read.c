@@ -23,7 +23,7 @@ struct values {
     struct look look;
     int scene_camera;
     double time_s;
-    bool auto_exposure, difference, reference;
+    bool auto_exposure, difference, reference, side_by_side;
     float exposure_ev, scale, split_at, budget_ms;
     int layer;
     const char *debug_view;                      // NULL: none
@@ -289,6 +289,7 @@ static bool read_shown(struct values *s, json_t *document)
             floating(s, document, "exposure_ev", -20.0f, 40.0f, &s->exposure_ev)) &&
            floating(s, document, "scale", 0.1f, 2.0f, &s->scale) &&
            floating(s, document, "split_at", 0.0f, 1.0f, &s->split_at) &&
+           boolean(s, document, "side_by_side", &s->side_by_side) &&
            boolean(s, document, "difference", &s->difference) &&
            floating(s, document, "budget_ms", 0.1f, 1e5f, &s->budget_ms);
 }
@@ -317,25 +318,12 @@ static bool is_of_scene(struct values *s, json_t *document)
 
 static bool read_all(struct values *s, json_t *document)
 {
-    static const char *const names[] = { "afterglow_session",
-                                         "scene",
-                                         "options",
-                                         "camera",
-                                         "time_s",
-                                         "exposure_ev",
-                                         "layer",
-                                         "gi",
-                                         "compare",
-                                         "split_at",
-                                         "debug_view",
-                                         "difference",
-                                         "budget_ms",
-                                         "lights",
-                                         "instances",
-                                         "scale",
-                                         "sky",
-                                         "materials",
-                                         "path" };
+    static const char *const names[] = {
+        "afterglow_session", "scene",      "options",    "camera",    "time_s",
+        "exposure_ev",       "layer",      "gi",         "compare",   "split_at",
+        "side_by_side",      "debug_view", "difference", "budget_ms", "lights",
+        "instances",         "scale",      "sky",        "materials", "path"
+    };
     if (!is_of_scene(s, document) || !KNOWN(s, document, names) || !read_shown(s, document) ||
         !read_camera(s, json_object_get(document, "camera")) ||
         !read_each(s, document, "lights", EDITS_LIGHTS, "light", read_light) ||
@@ -375,6 +363,7 @@ static bool apply(struct values *s)
     v->exposure_ev = s->exposure_ev;
     v->scale = s->scale;
     v->split_at = s->split_at;
+    v->side_by_side = s->side_by_side;
     v->difference = s->difference;
     v->budget_ms = s->budget_ms;
     v->path = s->camera_path;
@@ -394,6 +383,7 @@ static void take(struct viewer *v, struct values *out)
     out->exposure_ev = v->exposure_ev;
     out->scale = v->scale;
     out->split_at = v->split_at;
+    out->side_by_side = v->side_by_side;
     out->budget_ms = v->budget_ms;
     out->layer = v->layer;
     snprintf(out->gi, sizeof out->gi, "%s", v->gi);

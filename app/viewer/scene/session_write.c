@@ -132,6 +132,7 @@ static json_t *document_of(const struct viewer *v)
     put(document, "compare",
         v->truth ? json_string("reference") : text_or_null(v->split ? v->other_gi : NULL));
     put(document, "split_at", json_float(v->split_at));
+    put(document, "side_by_side", json_boolean(v->side_by_side));
     put(document, "difference", json_boolean(v->difference));
     put(document, "budget_ms", json_float(v->budget_ms));
     put(document, "lights", lights_of(&v->edits));
