@@ -2,6 +2,7 @@
 // left then. The address sanitizer sees any use of freed memory.
 #include "api/counting_allocator.h"
 #include "api/renderer_fixture.h"
+#include "framework/shared_pipelines.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -34,6 +35,7 @@ struct objects {
     struct ag_bake *bake;
     struct ag_lightmap *lightmap;
     struct ag_camera camera;
+    const struct ag_device_adopt *adopt; // NULL: the library opens a device
     bool gone[KINDS];
 };
 
@@ -41,7 +43,8 @@ struct setting {
     const enum kind *kinds; // which are created, and then destroyed in each order
     int count;
     void (*create)(struct objects *o);
-    void (*use)(struct objects *o); // calls what is left
+    void (*use)(struct objects *o);      // calls what is left
+    const struct ag_device_adopt *adopt; // in most orders; NULL: in none
 };
 
 static void destroy(struct objects *o, enum kind kind)
@@ -106,6 +109,8 @@ static void destroy_in_order(const struct setting *setting, int number)
     desc.reallocate = counting_reallocate;
     desc.user = &allocator;
     assert_int_equal(ag_context_create(&desc, &o.context), AG_OK);
+    // Of the devices that the library opens, each kind of object is the last to go in some order.
+    if (number % 6 != 0) o.adopt = setting->adopt;
     setting->create(&o);
     order_of(number, setting->count, order);
     for (int i = 0; i < setting->count; i++) {
@@ -193,7 +198,7 @@ static void use_on_cpu(struct objects *o)
 TEST(objects_of_the_cpu)
 {
     static const enum kind kinds[] = { CONTEXT, SCENE, ENVIRONMENT, REFERENCE, BAKE };
-    const struct setting setting = { kinds, 5, create_on_cpu, use_on_cpu };
+    const struct setting setting = { kinds, 5, create_on_cpu, use_on_cpu, NULL };
     destroy_in_all_orders(&setting);
 }
 
@@ -221,7 +226,7 @@ static void use_lightmap(struct objects *o)
 TEST(light_maps)
 {
     static const enum kind kinds[] = { CONTEXT, SCENE, BAKE, LIGHTMAP };
-    const struct setting setting = { kinds, 4, create_lightmap, use_lightmap };
+    const struct setting setting = { kinds, 4, create_lightmap, use_lightmap, NULL };
     destroy_in_all_orders(&setting);
 }
 
@@ -238,10 +243,27 @@ static void create_renderer(struct objects *o, const char *gi)
         fail_msg("%s", ag_context_last_error(o->context));
 }
 
+// Drivers take most of the time to compile: pipelines of adopted devices are compiled once.
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL device_function(VkDevice device, const char *name)
+{
+    const PFN_vkVoidFunction shared = shared_pipelines_function(name);
+    return shared ? shared : vkGetDeviceProcAddr(device, name);
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instance_function(VkInstance instance,
+                                                                  const char *name)
+{
+    if (strcmp(name, "vkGetDeviceProcAddr") == 0) return (PFN_vkVoidFunction)device_function;
+    return vkGetInstanceProcAddr(instance, name);
+}
+
 static void create_on_gpu(struct objects *o)
 {
+    struct ag_device_desc device;
+    ag_device_desc_default(&device);
+    device.adopt = o->adopt;
     small_scene(o);
-    assert_int_equal(ag_device_create(o->context, NULL, &o->device), AG_OK);
+    assert_int_equal(ag_device_create(o->context, &device, &o->device), AG_OK);
     create_renderer(o, "none");
     struct ag_view_desc desc;
     ag_view_desc_default(&desc);
@@ -292,7 +314,7 @@ static void use_preparation(struct objects *o)
 TEST(preparations_and_what_they_are_of)
 {
     static const enum kind kinds[] = { CONTEXT, DEVICE, RENDERER, PREPARATION };
-    const struct setting setting = { kinds, 4, create_preparation, use_preparation };
+    const struct setting setting = { kinds, 4, create_preparation, use_preparation, NULL };
     test_gpu_require();
     destroy_in_all_orders(&setting);
 }
@@ -300,9 +322,15 @@ TEST(preparations_and_what_they_are_of)
 TEST(objects_of_the_gpu)
 {
     static const enum kind kinds[] = { CONTEXT, SCENE, DEVICE, RENDERER, VIEW };
-    const struct setting setting = { kinds, 5, create_on_gpu, use_on_gpu };
+    struct own_device own;
     test_gpu_require();
+    own_device_open(&own, 0);
+    struct ag_device_adopt adopt = fixture_lend(&own);
+    adopt.get_instance_proc_addr = (void (*)(void))instance_function;
+    const struct setting setting = { kinds, 5, create_on_gpu, use_on_gpu, &adopt };
     destroy_in_all_orders(&setting);
+    shared_pipelines_close(own.device);
+    own_device_close(&own);
 }
 
 // ---- what a program may rely on
