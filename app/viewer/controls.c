@@ -58,6 +58,7 @@ static void move_mouse(struct viewer *v, float x, float y)
 static void pick(struct viewer *v)
 {
     v->picking = true;
+    v->pick_right = v->mouse_right;
     v->pick_at[0] = (int)(v->scale * v->mouse_x);
     v->pick_at[1] = (int)(v->scale * v->mouse_y);
     if (v->dirty < FRAMES_OF_A_PICK) v->dirty = FRAMES_OF_A_PICK;
@@ -159,7 +160,7 @@ void controls_event(struct viewer *v, const struct event *event)
     case EVENT_SCROLL:
         if (!in_image(v)) break;
         if (v->turning) // while it flies: its speed
-            v->look.speed *= powf(1.2f, event->y);
+            v->look.speed = fminf(fmaxf(v->look.speed * powf(1.2f, event->y), 1e-3f), 1e5f);
         else
             look_zoom(&v->look, event->y);
         viewer_change(v);

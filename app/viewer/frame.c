@@ -23,8 +23,10 @@ static void update_camera(struct viewer *v)
     float target[3];
     if (!v->look.moved) {
         const char *name = ag_scene_camera_name(v->desc->scene, v->scene_camera);
-        if (v->scene_camera >= 0 && v->playing)
-            ag_scene_camera(v->desc->scene, name, v->desc->animation, v->time_s, &v->camera);
+        if (v->scene_camera >= 0 && v->playing &&
+            ag_scene_camera(v->desc->scene, name, v->desc->animation, v->time_s, &v->camera) ==
+                AG_OK)
+            look_follow(&v->look, &v->camera);
         return;
     }
     look_target(&v->look, target);
@@ -60,6 +62,7 @@ static bool render(struct viewer *v)
     frame.animation = v->desc->animation;
     frame.auto_exposure = v->auto_exposure;
     frame.exposure_ev = v->exposure_ev;
+    if (v->pick_at[0] >= v->main.width || v->pick_at[1] >= v->main.height) v->picking = false;
     if (v->picking)
         frame.pick = v->pick_at;
     else if (mouse[0] >= 0 && mouse[1] >= 0 && mouse[0] < v->main.width &&

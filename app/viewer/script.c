@@ -213,6 +213,8 @@ static bool run_split(const struct words *w)
 static bool run_samples(const struct words *w)
 {
     w->script->samples = atoi(w->rest);
+    if (w->script->samples < 1 || w->script->samples > TRUTH_SAMPLES)
+        return wrong(w->script, "samples are 1 to 4096:", w->rest);
     return w->v->truth || wrong(w->script, "the reference is not shown:", "split reference");
 }
 
@@ -288,9 +290,15 @@ static bool run_path(const struct words *w)
     struct viewer *v = w->v;
     if (strcmp(w->rest, "add") == 0)
         return path_add(&v->path, &v->look) || wrong(w->script, "the path is full", "");
-    if (sscanf(w->rest, "every %f %d", &v->path.seconds, &v->path.fps) == 2)
-        return (v->path.seconds > 0 && v->path.fps > 0) ||
-               wrong(w->script, "above 0 are expected:", w->rest);
+    float seconds;
+    int fps;
+    if (sscanf(w->rest, "every %f %d", &seconds, &fps) == 2) {
+        if (!(seconds >= 0.01f && seconds <= 1e4f) || fps < 1 || fps > 240)
+            return wrong(w->script, "0.01 to 10000 s and 1 to 240 images are expected:", w->rest);
+        v->path.seconds = seconds;
+        v->path.fps = fps;
+        return true;
+    }
     if (strncmp(w->rest, "record ", 7) != 0)
         return wrong(w->script, "path takes add, every S FPS or record FOLDER:", w->rest);
     snprintf(v->record.folder, sizeof v->record.folder, "%s", w->rest + 7);
@@ -299,8 +307,7 @@ static bool run_path(const struct words *w)
 
 static bool run_open(const struct words *w)
 {
-    viewer_open(w->v, w->rest);
-    return true;
+    return done(w, viewer_open(w->v, w->rest));
 }
 
 static bool run_drop(const struct words *w)
@@ -571,12 +578,12 @@ static bool is_event(const char *line)
 
 bool script_step(struct script *script, struct viewer *v, struct event_queue *queue)
 {
-    if (v->screenshot_failed) return wrong(script, v->message, "");
+    if (v->screenshot_failed || v->record.failed) return wrong(script, v->message, "");
     while (!goes_on(script, v, queue)) {
         if (!script->text[0] && !read_line(script, script->text)) return false;
         if (queue->count > 0 && !is_event(script->text)) return true;
         if (!run_line(script, v, queue, script->text)) return false;
         script->text[0] = 0;
     }
-    return true;
+    return !script->error[0]; // the reference failed
 }

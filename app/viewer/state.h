@@ -87,6 +87,7 @@ struct viewer {
     struct gizmo gizmo;
     bool inspecting;     // the surface under the mouse is shown
     bool picking;        // a click waits for its frame
+    bool pick_right;     // in the right one of two images
     int pick_at[2];      // pixels of the rendering
     int picked_instance; // chosen by a click; -1: none
 

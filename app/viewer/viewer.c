@@ -141,13 +141,15 @@ static bool begin(struct viewer *v, char error[1024])
     }
     set_defaults(v);
     edits_begin(&v->edits, &at);
-    if (!running_begin(v, desc->gi) || !begin_comparison(v)) {
+    const bool again = v->frame > 0; // the window has had a scene: a failure leaves it open
+    if ((!running_begin(v, desc->gi) && !(again && running_begin(v, "none"))) ||
+        (!again && !begin_comparison(v))) {
         snprintf(error, 1024, "%s", ag_context_last_error(desc->context));
         return false;
     }
     v->undo = undo_open(v);
     viewer_set_camera(v, -1);
-    if (!desc->session || session_file_read(v, desc->session)) return true;
+    if (!desc->session || session_file_read(v, desc->session) || again) return true;
     snprintf(error, 1024, "%s", v->message);
     return false;
 }

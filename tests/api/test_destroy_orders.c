@@ -109,7 +109,7 @@ static void destroy_in_order(const struct setting *setting, int number)
     desc.reallocate = counting_reallocate;
     desc.user = &allocator;
     assert_int_equal(ag_context_create(&desc, &o.context), AG_OK);
-    // Of the devices that the library opens, each kind of object is the last to go in some order.
+    // Each kind of object is the last to go in some order of the devices that the library opens.
     if (number % 6 != 0) o.adopt = setting->adopt;
     setting->create(&o);
     order_of(number, setting->count, order);

@@ -48,6 +48,14 @@ void look_from_camera(struct look *look, const struct ag_camera *camera, float s
     look->moved = false;
 }
 
+void look_follow(struct look *look, const struct ag_camera *camera)
+{
+    const float speed = look->speed, distance = look->distance;
+    look_from_camera(look, camera, 0.0f);
+    look->speed = speed;
+    look->distance = distance;
+}
+
 void look_target(const struct look *look, float out[3])
 {
     float forward[3];
@@ -91,7 +99,7 @@ void look_zoom(struct look *look, float steps)
 {
     float target[3];
     look_target(look, target);
-    look->distance *= powf(0.85f, steps);
+    look->distance = fminf(fmaxf(look->distance * powf(0.85f, steps), 1e-3f), 1e8f);
     look->moved = true;
     place_before(look, target);
 }

@@ -14,6 +14,8 @@ struct look {
 
 // Takes over a camera. scene_size: diagonal of the scene's bounds in m, for the speed.
 void look_from_camera(struct look *look, const struct ag_camera *camera, float scene_size);
+// The same for a camera that moves: speed and distance stay.
+void look_follow(struct look *look, const struct ag_camera *camera);
 void look_target(const struct look *look, float out[3]);
 void look_forward(const struct look *look, float out[3]);
 // right, up, forward: metres along the axes of the view.

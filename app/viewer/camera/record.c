@@ -20,6 +20,7 @@ bool record_begin(struct viewer *v)
         return false;
     }
     record->runs = true;
+    record->failed = false;
     record->image = 0;
     record->left = SETTLE_FRAMES; // the first begins without a history
     record->start_s = v->time_s;
@@ -50,9 +51,10 @@ void record_take(struct viewer *v)
     snprintf(file, sizeof file, "%s/%05d.png", record->folder, record->image);
     if (!viewer_write(v, file)) {
         record->runs = false;
+        record->failed = true;
         return;
     }
     record->image++;
     record->left = record->frames_each;
-    if (record->image == path_frames(&v->path)) record_end(v);
+    if (record->image >= path_frames(&v->path)) record_end(v);
 }

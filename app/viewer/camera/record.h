@@ -6,11 +6,11 @@
 struct viewer;
 
 struct record {
-    bool runs;
-    char folder[512]; // of the images: 00000.png …
-    int frames_each;  // frames rendered for an image, for what accumulates
-    int image, left;  // the one in work; frames that it still needs
-    double start_s;   // time of the animation at the first image
+    bool runs, failed; // failed: an image could not be written
+    char folder[512];  // of the images: 00000.png …
+    int frames_each;   // frames rendered for an image, for what accumulates
+    int image, left;   // the one in work; frames that it still needs
+    double start_s;    // time of the animation at the first image
 };
 
 // Creates the folder. False, with a message: the path has no keys, or the folder cannot be made.

@@ -166,7 +166,7 @@ void paint_step(struct viewer *v)
     if (v->dirty > 0 || bakes_running(v) || strcmp(p->gi, v->gi) == 0) return;
     if (!p->on && !paint_has(v)) return;
     if (paint_possible(v) && find_texels(v)) return;
-    p->on = false;
+    p->on = p->stroke = false;
     if (paint_has(v)) viewer_say(v, "the painted light is gone: %.200s has no light map", v->gi);
     forget_paint(p);
     forget_texels(v);

@@ -55,8 +55,8 @@ bool pixel_chosen(const struct viewer *v, struct pixel_at *out)
         out->x = v->pick_at[0];
         out->y = v->pick_at[1];
     }
-    out->other = v->split &&
-                 (v->mouse_right || (float)out->x >= viewer_first_share(v) * (float)v->main.width);
+    out->other = v->split && ((out->clicked ? v->pick_right : v->mouse_right) ||
+                              (float)out->x >= viewer_first_share(v) * (float)v->main.width);
     return out->x >= 0 && out->y >= 0 && out->x < v->main.width && out->y < v->main.height;
 }
 

@@ -159,7 +159,12 @@ static bool set_gi(struct viewer *v, struct rendering *rendering, const char *gi
                                     count);
     for (int i = 0; i < count; i++) ag_bake_destroy(bakes[i]);
     if (!all && may_bake) {
-        if (v->bake_job) bakes_cancel(v);
+        if (v->bake_job && v->bake_job->other != (rendering == &v->other)) {
+            viewer_warn(v, "%.400s waits: choose it again after the bake of %.400s", gi,
+                        v->bake_job->gi);
+            return false;
+        }
+        bakes_cancel(v);
         if (start(v, gi, rendering == &v->other)) return false;
     }
     if (!all) viewer_warn(v, "%s needs a bake, and that in the cache is of another scene", gi);

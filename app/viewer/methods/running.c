@@ -63,6 +63,7 @@ bool viewer_set_split(struct viewer *v, const char *gi)
     viewer_touch(v);
     if (!gi) {
         rendering_close(&v->other);
+        if (v->split) viewer_note(v, CHANGE_METHOD, -1);
         v->split = false;
         return true;
     }
@@ -109,7 +110,7 @@ static void offer(struct viewer *v)
     struct ag_image *color = NULL;
     v->offered = true;
     if (viewer_check(v, ag_renderer_read(v->main.renderer, "color", &color)))
-        truth_offer(v->truth, color);
+        truth_offer(v->truth, color, viewer_exposure(v));
     ag_image_destroy(v->desc->context, color);
 }
 

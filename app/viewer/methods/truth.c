@@ -10,8 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_SAMPLES = 4096 };
-
 struct truth {
     const struct viewer_desc *desc;
     pthread_t thread;
@@ -63,6 +61,7 @@ static bool begin(struct truth *t)
     desc.time_s = t->view.time_s;
     desc.animation = t->view.animation;
     t->applied = t->edits;
+    t->state.error[0] = 0;
     pthread_mutex_unlock(&t->mutex);
     ag_reference_destroy(t->reference);
     t->reference = NULL;
@@ -187,7 +186,7 @@ static bool wait_for_work(struct truth *t)
 static void trace(struct truth *t)
 {
     int samples = 0;
-    for (int more = 1; samples < MAX_SAMPLES && wanted(t, 0); more = more < 16 ? 2 * more : 16) {
+    for (int more = 1; samples < TRUTH_SAMPLES && wanted(t, 0); more = more < 16 ? 2 * more : 16) {
         const enum ag_result result = ag_reference_render(t->reference, more, wanted, t);
         if (result == AG_ERROR_CANCELLED) return;
         if (result != AG_OK) {
@@ -280,12 +279,13 @@ void truth_restart(struct truth *t, const struct truth_view *view)
     pthread_mutex_unlock(&t->mutex);
 }
 
-bool truth_offer(struct truth *t, const struct ag_image *color)
+bool truth_offer(struct truth *t, const struct ag_image *color, float ev)
 {
     struct ag_image copy = copy_of(color);
     pthread_mutex_lock(&t->mutex);
     const bool fits = color->width == t->view.width && color->height == t->view.height;
     if (fits) {
+        t->view.ev = ev;
         swap(&copy, &t->offered);
         t->unmeasured = true;
         t->state.measured = false;

@@ -7,6 +7,8 @@
 
 struct truth;
 
+enum { TRUTH_SAMPLES = 4096 }; // at most, of each pixel
+
 struct truth_view {
     struct ag_camera camera;
     int width, height, animation;
@@ -22,8 +24,9 @@ void truth_close(struct truth *truth); // accepts NULL
 void truth_pause(struct truth *t);
 // Begins again with another view.
 void truth_restart(struct truth *truth, const struct truth_view *view);
-// The image whose error is measured, radiance; copied. false: it is of another size.
-bool truth_offer(struct truth *truth, const struct ag_image *color);
+// The image whose error is measured, radiance, and its exposure; copied. false: it is of another
+// size.
+bool truth_offer(struct truth *truth, const struct ag_image *color, float ev);
 
 struct truth_state {
     int samples;           // of each pixel so far

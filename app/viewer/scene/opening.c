@@ -6,16 +6,16 @@
 #include <stdio.h>
 #include <string.h>
 
-void viewer_open(struct viewer *v, const char *path)
+bool viewer_open(struct viewer *v, const char *path)
 {
     char scene[1024];
     const char *end = strrchr(path, '.');
     const bool session = end && strcmp(end, ".json") == 0;
     if (session && session_file_scene(path, scene, sizeof scene) &&
         strcmp(scene, v->desc->scene_name) == 0) {
-        session_file_read(v, path);
-        return;
+        return session_file_read(v, path);
     }
     snprintf(v->opening, sizeof v->opening, "%s", path);
     viewer_say(v, "opening %s …", path);
+    return true;
 }

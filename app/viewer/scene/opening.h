@@ -3,5 +3,6 @@
 
 #include "viewer/state.h"
 
-// Opens the scene or the session of a file, after a frame that says so.
-void viewer_open(struct viewer *v, const char *path);
+// Opens the scene or the session of a file, a scene after a frame that says so. False, with a
+// message: a session of this scene is wrong.
+bool viewer_open(struct viewer *v, const char *path);

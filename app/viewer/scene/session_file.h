@@ -3,7 +3,8 @@
 //
 //   afterglow_session   1, the version of the format
 //   scene, options      of the command line that opens the scene
-//   camera              {"name": NAME}, null as given; or {"eye": [m], "yaw", "pitch": radians,
+//   camera              {"name": NAME} of the scene, null: its first; or {"eye": [m], "yaw",
+//   "pitch": radians,
 //                       "fov_deg", "distance": m, "speed": m/s}
 //   time_s              of the animation
 //   exposure_ev         null: automatic

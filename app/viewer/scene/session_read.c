@@ -366,6 +366,7 @@ static bool apply(struct values *s)
     v->side_by_side = s->side_by_side;
     v->difference = s->difference;
     v->budget_ms = s->budget_ms;
+    record_end(v);
     v->path = s->camera_path;
     viewer_change(v);
     return true;

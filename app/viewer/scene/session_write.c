@@ -25,7 +25,7 @@ static json_t *camera_of(const struct viewer *v)
 {
     const struct look *look = &v->look;
     json_t *camera = json_object();
-    if (!look->moved) {
+    if (!look->moved && v->scene_camera >= 0) {
         put(camera, "name", text_or_null(ag_scene_camera_name(v->desc->scene, v->scene_camera)));
         return camera;
     }
