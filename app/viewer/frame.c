@@ -3,7 +3,7 @@
 #include "controls.h"
 #include "operations.h"
 #include "viewer/methods/running.h"
-#include "script.h"
+#include "viewer/script/script.h"
 #include "viewer/methods/times.h"
 #include "viewer/scene/undo.h"
 #include "viewer/panels/panels.h"

@@ -5,7 +5,7 @@
 #include "frame.h"
 #include "operations.h"
 #include "viewer/methods/running.h"
-#include "script.h"
+#include "viewer/script/script.h"
 #include "viewer/scene/session_file.h"
 #include "viewer/scene/undo.h"
 

@@ -24,7 +24,7 @@ struct viewer_desc {
     float scale;            // of the image's width and height; 0: chosen by the device
     const char *split;      // a GI spec or "reference" to compare with; NULL: none
     const char *session;    // a file to begin with, see session_file.h; NULL: none
-    const char *script;     // a file, see script.h; NULL: none
+    const char *script;     // a file, see script/script.h; NULL: none
     const char *screenshot; // a .png of the last frame's window; NULL: none
     int frames;             // ends after N; 0: when the window is closed
     bool validate;          // with the validation layers

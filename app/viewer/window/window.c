@@ -105,12 +105,28 @@ static struct window *fail(struct window *window, char error[512], const char *w
     return NULL;
 }
 
+static bool is_set(const char *variable)
+{
+    const char *value = getenv(variable);
+    return value && value[0];
+}
+
+// Without a Wayland display GLFW must not look for one: libwayland prints a line of its own.
+static bool begin(void)
+{
+    if (!is_set("WAYLAND_DISPLAY") && !is_set("DISPLAY")) return false;
+#ifdef GLFW_PLATFORM // since GLFW 3.4
+    if (!is_set("WAYLAND_DISPLAY")) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
+    return glfwInit() == GLFW_TRUE;
+}
+
 struct window *window_open(const char *title, int width, int height, char error[512])
 {
     struct window *window = calloc(1, sizeof *window);
     last_error[0] = 0;
     glfwSetErrorCallback(remember_error);
-    if (!window || !glfwInit())
+    if (!window || !begin())
         return fail(window, error, "there is no display",
                     "set DISPLAY or WAYLAND_DISPLAY, or use afterglow render");
     if (!glfwVulkanSupported())
