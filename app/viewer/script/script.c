@@ -41,23 +41,6 @@ bool script_waits(const struct script *script, const struct viewer *v)
     return v->dirty == 0 && (script->samples > 0 || (script->settles && bakes_running(v)));
 }
 
-bool script_wrong(struct script *script, const char *what, const char *text)
-{
-    snprintf(script->error, sizeof script->error, "%.250s:%d: %.350s%s%.350s", script->path,
-             script->line, what, text[0] ? " " : "", text);
-    return false;
-}
-
-bool script_done(const struct words *w, bool success)
-{
-    return success || script_wrong(w->script, w->v->message, "");
-}
-
-bool script_is(const struct words *w, const char *name)
-{
-    return strcmp(w->name, name) == 0;
-}
-
 static const struct script_command *find(const char *name, size_t length)
 {
     const struct script_command *const tables[] = { script_input, script_commands };
