@@ -8,7 +8,7 @@ foreach(name usage info environment diff reference render compare interrupt host
   add_dependencies(test_cli_${name} afterglow)
 endforeach()
 if(AFTERGLOW_VIEWER)
-  ag_test(cli/view USES image api LIBRARIES ag_test_program)
+  ag_test(cli/view USES image api LIBRARIES ag_test_program TIMEOUT 600)
   target_compile_definitions(test_cli_view PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
   add_dependencies(test_cli_view afterglow)
 endif()
