@@ -3,6 +3,8 @@
 #include "cli/files/interrupt.h"
 #include "values.h"
 
+#include "image/srgb.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -99,11 +101,6 @@ bool output_has_layer(const struct output *output, const char *layer)
 
 // ---- conversion of layers to display values 0…1
 
-static float srgb_to_linear(float encoded)
-{
-    return encoded <= 0.04045f ? encoded / 12.92f : powf((encoded + 0.055f) / 1.055f, 2.4f);
-}
-
 // Maps −1…1 to bytes 0…255 as normal maps do; the inverse sRGB curve cancels the encoding of the
 // file.
 static void show_direction(struct ag_image *image)
@@ -111,7 +108,7 @@ static void show_direction(struct ag_image *image)
     size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
     for (size_t i = 0; i < count; i++) {
         float value = 0.5f + 0.5f * image->pixels[i];
-        image->pixels[i] = srgb_to_linear(fminf(fmaxf(value, 0.0f), 1.0f));
+        image->pixels[i] = srgb_decode(fminf(fmaxf(value, 0.0f), 1.0f));
     }
 }
 

@@ -7,8 +7,8 @@
 #include "viewer/methods/times.h"
 #include "viewer/scene/undo.h"
 #include "viewer/panels/panels.h"
+#include "shell/srgb.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -124,11 +124,8 @@ static bool write_screenshot(struct viewer *v, const struct gpu_mapped *mapped, 
     struct ag_image *image = NULL;
     enum ag_result result = ag_image_create(v->desc->context, width, height, 3, &image);
     for (int i = 0; result == AG_OK && i < width * height; i++)
-        for (int c = 0; c < 3; c++) {
-            const float s = (float)bytes[4 * i + (bgr ? 2 - c : c)] / 255.0f;
-            image->pixels[3 * i + c] =
-                s <= 0.04045f ? s / 12.92f : powf((s + 0.055f) / 1.055f, 2.4f);
-        }
+        for (int c = 0; c < 3; c++)
+            image->pixels[3 * i + c] = srgb_linear(bytes[4 * i + (bgr ? 2 - c : c)]);
     if (result == AG_OK) result = ag_image_write_png(v->desc->context, path, image);
     ag_image_destroy(v->desc->context, image);
     return viewer_check(v, result);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { SIDEBAR_UNITS = 360, LEAST_SIZE = 16 };
@@ -54,6 +55,19 @@ bool viewer_write_text(struct viewer *v, const char *path, const char *text)
         viewer_say(v, "written: %s", path);
     else
         viewer_warn(v, "%s", why);
+    return done;
+}
+
+bool viewer_write_json(struct viewer *v, const char *path, json_t *document, size_t flags)
+{
+    static const size_t ALWAYS = JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(12);
+    char *text = json_dumps(document, ALWAYS | flags), *line = NULL;
+    if (text && asprintf(&line, "%s\n", text) < 0) line = NULL;
+    if (!line) viewer_warn(v, "cannot write %s: out of memory", path);
+    const bool done = line && viewer_write_text(v, path, line);
+    json_decref(document);
+    free(text);
+    free(line);
     return done;
 }
 

@@ -3,6 +3,8 @@
 
 #include "state.h"
 
+#include <jansson.h>
+
 extern const char *const viewer_layers[];
 extern const int viewer_layer_count;
 extern const char *const viewer_light_types[3]; // by enum ag_light_type
@@ -13,6 +15,8 @@ void viewer_warn(struct viewer *v, const char *format, ...) __attribute__((forma
 bool viewer_check(struct viewer *v, enum ag_result result);
 // Writes a text file and says so; false, with a message, if it cannot.
 bool viewer_write_text(struct viewer *v, const char *path, const char *text);
+// The same for JSON; takes ownership. NULL: out of memory.
+bool viewer_write_json(struct viewer *v, const char *path, json_t *document, size_t flags);
 // The image changes: it is rendered until what accumulates over frames has settled.
 void viewer_touch(struct viewer *v);
 // Scene or camera differ: also the reference begins again.

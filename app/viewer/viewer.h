@@ -28,7 +28,9 @@ struct viewer_desc {
     const char *screenshot; // a .png of the last frame's window; NULL: none
     int frames;             // ends after N; 0: when the window is closed
     bool validate;          // with the validation layers
-    void *user;             // of the functions
+    int recent_count;       // scenes that were opened lately, the newest first
+    const char *recent[VIEWER_RECENT];
+    void *user; // of the functions
     // Writes the newest frame of a renderer as afterglow render does; false: see the last error.
     bool (*write)(void *user, struct ag_renderer *renderer, const char *layer, const char *path);
     // On any thread: another context, with the scene as it was loaded and lit at first.
@@ -40,9 +42,6 @@ struct viewer_desc {
     // description and the present one stay valid until the next call.
     const struct viewer_desc *(*open_scene)(void *user, const char *path, const char *gi,
                                             char error[512]);
-    // Scenes that were opened lately, the newest first; their number. The texts stay valid until
-    // the next call.
-    int (*recent_scenes)(void *user, const char *paths[VIEWER_RECENT]);
     // Writes a text file, completely or not at all; false: with a sentence.
     bool (*write_text)(void *user, const char *path, const char *text, char error[512]);
 };

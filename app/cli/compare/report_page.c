@@ -4,6 +4,7 @@
 #include "report_page.h"
 #include "report_files.h"
 #include "cli/files/whole_file.h"
+#include "shell/srgb.h"
 
 #include <afterglow/image.h>
 
@@ -105,13 +106,8 @@ static enum status find_images(struct page *page)
 
 static void colour_text(const float *linear, char out[8])
 {
-    int bytes[3];
-    for (int c = 0; c < 3; c++) {
-        float v = linear[c];
-        float encoded = v <= 0.0031308f ? 12.92f * v : 1.055f * powf(v, 1.0f / 2.4f) - 0.055f;
-        bytes[c] = (int)lroundf(255.0f * fminf(fmaxf(encoded, 0.0f), 1.0f));
-    }
-    snprintf(out, 8, "#%02x%02x%02x", bytes[0] & 255, bytes[1] & 255, bytes[2] & 255);
+    snprintf(out, 8, "#%02x%02x%02x", srgb_byte(linear[0]), srgb_byte(linear[1]),
+             srgb_byte(linear[2]));
 }
 
 // The error map of a ramp against black contains all colours.

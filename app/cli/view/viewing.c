@@ -13,6 +13,7 @@
 #include <string.h>
 
 enum { GI_SIZE = 8192 };
+_Static_assert((int)RECENT_SCENES <= (int)VIEWER_RECENT, "the viewer lists all");
 
 struct views;
 
@@ -25,12 +26,12 @@ struct viewing {
     struct session session;
     struct viewer_desc desc;
     struct view_words words;
+    struct recent recent;
 };
 
 // The scene that is shown and, while another is opened, the one before.
 struct views {
     struct viewing *all[2];
-    struct recent recent;
 };
 
 static bool write_image(void *user, struct ag_renderer *renderer, const char *layer,
@@ -68,14 +69,6 @@ static bool bake_path(void *user, const char *key, char path[4096], char error[5
     if (cache_file(CACHE_BAKE, key, path, why)) return true;
     snprintf(error, 512, "cannot keep a bake: %.300s; " CACHE_REMEDY, why);
     return false;
-}
-
-static int recent_scenes(void *user, const char *paths[VIEWER_RECENT])
-{
-    struct recent *recent = &((struct viewing *)user)->views->recent;
-    recent_read(recent);
-    for (int i = 0; i < recent->count; i++) paths[i] = recent->paths[i];
-    return recent->count;
 }
 
 static enum status put_text(FILE *file, const void *text)
@@ -149,10 +142,18 @@ static void describe(struct viewing *viewing)
     desc->validate = validation && strcmp(validation, "1") == 0;
     desc->user = viewing;
     desc->write = write_image;
-    desc->recent_scenes = recent_scenes;
     desc->open_copy = open_copy;
     desc->bake_path = bake_path;
     desc->write_text = write_text;
+}
+
+static void list_recent(struct viewing *viewing, const char *path)
+{
+    struct viewer_desc *desc = &viewing->desc;
+    recent_add(path);
+    recent_read(&viewing->recent);
+    desc->recent_count = viewing->recent.count;
+    for (int i = 0; i < viewing->recent.count; i++) desc->recent[i] = viewing->recent.paths[i];
 }
 
 static void close_viewing(struct viewing *viewing)
@@ -178,7 +179,8 @@ static enum status find_session(struct viewing *viewing)
 static void forget_scene(struct arguments *a)
 {
     a->camera = a->animation = a->environment = a->session = NULL;
-    a->has_eye = a->has_fov = a->has_sky = a->no_scene_lights = a->has_exposure = false;
+    a->has_eye = a->has_target = a->has_fov = a->has_sky = a->no_scene_lights = a->has_exposure =
+        false;
     a->has_scene_scale = false;
     a->light_count = 0;
     a->scene_scale = 1.0f;
@@ -212,7 +214,7 @@ static const struct viewer_desc *open_scene(void *user, const char *path, const 
     if (status != DONE) return NULL;
     describe(next);
     next->desc.open_scene = shown->desc.open_scene;
-    recent_add(path);
+    list_recent(next, path);
     return &next->desc;
 }
 
@@ -231,7 +233,7 @@ static enum status view_in(struct views *views, const struct arguments *argument
     session_say(&viewing->session);
     describe(viewing);
     viewing->desc.open_scene = open_scene;
-    recent_add(arguments->positional[0]);
+    list_recent(viewing, arguments->positional[0]);
     return viewer_run(&viewing->desc, error) ? DONE : fail("%s", error);
 }
 

@@ -1,6 +1,7 @@
 #include "gizmo.h"
 
 #include "viewer/scene/changes.h"
+#include "vectors.h"
 #include "viewer/operations.h"
 
 #include <math.h>
@@ -14,22 +15,6 @@ static const uint32_t colors[HANDLE_COUNT] = { 0xff5050ff, 0x60e060ff, 0x5090fff
 static const uint32_t ACTIVE = 0xffffffff;
 
 const char *const gizmo_handles[HANDLE_COUNT] = { "x", "y", "z", "turn" };
-
-static float dot(const float a[3], const float b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void along(const float from[3], float distance, const float direction[3], float out[3])
-{
-    for (int i = 0; i < 3; i++) out[i] = from[i] + distance * direction[i];
-}
-
-static void normalise(float v[3])
-{
-    const float length = sqrtf(dot(v, v));
-    for (int i = 0; i < 3 && length > 0; i++) v[i] /= length;
-}
 
 // ---- what has handles
 
@@ -51,7 +36,7 @@ static bool find_light(struct viewer *v, struct target *out)
             AG_OK)
         return false;
     out->light = info.light;
-    normalise(out->light.direction);
+    vec_normalize(out->light.direction);
     memcpy(out->centre, info.light.position, sizeof out->centre);
     if (info.light.type == AG_LIGHT_SUN) look_target(&v->look, out->centre); // it has no place
     return true;
@@ -97,7 +82,7 @@ static float arrow_length(const struct viewer *v, const float centre[3])
     float forward[3], to[3];
     look_forward(&v->look, forward);
     for (int i = 0; i < 3; i++) to[i] = centre[i] - v->look.eye[i];
-    const float depth = fmaxf(dot(to, forward), 1e-3f);
+    const float depth = fmaxf(vec_dot(to, forward), 1e-3f);
     return 2.0f * ARROW * depth * tanf(0.5f * v->look.fov_deg * 0.01745329f);
 }
 
@@ -108,14 +93,14 @@ static void handle_end(const struct viewer *v, const struct target *target,
     float direction[3] = { 0 };
     if (handle != HANDLE_TURN) {
         direction[handle] = 1;
-        along(target->centre, length, direction, out);
+        vec_along(target->centre, length, direction, out);
         return;
     }
     // A spot points to its handle, a sun shines from it, an instance turns around the vertical.
     const float sign = target->is_light && target->light.type == AG_LIGHT_SUN ? -1.0f : 1.0f;
     for (int i = 0; i < 3; i++)
         direction[i] = target->is_light ? sign * target->light.direction[i] : i != 1 ? 0.7071f : 0;
-    along(target->centre, TURN * length, direction, out);
+    vec_along(target->centre, TURN * length, direction, out);
 }
 
 static enum gizmo_handle handle_at(struct viewer *v, const struct target *target)
@@ -177,9 +162,9 @@ static bool place_on_axis(const struct viewer *v, const float centre[3], enum gi
     direction[axis] = 1;
     viewer_ray(v, v->mouse_x, v->mouse_y, eye, ray);
     for (int i = 0; i < 3; i++) from_eye[i] = centre[i] - eye[i];
-    const float b = dot(direction, ray), span = 1.0f - b * b;
+    const float b = vec_dot(direction, ray), span = 1.0f - b * b;
     if (span < 1e-3f) return false;
-    *out = (b * dot(ray, from_eye) - dot(direction, from_eye)) / span;
+    *out = (b * vec_dot(ray, from_eye) - vec_dot(direction, from_eye)) / span;
     return true;
 }
 
@@ -192,15 +177,15 @@ static void direction_at(const struct viewer *v, const float centre[3], const fl
     float eye[3], ray[3], to[3], best = -2.0f;
     viewer_ray(v, v->mouse_x, v->mouse_y, eye, ray);
     for (int i = 0; i < 3; i++) to[i] = centre[i] - eye[i];
-    const float nearest = dot(to, ray);
-    const float half = sqrtf(fmaxf(radius * radius - dot(to, to) + nearest * nearest, 0.0f));
+    const float nearest = vec_dot(to, ray);
+    const float half = sqrtf(fmaxf(radius * radius - vec_dot(to, to) + nearest * nearest, 0.0f));
     for (int sign = -1; sign <= 1; sign += 2) {
         float point[3];
-        along(eye, nearest + (float)sign * half, ray, point);
+        vec_along(eye, nearest + (float)sign * half, ray, point);
         for (int i = 0; i < 3; i++) point[i] -= centre[i];
-        normalise(point);
-        if (dot(point, before) <= best) continue;
-        best = dot(point, before);
+        vec_normalize(point);
+        if (vec_dot(point, before) <= best) continue;
+        best = vec_dot(point, before);
         memcpy(out, point, sizeof point);
     }
 }

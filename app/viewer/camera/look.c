@@ -1,14 +1,11 @@
 #include "look.h"
 
+#include "vectors.h"
+
 #include <math.h>
 
 static const float MAX_PITCH = 1.5533f; // 89 degrees
 static const float PI = 3.14159265f;
-
-static float length_of(const float v[3])
-{
-    return sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
 
 void look_forward(const struct look *look, float out[3])
 {
@@ -24,13 +21,6 @@ static void right_of(const struct look *look, float out[3])
     out[2] = -sinf(look->yaw);
 }
 
-static void up_of(const float right[3], const float forward[3], float out[3])
-{
-    out[0] = right[1] * forward[2] - right[2] * forward[1];
-    out[1] = right[2] * forward[0] - right[0] * forward[2];
-    out[2] = right[0] * forward[1] - right[1] * forward[0];
-}
-
 void look_from_camera(struct look *look, const struct ag_camera *camera, float scene_size)
 {
     float to[3];
@@ -38,7 +28,7 @@ void look_from_camera(struct look *look, const struct ag_camera *camera, float s
         look->eye[i] = camera->eye[i];
         to[i] = camera->target[i] - camera->eye[i];
     }
-    const float distance = length_of(to);
+    const float distance = vec_length(to);
     look->yaw = atan2f(-to[0], -to[2]);
     look->pitch = asinf(fminf(fmaxf(to[1] / fmaxf(distance, 1e-20f), -1.0f), 1.0f));
     look->fov_deg = camera->vertical_fov_rad * 180.0f / PI;
@@ -117,7 +107,7 @@ bool look_project(const struct look *look, float aspect, const float point[3], f
     float right[3], forward[3], up[3], x = 0, y = 0, z = 0;
     right_of(look, right);
     look_forward(look, forward);
-    up_of(right, forward, up);
+    vec_cross(right, forward, up);
     for (int i = 0; i < 3; i++) {
         const float to = point[i] - look->eye[i];
         x += to * right[i];
@@ -136,10 +126,9 @@ void look_ray(const struct look *look, float aspect, const float at[2], float ou
     float right[3], forward[3], up[3];
     right_of(look, right);
     look_forward(look, forward);
-    up_of(right, forward, up);
+    vec_cross(right, forward, up);
     const float half = tanf(0.5f * look->fov_deg * PI / 180.0f);
     for (int i = 0; i < 3; i++)
         out[i] = forward[i] + at[0] * half * aspect * right[i] - at[1] * half * up[i];
-    const float length = length_of(out);
-    for (int i = 0; i < 3; i++) out[i] /= length;
+    vec_normalize(out);
 }

@@ -1,10 +1,9 @@
 #include "pixel.h"
 
+#include "shell/json_values.h"
 #include "viewer/operations.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 
 const char *const pixel_layers[PIXEL_LAYERS] = { "color",      "direct", "indirect", "specular",
                                                  "irradiance", "albedo", "normal",   "position",
@@ -102,74 +101,21 @@ bool pixel_get(struct viewer *v, const struct pixel_at *at, struct pixel *out)
 
 // ---- JSON
 
-struct text {
-    char *at, *end; // of the terminating 0
-    bool full;
-};
-
-static void add(struct text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void add(struct text *text, const char *format, ...)
+json_t *pixel_json(const struct pixel_at *at, const struct pixel *pixel)
 {
-    va_list arguments;
-    va_start(arguments, format);
-    const int length = vsnprintf(text->at, (size_t)(text->end - text->at), format, arguments);
-    va_end(arguments);
-    if (length < 0 || length >= text->end - text->at)
-        text->full = true;
-    else
-        text->at += length;
-}
-
-static void add_number(struct text *text, float number)
-{
-    if (isfinite(number))
-        add(text, "%.9g", (double)number);
-    else
-        add(text, "null");
-}
-
-static void add_string(struct text *text, const char *string)
-{
-    add(text, "\"");
-    for (const unsigned char *c = (const unsigned char *)string; *c; c++) {
-        if (*c < 0x20)
-            add(text, "\\u%04x", *c);
-        else
-            add(text, *c == '"' || *c == '\\' ? "\\%c" : "%c", *c);
-    }
-    add(text, "\"");
-}
-
-static void add_layer(struct text *text, const struct pixel *pixel, int layer)
-{
-    const float *values = pixel->layers[layer];
-    add(text, ", \"%s\": ", pixel_layers[layer]);
-    if (layer == PIXEL_DEPTH) {
-        add_number(text, values[0]);
-        return;
-    }
-    for (int c = 0; c < 3; c++) {
-        add(text, c ? ", " : "[");
-        add_number(text, values[c]);
-    }
-    add(text, "]");
-}
-
-bool pixel_print(const struct pixel_at *at, const struct pixel *pixel, char *out, size_t size)
-{
-    struct text text = { out, out + size, false };
-    add(&text, "{\"pixel\": [%d, %d]", at->x, at->y);
-    for (int i = 0; i < PIXEL_ID; i++) add_layer(&text, pixel, i);
-    add(&text, ", \"luminance\": ");
-    add_number(&text, pixel->luminance);
-    add(&text, ", \"ev\": ");
-    add_number(&text, pixel->ev);
-    add(&text, ", \"instance\": %d, \"instance_name\": ", pixel->instance);
-    add_string(&text, pixel->instance_name);
-    add(&text, ", \"triangle\": %d, \"mesh\": %d, \"mesh_name\": ", pixel->triangle, pixel->mesh);
-    add_string(&text, pixel->mesh_name);
-    add(&text, ", \"material\": %d, \"material_name\": ", pixel->material);
-    add_string(&text, pixel->material_name);
-    add(&text, "}\n");
-    return !text.full;
+    json_t *object = json_pack("{s:[ii]}", "pixel", at->x, at->y);
+    for (int i = 0; i < PIXEL_ID; i++)
+        json_object_set_new(object, pixel_layers[i],
+                            i == PIXEL_DEPTH ? json_float(pixel->layers[i][0])
+                                             : json_floats(pixel->layers[i], 3));
+    json_object_set_new(object, "luminance", json_float(pixel->luminance));
+    json_object_set_new(object, "ev", json_float(pixel->ev));
+    json_object_set_new(object, "instance", json_integer(pixel->instance));
+    json_object_set_new(object, "instance_name", json_text(pixel->instance_name));
+    json_object_set_new(object, "triangle", json_integer(pixel->triangle));
+    json_object_set_new(object, "mesh", json_integer(pixel->mesh));
+    json_object_set_new(object, "mesh_name", json_text(pixel->mesh_name));
+    json_object_set_new(object, "material", json_integer(pixel->material));
+    json_object_set_new(object, "material_name", json_text(pixel->material_name));
+    return object;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <afterglow/afterglow.h>
+#include <jansson.h>
 
 enum pixel_layer {
     PIXEL_COLOR,
@@ -47,5 +48,5 @@ struct pixel {
 };
 // After pixels_read; false: the pixel is outside of the image.
 bool pixel_get(struct viewer *v, const struct pixel_at *at, struct pixel *out);
-// The same as JSON; false: it is longer than `size`.
-bool pixel_print(const struct pixel_at *at, const struct pixel *pixel, char *out, size_t size);
+// The same as JSON, owned by the caller.
+json_t *pixel_json(const struct pixel_at *at, const struct pixel *pixel);

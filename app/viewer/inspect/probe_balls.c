@@ -1,7 +1,8 @@
 #include "probe_balls.h"
 
+#include "viewer/camera/vectors.h"
 #include "viewer/operations.h"
-#include "viewer/methods/running.h"
+#include "shell/srgb.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -27,22 +28,11 @@ struct axes {
     float pixels, middle[2]; // of the window: of a tangent of 1, and the middle of the image
 };
 
-static void normalize(float v[3])
+// A unit vector.
+static void perpendicular(const float a[3], const float b[3], float out[3])
 {
-    const float length = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3 && length > 0; i++) v[i] /= length;
-}
-
-static void cross(const float a[3], const float b[3], float out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-    normalize(out);
-}
-
-static float dot(const float a[3], const float b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    vec_cross(a, b, out);
+    vec_normalize(out);
 }
 
 static struct axes axes_of(const struct viewer *v)
@@ -54,9 +44,9 @@ static struct axes axes_of(const struct viewer *v)
         a.eye[i] = camera->eye[i];
         a.forward[i] = camera->target[i] - camera->eye[i];
     }
-    normalize(a.forward);
-    cross(a.forward, camera->up, a.right);
-    cross(a.right, a.forward, a.up);
+    vec_normalize(a.forward);
+    perpendicular(a.forward, camera->up, a.right);
+    perpendicular(a.right, a.forward, a.up);
     a.half_x = a.half_y * (r.x1 - r.x0) / (r.y1 - r.y0);
     a.pixels = 0.5f * (r.y1 - r.y0) / a.half_y;
     a.middle[0] = 0.5f * (r.x0 + r.x1);
@@ -107,13 +97,13 @@ static bool place(const struct source *s, const int at[3], struct candidate *out
         out->position[i] = probes->first[i] + probes->spacing * (float)at[i];
         to[i] = out->position[i] - s->axes.eye[i];
     }
-    out->depth = dot(to, s->axes.forward);
+    out->depth = vec_dot(to, s->axes.forward);
     if (out->depth < probes->spacing) return false; // it would fill the image
-    out->distance = sqrtf(dot(to, to));
+    out->distance = sqrtf(vec_dot(to, to));
     const float pixels = s->axes.pixels / out->depth;
     out->radius = pixels * s->radius;
-    out->x = s->axes.middle[0] + pixels * dot(to, s->axes.right);
-    out->y = s->axes.middle[1] - pixels * dot(to, s->axes.up);
+    out->x = s->axes.middle[0] + pixels * vec_dot(to, s->axes.right);
+    out->y = s->axes.middle[1] - pixels * vec_dot(to, s->axes.up);
     return out->x > -out->radius && out->x < s->right && out->y > -out->radius &&
            out->y < 2.0f * s->axes.middle[1] + out->radius && !is_hidden(s, out);
 }
@@ -174,9 +164,9 @@ static void normal_at(const struct source *s, const struct candidate *c, float x
     float to_eye[3], right[3], up[3];
     const float towards = sqrtf(fmaxf(1.0f - x * x - y * y, 0.0f));
     for (int i = 0; i < 3; i++) to_eye[i] = s->axes.eye[i] - c->position[i];
-    normalize(to_eye);
-    cross(s->axes.up, to_eye, right);
-    cross(to_eye, right, up);
+    vec_normalize(to_eye);
+    perpendicular(s->axes.up, to_eye, right);
+    perpendicular(to_eye, right, up);
     for (int i = 0; i < 3; i++) out[i] = x * right[i] - y * up[i] + towards * to_eye[i];
 }
 
@@ -205,13 +195,6 @@ static void add_ball(const struct source *s, const struct candidate *c, const st
     }
 }
 
-static uint32_t byte_of(float linear)
-{
-    const float s =
-        linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1.0f / 2.4f) - 0.055f;
-    return (uint32_t)(255.0f * fminf(fmaxf(s, 0.0f), 1.0f) + 0.5f);
-}
-
 // Colours as the image shows radiance.
 static void expose(struct viewer *v, struct ui_vertex *vertices, int count,
                    const struct ag_image *radiance)
@@ -223,8 +206,9 @@ static void expose(struct viewer *v, struct ui_vertex *vertices, int count,
     for (int i = 0; i < count; i++) {
         const float *rgb = display->pixels + 3 * (size_t)i;
         if (!(vertices[i].rgba & ~255u))
-            vertices[i].rgba |=
-                byte_of(rgb[0]) << 24 | byte_of(rgb[1]) << 16 | byte_of(rgb[2]) << 8;
+            vertices[i].rgba |= (uint32_t)srgb_byte(rgb[0]) << 24 |
+                                (uint32_t)srgb_byte(rgb[1]) << 16 |
+                                (uint32_t)srgb_byte(rgb[2]) << 8;
     }
     ag_image_destroy(v->desc->context, display);
 }

@@ -18,5 +18,8 @@ void panel_texels(struct viewer *v);
 void panel_paint(struct viewer *v);
 void panel_blocks(struct viewer *v);
 
+// Names of the techniques for which `has` is true, with commas.
+void panel_list_techniques(bool (*has)(int technique), char *out, size_t size);
+
 // Edits the method of a rendering: that of the right part of a split screen, or the first.
 void panel_edit_method(struct viewer *v, bool other);

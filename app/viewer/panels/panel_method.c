@@ -133,6 +133,16 @@ static bool edit_technique(struct method *method, int technique)
     return changed;
 }
 
+void panel_list_techniques(bool (*has)(int technique), char *out, size_t size)
+{
+    struct ag_technique_info info;
+    size_t used = 0;
+    out[0] = 0;
+    for (int i = 0; ag_technique_get(i, &info) && used < size; i++)
+        if (has(i))
+            used += (size_t)snprintf(out + used, size - used, "%s%s", used ? ", " : "", info.name);
+}
+
 static bool choose_technique(struct method *method, enum method_role role)
 {
     const char *names[MAX_NAMES];

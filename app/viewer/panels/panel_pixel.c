@@ -3,6 +3,7 @@
 
 #include "viewer/operations.h"
 #include "viewer/inspect/pixel.h"
+#include "shell/srgb.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,16 +13,10 @@ static const float INV_PI = 0.31830989f;
 
 // ---- swatches
 
-static uint32_t srgb_byte(float linear)
-{
-    const float s = fminf(fmaxf(linear, 0.0f), 1.0f); // fmaxf also removes NaN
-    const float encoded = s <= 0.0031308f ? 12.92f * s : 1.055f * powf(s, 1.0f / 2.4f) - 0.055f;
-    return (uint32_t)(255.0f * encoded + 0.5f);
-}
-
 static uint32_t rgba(const float rgb[3])
 {
-    return srgb_byte(rgb[0]) << 24 | srgb_byte(rgb[1]) << 16 | srgb_byte(rgb[2]) << 8 | 255u;
+    return (uint32_t)srgb_byte(rgb[0]) << 24 | (uint32_t)srgb_byte(rgb[1]) << 16 |
+           (uint32_t)srgb_byte(rgb[2]) << 8 | 255u;
 }
 
 // Radiance as the image shows it.

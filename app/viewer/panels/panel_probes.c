@@ -9,26 +9,26 @@
 #include <stdio.h>
 #include <string.h>
 
+static bool publishes(int technique)
+{
+    struct ag_technique_info info;
+    return ag_technique_get(technique, &info) && info.publishes_probes;
+}
+
 // The technique of the method that can publish probes; -1: none.
 static int publisher(const struct viewer *v)
 {
-    struct ag_technique_info info;
     for (int i = 0; i < ROLE_COUNT; i++)
-        if (ag_technique_get(v->method.chosen[i], &info) && info.publishes_probes)
-            return v->method.chosen[i];
+        if (publishes(v->method.chosen[i])) return v->method.chosen[i];
     return -1;
 }
 
 static void say_who_publishes(const struct viewer *v)
 {
-    struct ag_technique_info source = { .name = "none" }, info;
-    char list[256] = "";
+    struct ag_technique_info source = { .name = "none" };
+    char list[256];
     ag_technique_get(v->method.chosen[ROLE_SOURCE], &source);
-    for (int i = 0; ag_technique_get(i, &info); i++) {
-        const size_t used = strlen(list);
-        if (info.publishes_probes)
-            snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", info.name);
-    }
+    panel_list_techniques(publishes, list, sizeof list);
     ui_faint("%s publishes no probes; these do: %s.", source.name, list);
 }
 

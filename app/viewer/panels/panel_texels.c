@@ -18,17 +18,18 @@ static const char *view_of(const struct viewer *v, const char **help)
     return NULL;
 }
 
+static bool has_texels(int technique)
+{
+    return ag_technique_debug_view_find(technique, "texels") >= 0 ||
+           ag_technique_debug_view_find(technique, "blocks") >= 0;
+}
+
 static void say_who_has_texels(const struct viewer *v)
 {
-    struct ag_technique_info source = { .name = "none" }, info;
-    char list[256] = "";
+    struct ag_technique_info source = { .name = "none" };
+    char list[256];
     ag_technique_get(v->method.chosen[ROLE_SOURCE], &source);
-    for (int i = 0; ag_technique_get(i, &info); i++) {
-        const size_t used = strlen(list);
-        if (ag_technique_debug_view_find(i, "texels") >= 0 ||
-            ag_technique_debug_view_find(i, "blocks") >= 0)
-            snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", info.name);
-    }
+    panel_list_techniques(has_texels, list, sizeof list);
     ui_faint("%s has no texels on surfaces; these have: %s.", source.name, list);
 }
 

@@ -83,7 +83,6 @@ static void edit_time(struct viewer *v)
 
 static void open_file(struct viewer *v)
 {
-    const char *recent[VIEWER_RECENT];
     ui_line("scene", v->scene_file, sizeof v->scene_file);
     ui_tooltip(
         "A glTF file, a built-in scene (@atrium …) or a saved session. Files can be dropped on "
@@ -91,9 +90,8 @@ static void open_file(struct viewer *v)
     ui_disable(!v->scene_file[0]);
     if (ui_button("Open")) viewer_open(v, v->scene_file);
     ui_enable();
-    const int count = v->desc->recent_scenes(v->desc->user, recent);
-    for (int i = 0; i < count; i++)
-        if (ui_selectable(recent[i], false)) viewer_open(v, recent[i]);
+    for (int i = 0; i < v->desc->recent_count; i++)
+        if (ui_selectable(v->desc->recent[i], false)) viewer_open(v, v->desc->recent[i]);
 }
 
 static void keep_session(struct viewer *v)

@@ -215,26 +215,32 @@ enum ag_result edits_apply(const struct edits *edits, struct ag_scene *scene)
     return result == AG_OK ? apply_lights(edits, scene) : result;
 }
 
-static void restore_objects(struct edits *edits, const struct edits *values)
+void edits_forget(struct edits *edits)
 {
     for (int i = 0; i < edits->instance_count; i++)
-        memcpy(edits->instances[i].world_from_mesh,
-               i < values->instance_count ? values->instances[i].world_from_mesh
-                                          : edits->instances[i].first,
+        memcpy(edits->instances[i].world_from_mesh, edits->instances[i].first,
                sizeof edits->instances[i].first);
     for (int i = 0; i < edits->material_count; i++)
-        edits->materials[i].material =
-            i < values->material_count ? values->materials[i].material : edits->materials[i].first;
-    for (int i = edits->instance_count; i < values->instance_count; i++)
-        edits->instances[edits->instance_count++] = values->instances[i];
-    for (int i = edits->material_count; i < values->material_count; i++)
-        edits->materials[edits->material_count++] = values->materials[i];
+        edits->materials[i].material = edits->materials[i].first;
+    edits->lights = edits->first_lights;
+}
+
+// Entries stay in their order: the first are the same in both.
+static void take_objects(struct edits *edits, const struct edits *values)
+{
+    for (int i = 0; i < values->instance_count; i++) edits->instances[i] = values->instances[i];
+    for (int i = 0; i < values->material_count; i++) edits->materials[i] = values->materials[i];
+    if (edits->instance_count < values->instance_count)
+        edits->instance_count = values->instance_count;
+    if (edits->material_count < values->material_count)
+        edits->material_count = values->material_count;
 }
 
 enum ag_result edits_restore(struct edits *edits, const struct edits *values,
                              struct ag_scene *scene)
 {
-    restore_objects(edits, values);
+    edits_forget(edits);
+    take_objects(edits, values);
     edits->lights = values->lights;
     edits->sky_touched |= values->sky_touched;
     for (int i = 0; i < EDITS_LIGHTS; i++) edits->light_touched[i] |= values->light_touched[i];

@@ -66,6 +66,8 @@ enum ag_result edits_find_instance(struct edits *edits, const struct edits_momen
                                    struct edits_instance **out);
 enum ag_result edits_find_material(struct edits *edits, const struct edits_moment *at, int index,
                                    struct edits_material **out);
+// All values are those at first. Changes nothing in the scene: see edits_restore.
+void edits_forget(struct edits *edits);
 // Takes the values of an earlier or later copy, and makes the scene agree.
 enum ag_result edits_restore(struct edits *edits, const struct edits *values,
                              struct ag_scene *scene);

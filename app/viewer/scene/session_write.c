@@ -6,11 +6,6 @@
 
 #include "shell/json_values.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-
-static const size_t FLAGS = JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(12);
-
 static void put(json_t *object, const char *name, json_t *value)
 {
     json_object_set_new(object, name, value);
@@ -145,11 +140,5 @@ static json_t *document_of(const struct viewer *v)
 
 bool session_file_write(struct viewer *v, const char *path)
 {
-    json_t *document = document_of(v);
-    char *text = json_dumps(document, FLAGS);
-    if (!text) viewer_warn(v, "cannot write %s: out of memory", path);
-    const bool done = text && viewer_write_text(v, path, text);
-    json_decref(document);
-    free(text);
-    return done;
+    return viewer_write_json(v, path, document_of(v), JSON_INDENT(2));
 }

@@ -8,6 +8,7 @@
 #include "viewer/methods/running.h"
 #include "viewer/scene/session_file.h"
 #include "viewer/scene/undo.h"
+#include "shell/json_values.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -225,27 +226,30 @@ static bool run_command(const struct words *w)
 static bool run_errors(const struct words *w)
 {
     struct truth_state state = { 0 };
-    char text[256];
     if (w->v->truth) truth_get(w->v->truth, &state);
     if (!state.measured || !w->v->offered)
         return script_wrong(w->script, "no errors are measured: use samples N", "");
-    snprintf(text, sizeof text,
-             "{\"samples\": %d, \"flip\": %.9g, \"relmse\": %.9g, \"energy\": %.9g}\n",
-             state.samples, state.flip, state.relative_error, state.energy);
-    return script_done(w, viewer_write_text(w->v, w->rest, text));
+    return script_done(w,
+                       viewer_write_json(w->v, w->rest,
+                                         json_pack("{s:i, s:o, s:o, s:o}", "samples", state.samples,
+                                                   "flip", json_double(state.flip), "relmse",
+                                                   json_double(state.relative_error), "energy",
+                                                   json_double(state.energy)),
+                                         0));
 }
 
 static bool run_pace(const struct words *w)
 {
     struct pace_summary pace;
-    char text[256];
     pace_get(&w->v->pace, &pace);
     pace_clear(&w->v->pace);
     if (strcmp(w->rest, "clear") == 0) return true;
-    snprintf(text, sizeof text,
-             "{\"frames\": %d, \"mean_ms\": %.4g, \"p95_ms\": %.4g, \"most_ms\": %.4g}\n",
-             pace.frames, (double)pace.mean_ms, (double)pace.p95_ms, (double)pace.most_ms);
-    return script_done(w, viewer_write_text(w->v, w->rest, text));
+    return script_done(
+        w, viewer_write_json(w->v, w->rest,
+                             json_pack("{s:i, s:o, s:o, s:o}", "frames", pace.frames, "mean_ms",
+                                       json_float(pace.mean_ms), "p95_ms", json_float(pace.p95_ms),
+                                       "most_ms", json_float(pace.most_ms)),
+                             0));
 }
 
 static bool run_inspect(const struct words *w)
@@ -253,13 +257,10 @@ static bool run_inspect(const struct words *w)
     struct viewer *v = w->v;
     struct pixel_at at;
     struct pixel pixel;
-    char text[4096];
     if (!pixel_chosen(v, &at)) return script_wrong(w->script, "the mouse is not in the image", "");
     if (!pixels_read(v, at.other) || !pixel_get(v, &at, &pixel))
         return script_wrong(w->script, "the image has not settled: use settle", "");
-    if (!pixel_print(&at, &pixel, text, sizeof text))
-        return script_wrong(w->script, "a name of the scene is too long", "");
-    return script_done(w, viewer_write_text(v, w->rest, text));
+    return script_done(w, viewer_write_json(v, w->rest, pixel_json(&at, &pixel), 0));
 }
 
 static bool run_screenshot(const struct words *w)

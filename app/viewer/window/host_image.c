@@ -1,8 +1,7 @@
 #include "host_image.h"
 
 #include "blit.h"
-
-#include <math.h>
+#include "shell/srgb.h"
 
 static bool open(struct host_image *image, const struct gpu *gpu, int width, int height)
 {
@@ -42,13 +41,6 @@ void host_image_close(struct host_image *image)
     *image = (struct host_image){ 0 };
 }
 
-static unsigned char encode(float linear)
-{
-    const float x = fminf(fmaxf(linear, 0.0f), 1.0f);
-    const float s = x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1.0f / 2.4f) - 0.055f;
-    return (unsigned char)(255.0f * s + 0.5f);
-}
-
 bool host_image_set(struct host_image *image, const struct gpu *gpu, const struct ag_image *pixels)
 {
     if (image->width != pixels->width || image->height != pixels->height) {
@@ -64,7 +56,7 @@ bool host_image_set(struct host_image *image, const struct gpu *gpu, const struc
     for (size_t i = 0; i < count; i++)
         for (size_t c = 0; c < 4; c++)
             bytes[4 * i + c] =
-                c < 3 ? encode(pixels->pixels[i * (size_t)pixels->channels + c]) : 255;
+                c < 3 ? srgb_byte(pixels->pixels[i * (size_t)pixels->channels + c]) : 255;
     image->changed = true;
     return true;
 }
