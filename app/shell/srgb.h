@@ -1,6 +1,6 @@
 // Bytes of display images, by the sRGB curve.
 #pragma once
 
-// Of a linear value: clamped to 0…1, rounded; NaN is 0.
+// The byte of a linear value: clamped to 0…1, rounded; NaN is 0.
 unsigned char srgb_byte(float linear);
 float srgb_linear(unsigned char byte); // 0…1

@@ -1,4 +1,4 @@
-// What a session file says.
+// The content of a session file.
 #pragma once
 
 #include "viewer/state.h"
