@@ -284,7 +284,7 @@ VkResult pipeline_create_graphics(struct gpu *gpu, struct pipeline *pipeline,
                                   const VkPipelineShaderStageCreateInfo *stages);
 
 // pipeline_pool.c. Destroyed pipelines, which recordings may still use.
-enum { POOLED_PIPELINES = 128 };
+enum { POOLED_PIPELINES = 512 };
 struct pipeline_pool {
     struct pipeline *pipelines[POOLED_PIPELINES]; // in the order of their destruction
     int count;
