@@ -7,7 +7,7 @@ python3 -c 'import numpy, safetensors' 2>/dev/null || {
 }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-AFTERGLOW_SAFETENSORS_SAMPLE=$folder/sample.safetensors "$1" safetensors_sample_for_other_readers >/dev/null
+AFTERGLOW_SAFETENSORS_SAMPLE=$folder/sample.safetensors "$1" safetensors safetensors_sample_for_other_readers >/dev/null
 python3 - "$folder/sample.safetensors" <<'PYTHON'
 import sys
 import numpy

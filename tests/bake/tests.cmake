@@ -3,5 +3,5 @@ target_link_libraries(ag_test_bake PUBLIC ag_test_framework ag_bake PRIVATE afte
 foreach(name bake_file bake_run differences report safetensors scene_key)
   ag_test(bake/${name} USES bake LIBRARIES ag_test_bake)
 endforeach()
-add_test(NAME bake.safetensors_python COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/bake/safetensors_python.sh $<TARGET_FILE:test_bake_safetensors>)
+add_test(NAME bake.safetensors_python COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/bake/safetensors_python.sh $<TARGET_FILE:test_bake>)
 set_tests_properties(bake.safetensors_python PROPERTIES LABELS bake SKIP_RETURN_CODE 77)

@@ -1,7 +1,7 @@
 # Parts of the benchmarks, and a small run of some of them.
 ag_test(bench/plot USES core)
-target_sources(test_bench_plot PRIVATE ${CMAKE_SOURCE_DIR}/bench/plot.c)
-target_include_directories(test_bench_plot PRIVATE ${CMAKE_SOURCE_DIR})
+target_sources(test_bench PRIVATE ${CMAKE_SOURCE_DIR}/bench/plot.c)
+target_include_directories(test_bench PRIVATE ${CMAKE_SOURCE_DIR})
 
 add_test(NAME bench.paper_drt COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/paper_drt.sh $<TARGET_FILE:bench_paper_drt> $<TARGET_FILE:afterglow>)
 set_tests_properties(bench.paper_drt PROPERTIES TIMEOUT 300 LABELS bench SKIP_RETURN_CODE 77)

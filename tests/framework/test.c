@@ -14,6 +14,7 @@ enum { MAX_TESTS = 512, MAX_PATHS = 16, MAX_ENDS = 4, OUTCOMES = 4 };
 enum outcome { NOT_RUN, PASSED, FAILED, SKIPPED };
 
 static struct test_case {
+    const char *file;
     test_function function;
     enum outcome outcome;
     const char *reason; // of a skipped case
@@ -35,13 +36,14 @@ static void run_case(void **state)
     current->outcome = PASSED;
 }
 
-void test_register(const char *name, test_function function)
+void test_register(const char *file, const char *name, test_function function)
 {
     if (test_count == MAX_TESTS) {
         fprintf(stderr, "more than %d tests in one program\n", MAX_TESTS);
         abort();
     }
     struct test_case *added = &cases[test_count];
+    added->file = file;
     added->function = function;
     tests[test_count++] =
         (struct CMUnitTest){ .name = name, .test_func = run_case, .initial_state = added };
@@ -218,9 +220,34 @@ static void print_outcomes(int failed_ends)
     printf("\n");
 }
 
+static bool is_of(const struct test_case *c, const char *name)
+{
+    const char *slash = strrchr(c->file, '/'), *base = slash ? slash + 1 : c->file;
+    const size_t length = strlen(name), prefix = strlen("test_");
+    return strncmp(base, "test_", prefix) == 0 && strncmp(base + prefix, name, length) == 0 &&
+           base[prefix + length] == '.';
+}
+
+// Keeps the tests of test_<name>.c alone. False, with a message: there are none.
+static bool keep_file(const char *name)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < test_count; i++) {
+        if (!is_of(&cases[i], name)) continue;
+        cases[kept] = cases[i];
+        tests[kept] = tests[i];
+        tests[kept].initial_state = &cases[kept];
+        kept++;
+    }
+    if (kept == 0) fprintf(stderr, "this program has no test_%s.c with tests\n", name);
+    test_count = kept;
+    return kept > 0;
+}
+
 int main(int argc, char **argv)
 {
-    if (argc > 1) cmocka_set_test_filter(argv[1]);
+    if (argc > 1 && !keep_file(argv[1])) return EXIT_FAILURE;
+    if (argc > 2) cmocka_set_test_filter(argv[2]);
     int failures = _cmocka_run_group_tests("tests", tests, test_count, NULL, NULL), failed_ends = 0;
     for (size_t i = 0; i < end_count; i++) failed_ends += !ends[i]();
     print_outcomes(failed_ends);

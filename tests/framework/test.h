@@ -2,7 +2,10 @@
 //
 //     TEST(sh_rotate_preserves_band_energy) { CHECK_NEAR(a, b, 1e-5); }
 //
-// Link ag_test_framework and write no main.
+// Link ag_test_framework and write no main. A program has the tests of several files
+// test_<name>.c:
+//
+//     PROGRAM [NAME [PATTERN]]     those of a file, of which the names match
 #pragma once
 
 #include <setjmp.h>
@@ -18,7 +21,7 @@
 #undef skip // test_skip takes its place
 
 typedef void (*test_function)(void **state);
-void test_register(const char *name, test_function function);
+void test_register(const char *file, const char *name, test_function function);
 // A final check, run once after all tests, while all libraries are still loaded (unlike atexit).
 void test_register_end(bool (*check)(void));
 
@@ -26,7 +29,7 @@ void test_register_end(bool (*check)(void));
     static void test_##name(void **state);                                                         \
     __attribute__((constructor)) static void register_##name(void)                                 \
     {                                                                                              \
-        test_register(#name, test_##name);                                                         \
+        test_register(__FILE__, #name, test_##name);                                               \
     }                                                                                              \
     static void test_##name(void **state __attribute__((unused)))
 

@@ -25,6 +25,7 @@ function(ag_fuzz name)
   set_target_properties(fuzz_${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/fuzz)
   set_property(GLOBAL APPEND PROPERTY AFTERGLOW_FUZZ_TARGETS fuzz_${name})
   if(AFTERGLOW_FUZZ_DRIVER)
+    set_property(GLOBAL PROPERTY AFTERGLOW_PROGRAM_OF_fuzz.${name} fuzz_${name})
     add_test(NAME fuzz.${name} COMMAND fuzz_${name} ${folder}/corpus/${name})
     set_tests_properties(fuzz.${name} PROPERTIES LABELS fuzz TIMEOUT 300
       ENVIRONMENT "ASAN_OPTIONS=${ag_asan_options};UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1;LSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/framework/lsan.supp,print_suppressions=0")

@@ -10,7 +10,7 @@ function(ag_technique_tests)
 endfunction()
 
 ag_technique_tests(gi_bake gi_spec)
-target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")
+target_compile_definitions(test_techniques PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")
 
 file(GLOB tests_of_techniques CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*/tests.cmake)
 foreach(file ${tests_of_techniques})

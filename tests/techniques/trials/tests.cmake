@@ -9,7 +9,7 @@ ag_test(techniques/trials/paint USES techniques LIBRARIES ag_test_paint)
 foreach(name environment light mirror probes)
   ag_test(techniques/trials/${name} USES techniques LIBRARIES ag_test_light_trial)
 endforeach()
-ag_shaders_for(test_techniques_trials_probes techniques_test_shaders.h ${CMAKE_CURRENT_LIST_DIR}/shaders)
+ag_shaders_for(test_techniques_trials techniques_test_shaders.h ${CMAKE_CURRENT_LIST_DIR}/shaders)
 
 # Every option of every technique: minutes alone, more beside others.
 set_tests_properties(techniques.trials.environment techniques.trials.invariants techniques.trials.light
