@@ -29,7 +29,7 @@ cat >"$folder/bin/ctest" <<STUB
 #!/bin/sh
 preset=\${2#build/}
 mkdir -p "\$2"
-echo "ran \$preset with factor \${AFTERGLOW_TEST_TIME_FACTOR:-none}"
+echo "ran \$preset with factor \${AFTERGLOW_TEST_TIME_FACTOR:-none}: \$*"
 cp "$folder/\$preset.tests" "\$2/CTestTestfile.cmake"
 exec "$(command -v ctest)" --test-dir "\$2" --output-junit "$folder/build/check-\$preset.xml"
 STUB
@@ -48,9 +48,10 @@ add_test(cases sh "-c" "echo 'cases: 20 passed, 0 failed, 3 skipped (no sample: 
 add_test(whole sh "-c" "echo 'skipped: no thing'; exit 77")
 set_tests_properties(whole PROPERTIES SKIP_RETURN_CODE 77)
 SUITE
-run() { (cd "$folder" && PATH="$folder/bin:$PATH" BROKEN_PRESET=$1 AFTERGLOW_TEST_TIME_FACTOR= ./check -R . >out 2>&1 </dev/null); }
+# run BROKEN_PRESET [arguments of ./check]
+run() { broken=$1; shift; (cd "$folder" && PATH="$folder/bin:$PATH" BROKEN_PRESET=$broken AFTERGLOW_TEST_TIME_FACTOR= ./check "$@" >out 2>&1 </dev/null); }
 
-run none && { echo "a failed suite is no failure"; bad=1; }
+run none --all -R . && { echo "a failed suite is no failure"; bad=1; }
 for preset in asan tsan debug; do grep -q "^ran $preset with factor [1-9]" "$folder/out" || { echo "$preset did not run"; bad=1; }; done
 expect "after a failure" "failed suites: asan" "$folder/out"
 expect "cases of all suites" "cases: 32 passed, 3 failed, 6 skipped (no sample: 3, no thing: 3)" "$folder/out"
@@ -58,11 +59,18 @@ expect "failed test" "	mixed (build/check-asan.xml)" "$folder/out"
 expect "summary" "57% tests passed, 3 tests failed out of 7" "$folder/out"
 
 echo 'add_test(plain true)' >"$folder/asan.tests"
-run none || { echo "passed suites are a failure"; bad=1; }
-expect "passed suites" "100% tests passed, 0 tests failed out of 4" "$folder/out"
+run none -R . || { echo "passed suites are a failure"; bad=1; }
+expect "passed suites" "100% tests passed, 0 tests failed out of 3" "$folder/out"
+grep -q '^ran asan .*-LE ^slow\$' "$folder/out" || { echo "slow tests ran with sanitizers without --all"; bad=1; }
+grep -q "^ran tsan" "$folder/out" && { echo "the thread sanitizer ran without --all"; bad=1; }
 
-run debug && { echo "a suite that is not built is no failure"; bad=1; }
+run none || { echo "./check fails"; bad=1; }
+grep -q '^ran debug .*-LE ^thorough\$' "$folder/out" || { echo "thorough tests ran without --all"; bad=1; }
+run none --all || { echo "./check --all fails"; bad=1; }
+grep -q '^ran debug .*thorough' "$folder/out" && { echo "thorough tests did not run with --all"; bad=1; }
+
+run debug -R . && { echo "a suite that is not built is no failure"; bad=1; }
 expect "a broken build" "failed suites: debug" "$folder/out"
-expect "without a suite" "cases: 8 passed, 1 failed, 0 skipped" "$folder/out"
+expect "without a suite" "cases: 1 passed, 1 failed, 0 skipped" "$folder/out"
 expect "which suite" "	build/check-debug.xml: the suite did not run" "$folder/out"
 exit $bad
