@@ -39,6 +39,10 @@ bool trace_closest(const struct trace_scene *scene, vec3s origin, vec3s directio
                    float max_distance, struct trace_hit *hit);
 bool trace_occluded(const struct trace_scene *scene, vec3s origin, vec3s direction,
                     float max_distance);
+// Reflectance of the surface that a ray of `direction` hit, for light that bounces, 0…1 per
+// channel: surface_reflectance (trace/reflectance.h).
+vec3s trace_reflectance(const struct trace_scene *scene, vec3s direction,
+                        const struct trace_hit *hit);
 
 // ---- Reference ----------------------------------------------------------------------------------
 

@@ -1,6 +1,7 @@
 // World-space triangles of a posed scene, and the ray queries of other modules.
 #include "trace/trace_scene.h"
 
+#include "trace/reflectance.h"
 #include "trace/surface.h"
 
 #include "core/hash.h"
@@ -311,6 +312,19 @@ bool trace_closest(const struct trace_scene *scene, vec3s origin, vec3s directio
         .emission = s.emission,
     };
     return true;
+}
+
+vec3s trace_reflectance(const struct trace_scene *scene, vec3s direction,
+                        const struct trace_hit *hit)
+{
+    const struct ray_hit at = { .geometry = scene->mesh_of[hit->instance],
+                                .triangle = hit->triangle,
+                                .u = hit->u,
+                                .v = hit->v };
+    const struct ray ray = { .direction = direction };
+    struct surface s;
+    surface_at(scene, &ray, &at, NULL, &s);
+    return surface_reflectance(&s);
 }
 
 bool trace_occluded(const struct trace_scene *scene, vec3s origin, vec3s direction,

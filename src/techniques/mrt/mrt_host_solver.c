@@ -8,12 +8,12 @@ bool mrt_host_solver_init(struct mrt_host_solver *out, struct host *host, struct
 {
     const size_t texels = (size_t)level->first_texel[level->map->count];
     *out = (struct mrt_host_solver){ .host = host, .gpu = gpu, .texels = (int)texels };
-    out->albedo = host_alloc(host, texels, sizeof *out->albedo);
+    out->reflectance = host_alloc(host, texels, sizeof *out->reflectance);
     out->direct = host_alloc(host, texels, sizeof *out->direct);
     out->radiosity = host_alloc(host, texels, sizeof *out->radiosity);
     out->irradiance = host_alloc(host, texels, sizeof *out->irradiance);
-    if (!out->albedo || !out->direct || !out->radiosity || !out->irradiance) return false;
-    for (size_t i = 0; i < texels; i++) out->albedo[i] = geometry[i].albedo;
+    if (!out->reflectance || !out->direct || !out->radiosity || !out->irradiance) return false;
+    for (size_t i = 0; i < texels; i++) out->reflectance[i] = geometry[i].reflectance;
     for (int i = 0; i < 2; i++)
         if (!gpu_readback_create(gpu, "direct_readback", texels * sizeof *out->direct,
                                  &out->slots[i].readback))
@@ -26,7 +26,7 @@ void mrt_host_solver_finish(struct mrt_host_solver *solver)
     if (!solver->host) return;
     for (int i = 0; i < 2; i++) gpu_readback_destroy(solver->gpu, &solver->slots[i].readback);
     mrt_solver_finish(&solver->solver);
-    host_free(solver->host, solver->albedo);
+    host_free(solver->host, solver->reflectance);
     host_free(solver->host, solver->direct);
     host_free(solver->host, solver->radiosity);
     host_free(solver->host, solver->irradiance);
@@ -43,7 +43,7 @@ void mrt_host_solver_forget(struct mrt_host_solver *solver)
 static void bounce(struct mrt_host_solver *s, float weight)
 {
     for (int i = 0; i < s->texels; i++) {
-        vec3s again = glms_vec3_mul(s->albedo[i], s->irradiance[i]);
+        vec3s again = glms_vec3_mul(s->reflectance[i], s->irradiance[i]);
         s->radiosity[i] = glms_vec3_muladds(again, weight, s->direct[i]);
     }
     mrt_solve(&s->solver, &s->radiosity[0].x, &s->irradiance[0].x);

@@ -23,7 +23,7 @@ struct mrt_host_solver {
     struct mrt_solver solver;
     struct mrt_host_slot slots[2]; // take turns
     int texels;
-    vec3s *albedo, *direct, *radiosity, *irradiance; // [texels]
+    vec3s *reflectance, *direct, *radiosity, *irradiance; // [texels]
     bool solved;     // since the last call of mrt_host_solver_forget
     uint64_t newest; // frame that was solved last
     float scale;     // its radiance_scale

@@ -31,7 +31,7 @@ struct mrt_texel {
     float area_m2;  // of the wall
     vec3s normal;   // unit
     uint32_t found; // bool: there is a surface
-    vec3s albedo;
+    vec3s reflectance;
     float sky;     // irradiance of a sky of radiance 1/π
     vec3s emitted; // irradiance of emissive surfaces, lux
 };
@@ -92,7 +92,7 @@ struct mrt_gpu_border {
 struct mrt_gpu_clutter_face {
     uint32_t clutter, slot;         // which of those openings, which coefficient
     uint32_t first_sample, samples; // of its group
-    vec3s emitted, sky;             // as of struct mrt_texel, times albedo: means over its texels
+    vec3s emitted, sky; // as of struct mrt_texel, times reflectance: means over its texels
 };
 
 // Faces of a workgroup of MRT_LOCAL samples.

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void make_geometry(struct mrt_runtime_fixture *f, vec3s albedo)
+static void make_geometry(struct mrt_runtime_fixture *f, vec3s reflectance)
 {
     int n = f->atlas.resolution;
     f->images.geometry = calloc((size_t)f->atlas.texels, sizeof *f->images.geometry);
@@ -21,7 +21,7 @@ static void make_geometry(struct mrt_runtime_fixture *f, vec3s albedo)
         f->images.geometry[i] = (struct mrt_geometry_texel){
             .position = mrt_warp_point(corner, wall),
             .normal = glms_vec3_negate(mrt_warp_face_normal(corner, tile->face, wall)),
-            .albedo = albedo,
+            .reflectance = reflectance,
             .found = true,
         };
     }
@@ -62,11 +62,11 @@ static void make_openings(struct mrt_runtime_fixture *f)
 }
 
 void mrt_runtime_fixture_init(struct mrt_runtime_fixture *f, struct mrt_block_map map,
-                              int resolution, int k_b, int k_r, vec3s albedo)
+                              int resolution, int k_b, int k_r, vec3s reflectance)
 {
     *f = (struct mrt_runtime_fixture){ .map = map };
     CHECK(mrt_atlas_init(test_host(), &f->map, resolution, &f->atlas));
-    make_geometry(f, albedo);
+    make_geometry(f, reflectance);
     make_bases(f, k_b);
     make_openings(f);
     f->input.map = &f->map;

@@ -18,9 +18,9 @@ struct mrt_runtime_fixture {
     struct mrt_runtime_input input;
 };
 
-// Takes the map. Surfaces of this albedo, all operators 0, as yet without pairs.
+// Takes the map. Surfaces of this reflectance, all operators 0, as yet without pairs.
 void mrt_runtime_fixture_init(struct mrt_runtime_fixture *f, struct mrt_block_map map,
-                              int resolution, int k_b, int k_r, vec3s albedo);
+                              int resolution, int k_b, int k_r, vec3s reflectance);
 void mrt_runtime_fixture_finish(struct mrt_runtime_fixture *f);
 // Operators of random numbers; each opening receives light of two blocks.
 void mrt_runtime_fixture_randomize(struct mrt_runtime_fixture *f, uint32_t seed);

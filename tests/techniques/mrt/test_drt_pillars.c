@@ -74,8 +74,8 @@ TEST_GPU(pillars_shadow_indirect_light)
         // Behind a pillar, seen from the light.
         { { "cube with the light", scene, { { -1.15f, 0, 1.15f } }, 0.2f }, 0.15, 1.2 },
         // Seen from the opening. Light of openings is scaled by the share of its rays that pass,
-        // wherever it comes from.
-        { { "next cube", scene, { { 1.15f, 0, -3.66f } }, 0.2f }, 0.15, 2.5 },
+        // wherever it comes from: beside the way that light takes to a shadow that is too much.
+        { { "next cube", scene, { { 1.15f, 0, -3.66f } }, 0.2f }, 0.2, 2.5 },
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const struct region *region = &cases[i].region;

@@ -1,6 +1,7 @@
 // Modular radiance transfer in whole frames.
 #include "frame/frame_fixture.h"
 #include "techniques/gi_fixture.h"
+#include "trace/reflectance.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -66,17 +67,17 @@ static float *point_lit(struct gpu *gpu, vec3s position, const char *options, in
 }
 
 // If all walls emit the radiance L and have the reflectance ρ, irradiance is π L / (1 − ρ).
-TEST_GPU(mrt_furnace_has_the_radiance_of_the_series)
+static void check_furnace(struct gpu *gpu, struct material material, vec3s reflectance)
 {
     struct room room;
-    struct material material = matte(0.5f);
     material.emissive = vec3_of(2, 1, 0.5f);
     room_begin(&room, gpu, &material);
     room_open(&room, "bounces=16");
     float *e = room_end(&room, 1);
     double sum[3] = { 0, 0, 0 }, worst = 0.0;
     for (int i = 0; i < FLOATS; i++) {
-        const double expected = 3.14159265 * (double)material.emissive.raw[i % 3] / 0.5;
+        const double expected = 3.14159265 * (double)material.emissive.raw[i % 3] /
+                                (1.0 - (double)reflectance.raw[i % 3]);
         sum[i % 3] += (double)e[i] / (FLOATS / 3) / expected;
         worst = fmax(worst, fabs((double)e[i] / expected - 1.0));
     }
@@ -85,6 +86,24 @@ TEST_GPU(mrt_furnace_has_the_radiance_of_the_series)
     for (int c = 0; c < 3; c++) CHECK_NEAR(sum[c], 1.0, 0.01);
     CHECK(worst < 0.05);
     free(e);
+}
+
+TEST_GPU(mrt_furnace_has_the_radiance_of_the_series)
+{
+    check_furnace(gpu, matte(0.5f), vec3_of(0.5f, 0.5f, 0.5f));
+}
+
+// A metal has no diffuse lobe, and yet sends on what its specular lobe reflects.
+TEST_GPU(mrt_furnace_of_metal_has_the_radiance_of_the_series)
+{
+    const vec3s base = vec3_of(0.7f, 0.5f, 0.3f);
+    struct material metal = material_default();
+    metal.base_color = vec4_of(base, 1);
+    metal.metallic = 1;
+    metal.roughness = 0.5f;
+    const struct surface surface = { .material = {
+                                         .albedo = base, .metallic = 1, .roughness = 0.5f } };
+    check_furnace(gpu, metal, surface_reflectance(&surface));
 }
 
 TEST_GPU(mrt_is_finite_with_lights_outside_and_on_walls)

@@ -64,8 +64,8 @@ TEST(texels_of_a_maze_are_on_its_walls)
         float depth = 0.5f + glms_vec3_dot(inward, cell);
         far += !(depth > -0.001f && depth < 0.045f);
         CHECK(glms_vec3_dot(inward, texel->normal) > 0.99f);
-        float albedo = glms_vec3_max(texel->albedo);
-        CHECK_NEAR(albedo, 0.55, 0.25);
+        float reflectance = glms_vec3_max(texel->reflectance);
+        CHECK_NEAR(reflectance, 0.55, 0.25);
     }
     print_message("%d texels, %d without a surface, %d away from their wall\n", l.atlas.texels,
                   missed, far);
@@ -73,14 +73,14 @@ TEST(texels_of_a_maze_are_on_its_walls)
     finish(&l);
 }
 
-TEST(texels_of_an_open_side_have_no_surface_and_no_albedo)
+TEST(texels_of_an_open_side_have_no_surface_and_no_reflectance)
 {
     struct level l = make("@cornell:light=point", true);
     int n = RESOLUTION * RESOLUTION, front = l.atlas.tile_of_face[CUBE_FRONT];
     for (int i = 0; i < l.atlas.texels; i++) {
         const struct mrt_geometry_texel *texel = &l.geometry[i];
         CHECK(texel->found || i / n == front); // open towards +z
-        CHECK(texel->found || glms_vec3_norm(texel->albedo) == 0.0f);
+        CHECK(texel->found || glms_vec3_norm(texel->reflectance) == 0.0f);
         CHECK(isfinite(glms_vec3_norm(texel->position)));
         CHECK_NEAR(glms_vec3_norm(texel->normal), 1, 1e-4);
     }

@@ -92,7 +92,9 @@ static void reference_texel(void *user, size_t i)
         ray = glms_vec3_muladds(bitangent, local.y, ray);
         ray = glms_vec3_muladds(at->normal, local.z, ray);
         if (!trace_closest(s->trace, from, ray, 1e6f, &hit)) continue;
-        sum = glms_vec3_add(sum, glms_vec3_mul(hit.albedo, direct_at(s, hit.position, hit.normal)));
+        const vec3s direct = direct_at(s, hit.position, hit.normal);
+        const vec3s reflectance = trace_reflectance(s->trace, ray, &hit);
+        sum = glms_vec3_add(sum, glms_vec3_mul(reflectance, direct));
     }
     for (int c = 0; c < 3; c++) s->reference[3 * i + (size_t)c] = sum.raw[c] / RAYS;
 }
@@ -122,7 +124,7 @@ static void light_texels(struct lit_scene *s)
     for (size_t i = 0; i < (size_t)s->atlas.texels; i++) {
         vec3s direct = direct_at(s, s->geometry[i].position, s->geometry[i].normal);
         for (size_t c = 0; c < 3; c++)
-            s->radiosity[3 * i + c] = s->geometry[i].albedo.raw[c] * direct.raw[c];
+            s->radiosity[3 * i + c] = s->geometry[i].reflectance.raw[c] * direct.raw[c];
     }
 }
 

@@ -144,10 +144,10 @@ TEST_GPU(mrt_light_map_has_the_borders_of_the_level)
     mrt_runtime_fixture_finish(&f);
 }
 
-static void closed_cube(struct mrt_runtime_fixture *f, vec3s albedo)
+static void closed_cube(struct mrt_runtime_fixture *f, vec3s reflectance)
 {
     mrt_runtime_fixture_init(f, mrt_one_block(vec3_of(-1, 0, -1), vec3_of(2, 2, 3)), 8, K_B, K_R,
-                             albedo);
+                             reflectance);
     mrt_runtime_fixture_use_closed_cube(f);
 }
 
@@ -210,13 +210,13 @@ TEST_GPU(mrt_is_black_without_light)
     mrt_runtime_fixture_finish(&f);
 }
 
-// In a closed box of albedo ρ whose walls send radiosity 1, irradiance after n bounces is
+// In a closed box of reflectance ρ whose walls send radiosity 1, irradiance after n bounces is
 // 1 + ρ + … + ρⁿ⁻¹, and 1/(1 − ρ) in the end.
 TEST_GPU(mrt_feedback_converges_to_the_geometric_series)
 {
-    const float albedo[3] = { 0.8f, 0.5f, 0.2f };
+    const float reflectance[3] = { 0.8f, 0.5f, 0.2f };
     struct mrt_runtime_fixture f;
-    closed_cube(&f, vec3_of(albedo[0], albedo[1], albedo[2]));
+    closed_cube(&f, vec3_of(reflectance[0], reflectance[1], reflectance[2]));
     struct mrt_runtime runtime = start(gpu, &f, true);
     const size_t floats = 3 * (size_t)runtime.level.texels;
     float *radiosity = malloc(floats * sizeof *radiosity);
@@ -227,7 +227,7 @@ TEST_GPU(mrt_feedback_converges_to_the_geometric_series)
         solve(&runtime, 1, bounce > 1);
         for (int c = 0; c < 3; c++) {
             sum[c] += power[c];
-            power[c] *= (double)albedo[c];
+            power[c] *= (double)reflectance[c];
         }
         if (bounce & (bounce - 1)) continue;
         float *got = read_irradiance(&runtime);

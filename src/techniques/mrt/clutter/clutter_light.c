@@ -13,7 +13,7 @@ static struct mrt_geometry_texel look_at(const struct trace_scene *objects,
     return (struct mrt_geometry_texel){
         .position = t->position,
         .normal = normal,
-        .albedo = glms_vec3_scale(surface.material.albedo, 1.0f - surface.material.metallic),
+        .reflectance = vec3_xyz(texel_reflectance(objects, &clutter->charts, texel, NULL)),
         .emission = surface.emission,
         .found = true,
     };

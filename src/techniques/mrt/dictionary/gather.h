@@ -1,6 +1,7 @@
 // Gather operators of a shape: rows that turn radiosity at its texels into light at a point
-// (equation 3.1). F, the one-bounce operator, has one row of MRT_IRRADIANCE per texel: with albedo
-// in the radiosity, indirect irradiance = F · radiosity. In a closed shape rows of F sum to 1.
+// (equation 3.1). F, the one-bounce operator, has one row of MRT_IRRADIANCE per texel: with
+// reflectance in the radiosity, indirect irradiance = F · radiosity. In a closed shape rows of F
+// sum to 1.
 #pragma once
 
 #include "core/linalg.h"

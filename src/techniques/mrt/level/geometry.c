@@ -38,7 +38,8 @@ static enum sight look_at_wall(const struct geometry_job *job, const struct mrt_
     vec3s to = mrt_warp_point(block->corner, wall);
     bool solid = is_in_solid(job->scene, from, mrt_block_middle(block));
     struct trace_hit hit;
-    bool found = trace_closest(job->scene, from, glms_vec3_sub(to, from), RAY_END, &hit);
+    const vec3s way = glms_vec3_sub(to, from);
+    const bool found = trace_closest(job->scene, from, way, RAY_END, &hit);
     if (!found)
         *out = (struct mrt_geometry_texel){
             .position = to,
@@ -48,7 +49,7 @@ static enum sight look_at_wall(const struct geometry_job *job, const struct mrt_
         *out = (struct mrt_geometry_texel){
             .position = hit.position,
             .normal = hit.normal,
-            .albedo = glms_vec3_scale(hit.albedo, 1.0f - hit.metallic),
+            .reflectance = trace_reflectance(job->scene, way, &hit),
             .emission = hit.emission,
             .found = true,
         };

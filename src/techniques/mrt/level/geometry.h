@@ -7,11 +7,11 @@
 #include "techniques/mrt/level/atlas.h"
 
 struct mrt_geometry_texel {
-    vec3s position; // world
-    vec3s normal;   // unit, towards the middle of the block
-    vec3s albedo;   // of the diffuse lobe; 0 where there is no surface
-    vec3s emission; // towards the middle of the block, cd/m²
-    bool found;     // false: no surface, the wall of the block stands for it
+    vec3s position;    // world
+    vec3s normal;      // unit, towards the middle of the block
+    vec3s reflectance; // for light that bounces (trace_reflectance); 0 where there is no surface
+    vec3s emission;    // towards the middle of the block, cd/m²
+    bool found;        // false: no surface, the wall of the block stands for it
 };
 
 // One for each texel of the level. The caller frees it with host_free.

@@ -2,8 +2,8 @@
 // those of the light that the block's walls reflect of b and of r, the light that enters by its
 // openings.
 //
-// Each block has the operator T_d→b ρ [U_b | U_r …] for each colour, by its own albedo: the same
-// light as from the irradiance of all texels, without it. One workgroup per block.
+// Each block has the operator T_d→b ρ [U_b | U_r …] for each colour, by its own reflectance: the
+// same light as from the irradiance of all texels, without it. One workgroup per block.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

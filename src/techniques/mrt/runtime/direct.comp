@@ -26,5 +26,5 @@ void main()
          irradiance = area_light;
     add_lights(texel, irradiance);
     area_light_table[i] = area_light;
-    direct_table[i] = texel.albedo * irradiance;
+    direct_table[i] = texel.reflectance * irradiance;
 }

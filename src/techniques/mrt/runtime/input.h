@@ -46,7 +46,7 @@ struct mrt_opening_input {
 struct mrt_clutter_face_input {
     int opening, slot;            // of mrt_runtime_input.openings; which of its r-coefficients
     int first_texel, texel_count; // in mrt_clutter_input.texels
-    vec3s albedo;                 // mean
+    vec3s reflectance;            // mean
 };
 
 // Light of a block at the texels of its clutter, four values each (clutter/clutter_transfer.h).

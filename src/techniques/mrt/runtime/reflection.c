@@ -26,14 +26,15 @@ static void fill_reflected(const struct builder *s, int block, int first_opening
     for (int f = 0; f < CUBE_FACES; f++) {
         if (!mrt_block_has_wall(of, f)) continue;
         for (size_t t = 0; t < s->face; t++, row++) {
-            const float albedo = input->images->geometry[first + (int)row].albedo.raw[colour];
+            const float reflectance =
+                input->images->geometry[first + (int)row].reflectance.raw[colour];
             float *to = out->at + row * out->stride;
             const float *u_b = basis->u[0].at + row * basis->u[0].stride;
-            for (int k = 0; k < input->k_b; k++) *to++ = albedo * u_b[k];
+            for (int k = 0; k < input->k_b; k++) *to++ = reflectance * u_b[k];
             for (int i = first_opening; to < out->at + row * out->stride + out->columns; i++) {
                 const struct matrix_f32 *u_r = input->responses[input->openings[i].response].u;
                 const float *from = u_r->at + ((size_t)f * s->face + t) * u_r->stride;
-                for (int k = 0; k < input->k_r; k++) *to++ = albedo * from[k];
+                for (int k = 0; k < input->k_r; k++) *to++ = reflectance * from[k];
             }
         }
     }

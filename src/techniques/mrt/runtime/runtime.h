@@ -24,7 +24,7 @@ struct mrt_runtime_buffers {
     gpu_buffer u_b_vector, u_r_vector;
     gpu_buffer direct, area_light;   // vec3 per texel: radiosity, irradiance
     gpu_buffer b_direct, b, r;       // coefficients
-    gpu_buffer reflection;           // of b and r into b, by the albedo of each block
+    gpu_buffer reflection;           // of b and r into b, by the reflectance of each block
     gpu_buffer irradiance, vector;   // vec3 per texel and value
     gpu_image light_map, vector_map; // vector_map: 1×1 without `vector`
 };
@@ -73,7 +73,7 @@ struct mrt_runtime_clutter_map {
 
 // Without clutter all counts are 0 and the others are empty.
 struct mrt_runtime_clutter {
-    gpu_buffer texels, groups, faces, samples, albedo, coupling, senders; // tables
+    gpu_buffer texels, groups, faces, samples, reflectance, coupling, senders; // tables
     // Radiosity of direct light; of what is reflected of the newest bounce, [newest], and of the
     // one before: [clutter][colour][slot].
     gpu_buffer direct, reflected[2];

@@ -35,7 +35,7 @@ static void fill_texels(const struct mrt_runtime_input *input, void *items)
                                         .area_m2 = texel_area(input, tile, i % per_tile),
                                         .normal = from->normal,
                                         .found = from->found,
-                                        .albedo = from->albedo,
+                                        .reflectance = from->reflectance,
                                         .sky = input->images->sky[i],
                                         .emitted = input->images->emitted[i] };
     }

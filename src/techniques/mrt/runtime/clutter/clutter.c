@@ -14,15 +14,16 @@ static uint32_t slots_of(const struct mrt_runtime_input *input)
 
 // ---- tables
 
-static void fill_albedo(const struct mrt_runtime_input *input, void *items)
+static void fill_reflectance(const struct mrt_runtime_input *input, void *items)
 {
-    float *albedo = items;
+    float *reflectance = items;
     const uint32_t slots = slots_of(input);
     for (int i = 0; i < input->clutter->face_count; i++) {
         const struct mrt_clutter_face_input *face = &input->clutter->faces[i];
         const uint32_t clutter = mrt_clutter_of_opening(input->clutter, face->opening);
         for (uint32_t c = 0; c < 3; c++)
-            albedo[(3 * clutter + c) * slots + (uint32_t)face->slot] = face->albedo.raw[c];
+            reflectance[(3 * clutter + c) * slots + (uint32_t)face->slot] =
+                face->reflectance.raw[c];
     }
 }
 
@@ -60,8 +61,8 @@ bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_in
     const size_t coefficients = 3 * slots_of(input) * sizeof(float);
     c->opening_count = (uint32_t)openings;
     return mrt_clutter_direct_upload(runtime, input) &&
-           mrt_table_upload(runtime, input, "clutter_albedo", openings, coefficients, fill_albedo,
-                            &c->albedo) &&
+           mrt_table_upload(runtime, input, "clutter_reflectance", openings, coefficients,
+                            fill_reflectance, &c->reflectance) &&
            upload_senders(runtime, input) &&
            mrt_table_upload(runtime, input, "clutter_reflected", openings, coefficients, NULL,
                             &c->reflected[0]) &&
@@ -89,7 +90,7 @@ void mrt_record_clutter_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
                           { .name = "mrt_t_br", .buffer = b->t_br },
                           { .name = "mrt_b", .buffer = b->b }, { .name = "mrt_r", .buffer = b->r },
                           { .name = "mrt_clutter_direct", .buffer = c->direct },
-                          { .name = "mrt_clutter_albedo", .buffer = c->albedo },
+                          { .name = "mrt_clutter_reflectance", .buffer = c->reflectance },
                           { .name = "mrt_clutter_coupling", .buffer = c->coupling },
                           { .name = "mrt_clutter_senders", .buffer = c->senders },
                           { .name = "mrt_clutter_before", .buffer = before },

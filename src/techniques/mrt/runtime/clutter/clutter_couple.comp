@@ -16,9 +16,9 @@ layout(set = 0, binding = 7, scalar) readonly buffer mrt_clutter_direct
 {
     float c_direct[]; // [clutter][colour][face]
 };
-layout(set = 0, binding = 8, scalar) readonly buffer mrt_clutter_albedo
+layout(set = 0, binding = 8, scalar) readonly buffer mrt_clutter_reflectance
 {
-    vec4 albedo[]; // [clutter][colour][quad]
+    vec4 reflectance[]; // [clutter][colour][quad]
 };
 layout(set = 0, binding = 9) readonly buffer mrt_clutter_coupling
 {
@@ -79,5 +79,5 @@ void main()
     uint at = stripe * QUADS_R + quad, own = uint(max(clutter, 0)) * 3u * QUADS_R + at;
     vec4 arrived = sum_of_stripes(stripe, quad, quads);
     r_table[opening * 3u * QUADS_R + at] = clutter >= 0 ? radiosity_of_quad(own) : arrived;
-    if (clutter >= 0) reflected[own] = albedo[own] * arrived;
+    if (clutter >= 0) reflected[own] = reflectance[own] * arrived;
 }

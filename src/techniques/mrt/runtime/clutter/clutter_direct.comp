@@ -41,7 +41,7 @@ void main()
     add_lights(texel, irradiance);
     vec3 unoccluded = place.share * environment_irradiance_at(texel.normal);
     for (uint c = 0u; c < 3u; c++) {
-        radiosity[3u * lane + c] = place.share * texel.albedo[c] * irradiance[c];
+        radiosity[3u * lane + c] = place.share * texel.reflectance[c] * irradiance[c];
         environment[3u * lane + c] = unoccluded[c];
     }
     barrier();

@@ -333,10 +333,11 @@ static void add_faces(struct builder *s, int opening, const struct mrt_delta_blo
                                                .texel_count = (int)from->texel_count };
         float area = 0.0f;
         for (int t = to->first_texel; t < to->first_texel + to->texel_count; t++) {
-            to->albedo = glms_vec3_muladds(texels[t].at.albedo, texels[t].area_m2, to->albedo);
+            to->reflectance =
+                glms_vec3_muladds(texels[t].at.reflectance, texels[t].area_m2, to->reflectance);
             area += texels[t].area_m2;
         }
-        to->albedo = glms_vec3_divs(to->albedo, area);
+        to->reflectance = glms_vec3_divs(to->reflectance, area);
     }
 }
 

@@ -3,7 +3,7 @@
 // Clutter changes the operators, not the passes. Blocks that it touches have bases U_b + ΔU_b and
 // responses of their openings of their own. The faces of a block's clutter are one more opening of
 // it, with the response ΔU_c. Its r is c, the radiosity of the faces: T_b→r carries light of b of
-// all visible blocks, and clutter.c adds direct light and albedo.
+// all visible blocks, and clutter.c adds direct light and reflectance.
 #pragma once
 
 #include "techniques/mrt/clutter/delta_cache.h"

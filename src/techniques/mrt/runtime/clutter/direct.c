@@ -28,7 +28,7 @@ static void fill_texels(const struct mrt_runtime_input *input, void *items)
                                         .area_m2 = from->area_m2,
                                         .normal = from->at.normal,
                                         .found = true,
-                                        .albedo = from->at.albedo,
+                                        .reflectance = from->at.reflectance,
                                         .sky = from->sky,
                                         .emitted = from->emitted };
     }
@@ -77,7 +77,7 @@ static void add_area_light(const struct mrt_runtime_input *input,
     float area = 0.0f;
     for (int t = from->first_texel; t < from->first_texel + from->texel_count; t++) {
         const struct mrt_clutter_texel *texel = &input->clutter->texels[t];
-        const vec3s reflected = glms_vec3_scale(texel->at.albedo, texel->area_m2);
+        const vec3s reflected = glms_vec3_scale(texel->at.reflectance, texel->area_m2);
         to->emitted = glms_vec3_add(to->emitted, glms_vec3_mul(reflected, texel->emitted));
         to->sky = glms_vec3_muladds(reflected, texel->sky, to->sky);
         area += texel->area_m2;
