@@ -13,7 +13,7 @@
 #include <string.h>
 
 static const double PI = 3.14159265358979324;
-static const double IDLE_WAIT_S = 0.1, UPDATE_S = 3.0;
+static const double IDLE_WAIT_S = 0.1;
 
 // ---- the image
 
@@ -44,11 +44,15 @@ static void take_pick(struct viewer *v)
     v->picking = false;
 }
 
-// drt finds the light of objects that moved on a thread, which nothing tells about.
-static bool is_updating(const struct viewer *v)
+// Light that a thread makes, as that of objects in drt, comes with a later frame, and settles from
+// then on.
+static void count_frame(struct viewer *v)
 {
-    const char *gi = ag_renderer_gi(v->main.renderer);
-    return gi && strstr(gi, "update=background") && window_seconds() < v->touched_s + UPDATE_S;
+    const bool updating = ag_renderer_is_updating(v->main.renderer) ||
+                          (v->split && ag_renderer_is_updating(v->other.renderer));
+    if (v->updating && !updating) viewer_touch(v);
+    v->updating = updating;
+    if (v->dirty > (updating ? 1 : 0)) v->dirty--;
 }
 
 static bool render(struct viewer *v)
@@ -81,7 +85,7 @@ static bool render(struct viewer *v)
         result = rendering_render(&v->other, &frame);
     }
     if (v->picking) take_pick(v);
-    if (v->dirty > (is_updating(v) ? 1 : 0)) v->dirty--;
+    count_frame(v);
     times_add(v);
     return viewer_check(v, result);
 }

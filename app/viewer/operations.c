@@ -77,7 +77,6 @@ void viewer_touch(struct viewer *v)
 {
     v->dirty = SETTLE_FRAMES;
     v->version++;
-    v->touched_s = window_seconds();
     v->offered = false;
 }
 

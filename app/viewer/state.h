@@ -99,8 +99,8 @@ struct viewer {
     struct pixels pixels;
     struct probe_balls probe_balls;
     struct paint paint;
-    double touched_s; // time of the newest change of the image
     unsigned version; // of the image: viewer_touch counts it up
+    bool updating;    // the newest frame lacks light that is being made
     int dirty;        // further frames to render, until what accumulates has settled
     bool quit;
     uint64_t frame;               // frames of the window so far

@@ -327,6 +327,11 @@ AG_API int ag_renderer_finished_timings(struct ag_renderer *renderer, struct ag_
 /// buffers, which are the device's (ag_device_memory). Does not wait. Returns the number of owners
 /// and writes at most `capacity`. Thread: the context's.
 AG_API int ag_renderer_memory(struct ag_renderer *renderer, struct ag_memory *out, int capacity);
+/// Whether the light of the newest frame is not yet that of the scene which it shows, and comes
+/// with further frames: a thread makes it (drt with update=background, after objects moved), or an
+/// update is spread over frames (radiosity's option frames). Histories that accumulate over frames
+/// do not count. False before the first frame. Does not wait. Thread: the context's.
+AG_API bool ag_renderer_is_updating(const struct ag_renderer *renderer);
 /// The GI spec with all options; owned by the renderer. Thread: the context's.
 AG_API const char *ag_renderer_gi(const struct ag_renderer *renderer);
 /// Reloads shaders that changed on disk (AFTERGLOW_SHADER_DIR); returns their number.

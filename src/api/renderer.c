@@ -235,6 +235,11 @@ enum ag_result ag_renderer_resize(struct ag_renderer *r, int width, int height)
     return api_done(context, r->main.sized);
 }
 
+bool ag_renderer_is_updating(const struct ag_renderer *r)
+{
+    return r && r->main.rendered && gi_is_updating(r->gi);
+}
+
 const char *ag_renderer_gi(const struct ag_renderer *r)
 {
     return r ? r->gi_text : "";

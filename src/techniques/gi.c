@@ -228,6 +228,15 @@ void gi_follow(struct gi *gi, const struct scene_pose *pose, bool wait)
     }
 }
 
+bool gi_is_updating(const struct gi *gi)
+{
+    for (int i = 0; i < gi->spec.count; i++) {
+        const struct technique *technique = gi->spec.technique[i];
+        if (technique->is_updating && technique->is_updating(gi->state[i])) return true;
+    }
+    return false;
+}
+
 static bool probes_of(const struct gi *gi, int term, struct probe_volume *out)
 {
     const struct technique *technique = gi->spec.technique[term];

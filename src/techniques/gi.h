@@ -41,6 +41,8 @@ bool gi_resize_view(struct gi *gi, int view, const struct scene_pose *pose, uint
 void gi_invalidate(struct gi *gi, uint32_t changes);
 // Before each frame, with its pose, once the changes are known. `wait`: for work beside frames.
 void gi_follow(struct gi *gi, const struct scene_pose *pose, bool wait);
+// Whether further frames bring light that is not yet that of the scene.
+bool gi_is_updating(const struct gi *gi);
 // Whether a technique cannot follow moving geometry, and has not yet warned.
 bool gi_would_warn_of_movement(const struct gi *gi);
 // The animation has moved surfaces since the creation: such techniques warn once.

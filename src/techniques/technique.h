@@ -121,6 +121,9 @@ struct technique {
     void (*follow)(void *state, const struct scene_pose *pose, bool wait);
     // No allocation, no wait, no failure. `update` is the light that all views share: volumes,
     // voxels, probes; once a frame, with the first view. `record` is what a view's pixels get of
+    // Whether the light of the newest frame is older than what it shows, and further frames bring
+    // it. NULL: never.
+    bool (*is_updating)(const void *state);
     // it; once a view. A technique without `update` shares nothing: each view has a state of its
     // own, for which it is view 0.
     void (*update)(void *state, struct gpu_cmd *cmd, const struct frame_view *view);

@@ -105,6 +105,25 @@ TEST(light_of_a_moved_object_changes_in_one_frame)
     moving_close(&m);
 }
 
+TEST(a_renderer_tells_while_light_is_being_made)
+{
+    struct moving m = moving_open(MOVING_BOX_BACKGROUND);
+    CHECK(!ag_renderer_is_updating(NULL) && !ag_renderer_is_updating(m.s.renderer));
+    ag_image_destroy(m.s.context, frame_of(&m, m.s.renderer));
+    CHECK(!ag_renderer_is_updating(m.s.renderer));
+    assert_int_equal(moving_box_place(m.s.scene, m.box, 1.0f), AG_OK);
+    struct ag_image *after = fresh_frame(&m), *last = frame_of(&m, m.s.renderer);
+    CHECK(ag_renderer_is_updating(m.s.renderer) && !same(last, after));
+    for (int i = 0; i < MANY_FRAMES && ag_renderer_is_updating(m.s.renderer); i++) {
+        ag_image_destroy(m.s.context, last);
+        last = frame_of(&m, m.s.renderer);
+    }
+    CHECK(same(last, after));
+    ag_image_destroy(m.s.context, last);
+    ag_image_destroy(m.s.context, after);
+    moving_close(&m);
+}
+
 TEST(the_last_of_many_moves_counts)
 {
     struct moving m = moving_open(MOVING_BOX_BACKGROUND);

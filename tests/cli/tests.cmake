@@ -8,7 +8,10 @@ endforeach()
 target_compile_definitions(test_cli PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
 add_dependencies(test_cli afterglow)
 if(AFTERGLOW_VIEWER)
-  ag_test(cli/view USES image api LIBRARIES ag_test_program TIMEOUT 600)
+  foreach(name view view_scene)
+    ag_test(cli/${name} USES image api LIBRARIES ag_test_program TIMEOUT 600)
+  endforeach()
+  target_sources(test_cli PRIVATE ${CMAKE_CURRENT_LIST_DIR}/view_run.c)
 endif()
 
 # The program with a technique that bakes in no time.

@@ -212,6 +212,11 @@ static void mrt_update(void *state, struct gpu_cmd *cmd, const struct frame_view
         mrt_record_probes(&mrt->runtime, cmd, view, mrt->options.gain);
         mrt_record_outdoors(&mrt->runtime, cmd, view);
     }
+static bool drt_is_updating(const void *state)
+{
+    return ((const struct mrt *)state)->update.state != MRT_IDLE;
+}
+
     mrt->lit = true;
 }
 
@@ -318,3 +323,4 @@ const struct technique technique_drt = {
     .follow = drt_follow,
     .memory_estimate = drt_memory_estimate,
 };
+    .is_updating = drt_is_updating,

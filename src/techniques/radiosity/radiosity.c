@@ -140,6 +140,7 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     kept_update(&s->kept, view, view->light_hash);
     s->update.at_once |= !s->kept.follows;
     s->update.changed |= !(view->keep && s->kept.same);
+    s->update.other |= !s->kept.same && s->map.texel_count > 0;
     if (s->map.texel_count > 0)
         radiosity_record_update(s, cmd, view);
     else if (s->update.changed)
@@ -168,6 +169,12 @@ static struct light_map_paint *paint(void *state)
 {
     struct radiosity *s = state;
     return &s->paint;
+}
+
+static bool is_updating(const void *state)
+{
+    const struct radiosity *s = state;
+    return s->update.other || s->update.brings_other;
 }
 
 static bool probes(void *state, struct probe_volume *out)
@@ -263,6 +270,7 @@ const struct technique technique_radiosity = {
     .charts = radiosity_charts,
     .light_map = light_map,
     .paint = paint,
+    .is_updating = is_updating,
     .probes = probes,
     .destroy = destroy,
     .memory_estimate = memory_estimate,

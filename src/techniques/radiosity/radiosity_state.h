@@ -59,7 +59,8 @@ struct radiosity_part {
 
 struct radiosity_update {
     bool running;
-    bool changed;             // light has changed since it started
+    bool changed;             // light is to be computed again since it started
+    bool other, brings_other; // light differs since it started; it brings light that differs
     bool at_once;             // to be completed in this frame
     struct radiosity_part at; // the next part
 };

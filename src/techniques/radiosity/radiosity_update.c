@@ -44,6 +44,8 @@ static void start(struct radiosity_update *u, int steps)
 {
     u->running = true;
     u->changed = false;
+    u->brings_other |= u->other;
+    u->other = false;
     u->at = (struct radiosity_part){ .steps = steps };
 }
 
@@ -66,7 +68,7 @@ static void advance(struct radiosity *s)
     while (at->stage < RADIOSITY_STAGES && is_empty(s, at));
     if (at->stage == RADIOSITY_GATHER) s->probes.fresh = false;
     if (at->stage < RADIOSITY_STAGES) return;
-    u->running = false;
+    u->running = u->brings_other = false;
     s->light_map.front = 1 - s->light_map.front;
 }
 

@@ -93,6 +93,30 @@ TEST_GPU(a_light_that_is_switched_off_is_gone_within_16_frames)
     check_switch(gpu, 16);
 }
 
+TEST_GPU(a_stack_tells_until_an_update_over_frames_is_shown)
+{
+    struct frame_fixture s;
+    struct baked_fixture run;
+    struct world_light *light = room_open(&s, &run, gpu, 5);
+    free(next_frame(&s));
+    CHECK(!gi_is_updating(run.gi));
+    light->position.x = 0.7f;
+    float *last = next_frame(&s);
+    int frames = 1;
+    for (; frames < 9 && gi_is_updating(run.gi); frames++) {
+        free(last);
+        last = next_frame(&s);
+    }
+    if (frames < 2 || frames > 5) fail_msg("an update of 5 frames ends after %d", frames);
+    for (int i = 0; i < 5; i++) {
+        float *next = next_frame(&s);
+        CHECK(change_of(&s, last, next) == 0.0 && !gi_is_updating(run.gi));
+        free(next);
+    }
+    free(last);
+    baked_fixture_close(&run, &s);
+}
+
 // Light that changes while an update runs is that of a later update.
 TEST_GPU(an_update_over_frames_ends_with_the_light_of_one_frame)
 {
