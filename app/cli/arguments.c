@@ -80,6 +80,8 @@ static enum status check_together(const struct command *command, const struct ar
         return wrong_usage("cannot use --eye: it is the same point as --target");
     if (a->direct_only && a->indirect_only)
         return wrong_usage("cannot use --direct-only with --indirect-only: choose one");
+    if (command->bit == INFO && a->has_gi && !a->blocks)
+        return wrong_usage("cannot use --gi: it requires --blocks");
     if (a->reference && a->has_spp)
         return wrong_usage("cannot use --spp with --reference %s: its samples are fixed",
                            a->reference);

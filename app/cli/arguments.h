@@ -70,8 +70,9 @@ struct arguments {
     const char *lightmap;     // a folder; NULL: none
     const char *exported;     // likewise
     bool denoise;
-    bool clear; // cache
-    bool all;   // list
+    bool clear;         // cache
+    const char *blocks; // info: a file; NULL: none
+    bool all;           // list
     // compare
     const char *methods[MAX_METHODS]; // each a --gi
     int method_count;

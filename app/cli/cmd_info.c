@@ -1,6 +1,7 @@
 // afterglow info: contents of a scene, and its default light and camera.
 #include "commands.h"
 #include "cli/files/json.h"
+#include "info_blocks.h"
 #include "session.h"
 #include "values.h"
 
@@ -365,6 +366,7 @@ static enum status info(const struct arguments *arguments)
     if (status == DONE && !arguments->has_scene_scale)
         facts.likelier_scale = likelier_scale(&facts.info);
     if (status == DONE) status = find_environment(&session, &facts);
+    if (status == DONE) status = info_write_blocks(&session);
     if (status == DONE) find_light_map(&session, arguments->time_s, &facts.light_map);
     if (status == DONE && arguments->json)
         status = info_json(&session, &facts);
@@ -384,9 +386,11 @@ const struct command command_info = {
             "The light map is that of radiosity at its defaults.\n"
             "If light or camera are missing, shows the options that render would use.\n"
             "Lengths are in metres, suns in lux, other lights in candela.\n"
-            "For a scene of an implausible size, shows the --scene-scale that may be right.\n",
+            "For a scene of an implausible size, shows the --scene-scale that may be right.\n"
+            "Writes the blocks that stand for SCENE in mrt, to be edited (--blocks).\n",
     .examples = "  afterglow info house.glb\n"
                 "  afterglow info @cornell:light=point --json\n"
-                "  afterglow info fox.glb --animation Run --time 0.5\n",
+                "  afterglow info fox.glb --animation Run --time 0.5\n"
+                "  afterglow info house.glb --blocks house.json\n",
     .run = info,
 };

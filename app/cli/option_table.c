@@ -80,6 +80,13 @@ static bool set_gi(struct arguments *a, const char *value, const char **why)
     return true;
 }
 
+static bool set_blocks(struct arguments *a, const char *value, const char **why)
+{
+    (void)why;
+    a->blocks = value;
+    return true;
+}
+
 static bool add_method(struct arguments *a, const char *value, const char **why)
 {
     *why = "at most 16 methods";

@@ -4,6 +4,7 @@
 #define AFTERGLOW_H
 
 #include <afterglow/bake.h>
+#include <afterglow/block_map.h>
 #include <afterglow/catalogue.h>
 #include <afterglow/context.h>
 #include <afterglow/device.h>

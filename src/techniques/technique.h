@@ -93,6 +93,8 @@ struct technique {
     // Replaces options that leave a choice to the scene by the choice: those of effect REBAKE, of
     // which a bake is identified. Idempotent.
     bool (*resolve)(struct host *host, const struct scene_pose *pose, void *options);
+    // The block map for these options as JSON, owned by the caller; NULL: host_fail has the reason.
+    char *(*block_map)(struct host *host, const struct scene_pose *pose, const void *options);
     // Adds the stages of a bake for these options, resolved; see bake/README.md. `how` outlives the
     // bake.
     bool (*bake)(struct bake_plan *plan, const struct technique_bake *how);
@@ -119,11 +121,11 @@ struct technique {
     // which techniques without it or CAN_MOVE_GEOMETRY do not, with a warning of gi.c. `wait`: the
     // frame shows them, however long it takes.
     void (*follow)(void *state, const struct scene_pose *pose, bool wait);
-    // No allocation, no wait, no failure. `update` is the light that all views share: volumes,
-    // voxels, probes; once a frame, with the first view. `record` is what a view's pixels get of
     // Whether the light of the newest frame is older than what it shows, and further frames bring
     // it. NULL: never.
     bool (*is_updating)(const void *state);
+    // No allocation, no wait, no failure. `update` is the light that all views share: volumes,
+    // voxels, probes; once a frame, with the first view. `record` is what a view's pixels get of
     // it; once a view. A technique without `update` shares nothing: each view has a state of its
     // own, for which it is view 0.
     void (*update)(void *state, struct gpu_cmd *cmd, const struct frame_view *view);

@@ -1,5 +1,5 @@
 # The public functions, through the public headers alone.
-foreach(name abi arguments context scene catalogue reference)
+foreach(name abi arguments block_map context scene catalogue reference)
   ag_test(api/${name} USES api)
 endforeach()
 add_library(ag_test_renderer_fixture STATIC ${CMAKE_CURRENT_LIST_DIR}/renderer_fixture.c)

@@ -54,6 +54,29 @@ TEST(info_of_the_cornell_box_is_its_published_size)
     json_decref(info);
 }
 
+// The file is a block map, which makes the same file.
+TEST(info_writes_the_block_map_of_a_scene)
+{
+    char path[600], again[600], gi[700];
+    snprintf(path, sizeof path, "%s", test_path("blocks.json"));
+    snprintf(again, sizeof again, "%s", test_path("again.json"));
+    run_expect(0, "info @maze --blocks", path, NULL);
+    json_t *map = json_load_file(path, 0, NULL);
+    const json_t *blocks = json_object_get(map, "blocks");
+    CHECK(json_integer_value(json_object_get(map, "afterglow_block_map")) == 1);
+    CHECK(json_array_size(blocks) > 4);
+    CHECK(json_object_size(json_object_get(json_array_get(blocks, 0), "neighbors")) > 0);
+    json_decref(map);
+    snprintf(gi, sizeof gi, "drt:blocks=%s", path);
+    run_expect(0, "info @maze --gi", gi, "--blocks", again, NULL);
+    CHECK(files_are_equal(path, again));
+    const struct run *r = run_expect(2, "info @maze --gi lpv --blocks", again, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "mrt, drt") && files_are_equal(path, again));
+    r = run_expect(2, "info @maze --gi mrt", NULL);
+    CHECK(strstr(r->err, "--blocks"));
+}
+
 TEST(info_lists_as_many_things_as_it_counts)
 {
     const struct run *r = run_expect(0, "info @cornell:light=point --json", NULL);

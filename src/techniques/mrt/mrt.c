@@ -75,6 +75,18 @@ static bool mrt_resolve(struct host *host, const struct scene_pose *pose, void *
     return mrt_resolve_maze(host, pose, options);
 }
 
+static char *mrt_block_map(struct host *host, const struct scene_pose *pose, const void *options)
+{
+    const struct technique_create how = { .host = host, .options = options };
+    return mrt_check(&how) ? mrt_map_json(host, options, false, pose) : NULL;
+}
+
+static char *drt_block_map(struct host *host, const struct scene_pose *pose, const void *options)
+{
+    const struct technique_create how = { .host = host, .options = options };
+    return drt_check(&how) ? mrt_map_json(host, options, true, pose) : NULL;
+}
+
 static bool mrt_bake(struct bake_plan *plan, const struct technique_bake *how)
 {
     const struct mrt_dictionary_options options = dictionary_options(how->options);
@@ -200,6 +212,11 @@ static void drt_follow(void *state, const struct scene_pose *pose, bool wait)
     mrt_update_follow(state, pose, wait);
 }
 
+static bool drt_is_updating(const void *state)
+{
+    return ((const struct mrt *)state)->update.state != MRT_IDLE;
+}
+
 static void mrt_update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct mrt *mrt = state;
@@ -212,11 +229,6 @@ static void mrt_update(void *state, struct gpu_cmd *cmd, const struct frame_view
         mrt_record_probes(&mrt->runtime, cmd, view, mrt->options.gain);
         mrt_record_outdoors(&mrt->runtime, cmd, view);
     }
-static bool drt_is_updating(const void *state)
-{
-    return ((const struct mrt *)state)->update.state != MRT_IDLE;
-}
-
     mrt->lit = true;
 }
 
@@ -307,6 +319,7 @@ const struct technique technique_mrt = {
                   "Loos 2015, Modular Radiance Transfer, ch. 3 and 4", option_rows),
     .capabilities = MRT_CAN,
     .check = mrt_check,
+    .block_map = mrt_block_map,
     .create = mrt_create,
     .memory_estimate = mrt_memory_estimate,
 };
@@ -319,8 +332,9 @@ const struct technique technique_drt = {
     .bake_name = "mrt",
     .more_needs = drt_more_needs,
     .check = drt_check,
+    .block_map = drt_block_map,
     .create = drt_create,
     .follow = drt_follow,
+    .is_updating = drt_is_updating,
     .memory_estimate = drt_memory_estimate,
 };
-    .is_updating = drt_is_updating,

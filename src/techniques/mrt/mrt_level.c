@@ -183,15 +183,36 @@ void mrt_parts_replace(struct mrt_parts *to, struct mrt_parts *from)
     *from = (struct mrt_parts){ 0 };
 }
 
-bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
+// The blocks and, for drt, the clutter.
+static bool make_blocks(struct mrt *mrt, const struct scene_pose *pose)
 {
     if (!choose_map(mrt->host, pose, &mrt->options, &mrt->map)) return false;
     if (mrt->options.maze == MRT_MAZE_AUTO) mrt->options.maze = (int32_t)maze_of(&mrt->map);
-    const int resolution = mrt_face_texels((enum mrt_maze)mrt->options.maze, mrt->options.texels);
     mrt->parts = (struct mrt_parts){ .host = mrt->host };
+    return mrt->map.count == 0 || find_clutter_and_open(mrt, pose);
+}
+
+char *mrt_map_json(struct host *host, const struct mrt_options *options, bool delta,
+                   const struct scene_pose *pose)
+{
+    struct mrt *mrt = host_alloc(host, 1, sizeof *mrt);
+    if (!mrt) return NULL;
+    mrt->host = host;
+    mrt->options = *options;
+    mrt->delta = delta;
+    char *json = make_blocks(mrt, pose) ? mrt_block_map_json(host, &mrt->map) : NULL;
+    mrt_parts_finish(&mrt->parts);
+    mrt_block_map_finish(&mrt->map);
+    host_free(host, mrt);
+    return json;
+}
+
+bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
+{
+    if (!make_blocks(mrt, pose)) return false;
+    const int resolution = mrt_face_texels((enum mrt_maze)mrt->options.maze, mrt->options.texels);
     return mrt->map.count == 0 ||
-           (find_clutter_and_open(mrt, pose) &&
-            mrt_atlas_init(mrt->host, &mrt->map, resolution, &mrt->atlas) &&
+           (mrt_atlas_init(mrt->host, &mrt->map, resolution, &mrt->atlas) &&
             light_clutter(&mrt->parts, pose) && make_images(&mrt->parts, mrt, pose, NULL) &&
             (!mrt->options.probes || mrt_published_init(&mrt->published, mrt->host, pose, &mrt->map,
                                                         mrt->options.block_probes)));

@@ -64,6 +64,10 @@ struct mrt {
 // Replaces maze=auto by the dictionary that the blocks of the scene need.
 bool mrt_resolve_maze(struct host *host, const struct scene_pose *pose,
                       struct mrt_options *options);
+// The blocks that these options choose for the scene, delta: for drt, as JSON, owned by the caller;
+// NULL: host_fail has the reason.
+char *mrt_map_json(struct host *host, const struct mrt_options *options, bool delta,
+                   const struct scene_pose *pose);
 // Blocks, light map and geometry image of the scene; resolves maze=auto.
 bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose);
 struct mrt_runtime_options mrt_runtime_options_of(const struct mrt_options *options);

@@ -64,3 +64,8 @@ bool mrt_clutter_of_extras(const struct node *node, bool *clutter);
 // From the `extras` of nodes in the default pose. A scene without blocks gives an empty map.
 bool mrt_block_map_of_scene(struct host *host, const struct scene *scene,
                             struct mrt_block_map *map);
+
+// ---- block_map_write.c
+
+// JSON text that mrt_block_map_read reads, owned by the caller. NULL: out of memory.
+char *mrt_block_map_json(struct host *host, const struct mrt_block_map *map);
