@@ -2,6 +2,7 @@
 #pragma once
 
 #include "viewer/window/interface.h"
+#include "viewer/blocks/block_edit.h"
 #include "viewer/scene/edits.h"
 #include "viewer/camera/gizmo.h"
 #include "viewer/window/host_image.h"
@@ -91,6 +92,7 @@ struct viewer {
     int pick_at[2];      // pixels of the rendering
     int picked_instance; // chosen by a click; -1: none
 
+    struct block_edit block_edit;
     struct times times;
     struct pace pace;
     char opening[1024];             // a file that the next frame opens; "": none

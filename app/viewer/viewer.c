@@ -98,6 +98,7 @@ static void set_defaults(struct viewer *v)
 {
     const struct viewer_desc *desc = v->desc;
     paint_init(v);
+    block_edit_init(v);
     v->split_at = 0.5f;
     v->budget_ms = 16.7f;
     v->path.seconds = 2.0f;
@@ -161,6 +162,7 @@ static void end(struct viewer *v)
     pixels_forget(v);
     probe_balls_close(v);
     paint_close(v);
+    block_edit_close(v);
     running_end(v);
     ag_device_destroy(v->device);
 }

@@ -18,6 +18,12 @@ struct ag_block_map;
 /// as the message says. Thread: the context's.
 AG_API enum ag_result ag_block_map_create(struct ag_scene *scene, const char *gi, int animation,
                                           double time_s, struct ag_block_map **out);
+/// The map of a text, as the option `blocks` reads a file of it. AG_ERROR_FORMAT: it is wrong; the
+/// message names the block. A renderer also checks that the scene has what `clutter` and `walls`
+/// name. AG_ERROR_UNSUPPORTED: the library was built without techniques that have block maps.
+/// Thread: the context's.
+AG_API enum ag_result ag_block_map_parse(struct ag_context *context, const char *json,
+                                         struct ag_block_map **out);
 /// Accepts NULL. Thread: the context's.
 AG_API void ag_block_map_destroy(struct ag_block_map *map);
 /// The map as a file of docs/block-maps.md: JSON, UTF-8, lengths in metres; owned by the map, to

@@ -16,6 +16,20 @@ static bool has_block_map(const struct technique *technique)
     return technique->block_map != NULL;
 }
 
+static enum ag_result give(struct ag_context *context, char *json, struct ag_block_map **out)
+{
+    struct ag_block_map *map = json ? host_alloc(&context->host, 1, sizeof *map) : NULL;
+    if (!map) {
+        host_free(&context->host, json);
+        return api_done(context, false);
+    }
+    map->context = context;
+    map->json = json;
+    api_context_use(context);
+    *out = map;
+    return AG_OK;
+}
+
 static char *make(struct ag_scene *scene, const struct gi_spec *spec, int animation, double time_s)
 {
     struct host *host = &scene->context->host;
@@ -47,20 +61,27 @@ enum ag_result ag_block_map_create(struct ag_scene *scene, const char *gi, int a
                animation, scene->scene->animation_count);
     AG_REQUIRE(context, isfinite(time_s), "time_s is not finite");
     struct gi_spec spec;
-    struct ag_block_map *map = NULL;
     char *json =
         gi_spec_parse(&spec, &context->host, gi) ? make(scene, &spec, animation, time_s) : NULL;
     gi_spec_finish(&spec);
-    if (json) map = host_alloc(&context->host, 1, sizeof *map);
-    if (!map) {
-        host_free(&context->host, json);
-        return api_done(context, false);
-    }
-    map->context = context;
-    map->json = json;
-    api_context_use(context);
-    *out = map;
-    return AG_OK;
+    return give(context, json, out);
+}
+
+static char *parse(struct host *host, const char *json)
+{
+    for (size_t i = 0; techniques[i]; i++)
+        if (techniques[i]->read_block_map) return techniques[i]->read_block_map(host, json);
+    host_fail(host, FAIL_UNSUPPORTED, "block map: the library was built without mrt and drt");
+    return NULL;
+}
+
+enum ag_result ag_block_map_parse(struct ag_context *context, const char *json,
+                                  struct ag_block_map **out)
+{
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE_POINTER(context, context);
+    AG_REQUIRE_POINTER(context, json);
+    return give(context, parse(&context->host, json), out);
 }
 
 void ag_block_map_destroy(struct ag_block_map *map)

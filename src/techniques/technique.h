@@ -95,6 +95,8 @@ struct technique {
     bool (*resolve)(struct host *host, const struct scene_pose *pose, void *options);
     // The block map for these options as JSON, owned by the caller; NULL: host_fail has the reason.
     char *(*block_map)(struct host *host, const struct scene_pose *pose, const void *options);
+    // The block map of a JSON text, likewise.
+    char *(*read_block_map)(struct host *host, const char *json);
     // Adds the stages of a bake for these options, resolved; see bake/README.md. `how` outlives the
     // bake.
     bool (*bake)(struct bake_plan *plan, const struct technique_bake *how);

@@ -54,10 +54,14 @@ static void check_round_trip(const char *name, const char *technique, const char
     const char *text = ag_block_map_json(map);
     write_map("map.json", text);
     snprintf(gi, sizeof gi, "%s:blocks=%s", technique, test_path("map.json"));
-    struct ag_block_map *again = map_of(gi);
+    struct ag_block_map *again = map_of(gi), *parsed = NULL;
     if (count_in(text, "\"name\"") < least) fail_msg("%s: too few blocks: %s", name, text);
     CHECK_STRING(ag_block_map_json(again), text);
     ag_block_map_destroy(again);
+    if (ag_block_map_parse(context, text, &parsed) != AG_OK)
+        fail_msg("%s", ag_context_last_error(context));
+    CHECK_STRING(ag_block_map_json(parsed), text);
+    ag_block_map_destroy(parsed);
     close_scene();
     CHECK(count_in(ag_block_map_json(map), "\"name\"") >= least); // without scene and context
     ag_block_map_destroy(map);
@@ -120,6 +124,12 @@ TEST(what_has_no_map_is_refused)
     assert_int_equal(ag_block_map_create(scene, "mrt", 9, 0.0, &map), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_block_map_create(NULL, "mrt", 0, 0.0, &map), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_block_map_create(scene, "mrt", 0, 0.0, NULL), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_block_map_parse(context, "{\n[", &map), AG_ERROR_FORMAT);
+    CHECK(strstr(ag_context_last_error(context), "block map: line 2"));
+    assert_int_equal(ag_block_map_parse(context, "{\"blocks\": []}", &map), AG_ERROR_FORMAT);
+    assert_null(map);
+    assert_int_equal(ag_block_map_parse(context, NULL, &map), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_block_map_parse(NULL, "{}", &map), AG_ERROR_ARGUMENT);
     assert_null(ag_block_map_json(NULL));
     ag_block_map_destroy(NULL);
     close_scene();

@@ -1,5 +1,6 @@
 #include "gizmo.h"
 
+#include "viewer/blocks/block_edit.h"
 #include "viewer/scene/changes.h"
 #include "vectors.h"
 #include "viewer/operations.h"
@@ -11,25 +12,31 @@ static const float ARROW = 0.13f;       // length over the height of the image
 static const float TURN = 1.8f;         // distance of the fourth handle over that length
 static const float GRASP_PIXELS = 9.0f; // of the mouse from a handle's end
 static const float RADIANS_PER_PIXEL = 0.01f;
-static const uint32_t colors[HANDLE_COUNT] = { 0xff5050ff, 0x60e060ff, 0x5090ffff, 0xffe080ff };
+static const uint32_t colors[HANDLE_COUNT] = { 0xff5050ff, 0x60e060ff, 0x5090ffff, 0xffe080ff,
+                                               0xff5050ff, 0xff5050ff, 0x60e060ff, 0x60e060ff,
+                                               0x5090ffff, 0x5090ffff };
 static const uint32_t ACTIVE = 0xffffffff;
 
-const char *const gizmo_handles[HANDLE_COUNT] = { "x", "y", "z", "turn" };
+const char *const gizmo_handles[HANDLE_COUNT] = { "x",  "y",  "z",  "turn", "-x",
+                                                  "+x", "-y", "+y", "-z",   "+z" };
 
 // ---- what has handles
 
+enum target_kind { TARGET_LIGHT, TARGET_INSTANCE, TARGET_BLOCK };
+
 struct target {
-    bool is_light;
+    enum target_kind kind;
     int index;
     struct ag_light_desc light; // of a light; its direction is a unit vector
     float world[16];            // of an instance
-    float centre[3];            // of the handles
+    const struct block *block;
+    float centre[3]; // of the handles
 };
 
 static bool find_light(struct viewer *v, struct target *out)
 {
     struct ag_light_info info;
-    out->is_light = true;
+    out->kind = TARGET_LIGHT;
     out->index = v->gizmo.light;
     if (out->index < 0 || out->index >= v->edits.lights.count ||
         ag_scene_get_light(v->desc->scene, out->index, v->desc->animation, v->time_s, &info) !=
@@ -46,7 +53,7 @@ static bool find_instance(struct viewer *v, struct target *out)
 {
     struct ag_instance_info instance;
     struct ag_mesh_info mesh;
-    out->is_light = false;
+    out->kind = TARGET_INSTANCE;
     out->index = v->picked_instance;
     if (out->index < 0 ||
         ag_scene_get_instance(v->desc->scene, out->index, v->desc->animation, v->time_s,
@@ -63,16 +70,32 @@ static bool find_instance(struct viewer *v, struct target *out)
     return true;
 }
 
+static bool find_block(struct viewer *v, struct target *out)
+{
+    out->kind = TARGET_BLOCK;
+    out->block = block_edit_chosen(v);
+    if (!out->block) return false;
+    block_centre(out->block, out->centre);
+    return true;
+}
+
 static bool find(struct viewer *v, struct target *out)
 {
-    return v->lighting ? find_light(v, out) : v->inspecting && find_instance(v, out);
+    if (v->lighting) return find_light(v, out);
+    return v->inspecting ? find_instance(v, out) : v->block_edit.shown && find_block(v, out);
+}
+
+static bool is_light(const struct target *target, enum ag_light_type type)
+{
+    return target->kind == TARGET_LIGHT && target->light.type == type;
 }
 
 static bool has(const struct target *target, enum gizmo_handle handle)
 {
-    const bool sun = target->is_light && target->light.type == AG_LIGHT_SUN;
-    const bool point = target->is_light && target->light.type == AG_LIGHT_POINT;
-    return handle == HANDLE_TURN ? !point : !sun;
+    if (target->kind == TARGET_BLOCK || handle >= HANDLE_FACE)
+        return target->kind == TARGET_BLOCK && handle >= HANDLE_FACE;
+    return handle == HANDLE_TURN ? !is_light(target, AG_LIGHT_POINT)
+                                 : !is_light(target, AG_LIGHT_SUN);
 }
 
 // ---- places of handles
@@ -91,15 +114,21 @@ static void handle_end(const struct viewer *v, const struct target *target,
 {
     const float length = arrow_length(v, target->centre);
     float direction[3] = { 0 };
+    if (handle >= HANDLE_FACE) {
+        block_face_centre(target->block, handle - HANDLE_FACE, out);
+        return;
+    }
     if (handle != HANDLE_TURN) {
         direction[handle] = 1;
         vec_along(target->centre, length, direction, out);
         return;
     }
     // A spot points to its handle, a sun shines from it, an instance turns around the vertical.
-    const float sign = target->is_light && target->light.type == AG_LIGHT_SUN ? -1.0f : 1.0f;
+    const float sign = is_light(target, AG_LIGHT_SUN) ? -1.0f : 1.0f;
     for (int i = 0; i < 3; i++)
-        direction[i] = target->is_light ? sign * target->light.direction[i] : i != 1 ? 0.7071f : 0;
+        direction[i] = target->kind == TARGET_LIGHT ? sign * target->light.direction[i]
+                       : i != 1                     ? 0.7071f
+                                                    : 0;
     vec_along(target->centre, TURN * length, direction, out);
 }
 
@@ -109,8 +138,9 @@ static enum gizmo_handle handle_at(struct viewer *v, const struct target *target
     float least = GRASP_PIXELS * window_scale(v->window);
     for (int i = 0; i < HANDLE_COUNT; i++) {
         float end[3], x, y;
+        if (!has(target, (enum gizmo_handle)i)) continue;
         handle_end(v, target, (enum gizmo_handle)i, end);
-        if (!has(target, (enum gizmo_handle)i) || !viewer_project(v, end, &x, &y)) continue;
+        if (!viewer_project(v, end, &x, &y)) continue;
         const float distance = hypotf(v->mouse_x - x, v->mouse_y - y);
         if (distance >= least) continue;
         least = distance;
@@ -124,10 +154,9 @@ static enum gizmo_handle handle_at(struct viewer *v, const struct target *target
 static void draw_handle(struct viewer *v, const struct target *target, enum gizmo_handle handle)
 {
     float end[3], x0, y0, x1, y1;
+    if (!has(target, handle)) return;
     handle_end(v, target, handle, end);
-    if (!has(target, handle) || !viewer_project(v, target->centre, &x0, &y0) ||
-        !viewer_project(v, end, &x1, &y1))
-        return;
+    if (!viewer_project(v, target->centre, &x0, &y0) || !viewer_project(v, end, &x1, &y1)) return;
     const float scale = window_scale(v->window);
     const uint32_t color = v->gizmo.handle == handle ? ACTIVE : colors[handle];
     ui_stroke(x0, y0, x1, y1, color, 2.0f * scale);
@@ -154,12 +183,11 @@ bool gizmo_find(struct viewer *v, enum gizmo_handle handle, float *x, float *y)
 // ---- dragging
 
 // The place on the axis that is nearest to the ray under the mouse; false: the axis points at the
-// eye.
-static bool place_on_axis(const struct viewer *v, const float centre[3], enum gizmo_handle axis,
+// camera.
+static bool place_on_axis(const struct viewer *v, const float centre[3], const float direction[3],
                           float *out)
 {
-    float eye[3], ray[3], from_eye[3], direction[3] = { 0 };
-    direction[axis] = 1;
+    float eye[3], ray[3], from_eye[3];
     viewer_ray(v, v->mouse_x, v->mouse_y, eye, ray);
     for (int i = 0; i < 3; i++) from_eye[i] = centre[i] - eye[i];
     const float b = vec_dot(direction, ray), span = 1.0f - b * b;
@@ -221,13 +249,23 @@ static void turn_instance(struct viewer *v, const struct target *target)
     viewer_move_instance(v, target->index, world);
 }
 
+static void move_face(struct viewer *v, float place)
+{
+    struct gizmo *gizmo = &v->gizmo;
+    float by[3];
+    for (int i = 0; i < 3; i++) by[i] = (place - gizmo->along) * gizmo->direction[i];
+    if (block_edit_move_face(v, gizmo->handle - HANDLE_FACE, by)) gizmo->along = place;
+}
+
 static void move(struct viewer *v, struct target *target)
 {
     const struct gizmo *gizmo = &v->gizmo;
     float place;
-    if (!place_on_axis(v, gizmo->centre, gizmo->handle, &place)) return;
+    if (!place_on_axis(v, gizmo->centre, gizmo->direction, &place)) return;
     const float by = place - gizmo->along;
-    if (target->is_light) {
+    if (target->kind == TARGET_BLOCK) {
+        move_face(v, place);
+    } else if (target->kind == TARGET_LIGHT) {
         memcpy(target->light.position, gizmo->position, sizeof gizmo->position);
         target->light.position[gizmo->handle] += by;
         viewer_set_light(v, target->index, &target->light);
@@ -245,7 +283,7 @@ void gizmo_drag(struct viewer *v)
     if (!v->gizmo.held || !find(v, &target)) return;
     if (v->gizmo.handle != HANDLE_TURN)
         move(v, &target);
-    else if (target.is_light)
+    else if (target.kind == TARGET_LIGHT)
         turn_light(v, &target);
     else
         turn_instance(v, &target);
@@ -272,21 +310,44 @@ static bool choose_light(struct viewer *v)
     return false;
 }
 
+static bool choose_block(struct viewer *v)
+{
+    const struct blocks *blocks = &v->block_edit.blocks;
+    for (int i = 0; v->block_edit.shown && i < blocks->count; i++) {
+        float centre[3], x, y;
+        block_centre(&blocks->at[i], centre);
+        if (viewer_project(v, centre, &x, &y) &&
+            hypotf(v->mouse_x - x, v->mouse_y - y) <= GRASP_PIXELS * window_scale(v->window))
+            return block_edit_choose(v, i);
+    }
+    return false;
+}
+
+// The axis of a handle that moves.
+static void find_axis(const struct target *target, enum gizmo_handle handle, float out[3])
+{
+    if (handle >= HANDLE_FACE) {
+        block_face_normal(target->block, handle - HANDLE_FACE, out);
+        return;
+    }
+    for (int i = 0; i < 3; i++) out[i] = i == (int)handle ? 1.0f : 0.0f;
+}
+
 bool gizmo_press(struct viewer *v)
 {
     struct gizmo *gizmo = &v->gizmo;
     struct target target;
     gizmo_hover(v);
-    if (gizmo->handle == HANDLE_NONE) return choose_light(v);
+    if (gizmo->handle == HANDLE_NONE) return choose_light(v) || choose_block(v);
     find(v, &target);
     memcpy(gizmo->centre, target.centre, sizeof gizmo->centre);
-    if (target.is_light)
+    find_axis(&target, gizmo->handle, gizmo->direction);
+    if (target.kind == TARGET_LIGHT)
         memcpy(gizmo->position, target.light.position, sizeof gizmo->position);
-    else
-        memcpy(gizmo->world, target.world, sizeof gizmo->world);
+    if (target.kind == TARGET_INSTANCE) memcpy(gizmo->world, target.world, sizeof gizmo->world);
     gizmo->mouse_x = v->mouse_x;
     gizmo->held = gizmo->handle == HANDLE_TURN ||
-                  place_on_axis(v, gizmo->centre, gizmo->handle, &gizmo->along);
+                  place_on_axis(v, gizmo->centre, gizmo->direction, &gizmo->along);
     return true;
 }
 

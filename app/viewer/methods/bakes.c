@@ -13,6 +13,7 @@ struct bake_job {
     const struct viewer_desc *desc;
     char gi[METHOD_SPEC];
     bool other; // for the right part of a split screen
+    bool again; // the method runs with older files
     struct edits edits;
     pthread_t thread;
     pthread_mutex_t mutex;
@@ -100,14 +101,23 @@ static void *run(void *user)
 
 // ---- the viewer's thread
 
-static bool start(struct viewer *v, const char *gi, bool other)
+// How a method is to run.
+struct wanted {
+    struct rendering *rendering;
+    const char *gi;
+    bool again;    // it runs already, with older files
+    bool may_bake; // what is not there
+};
+
+static bool start(struct viewer *v, const struct wanted *wanted)
 {
     struct bake_job *job = calloc(1, sizeof *job);
     if (!job) return false;
     job->desc = v->desc;
-    job->other = other;
+    job->other = wanted->rendering == &v->other;
+    job->again = wanted->again;
     job->edits = v->edits;
-    snprintf(job->gi, sizeof job->gi, "%s", gi);
+    snprintf(job->gi, sizeof job->gi, "%s", wanted->gi);
     pthread_mutex_init(&job->mutex, NULL);
     if (pthread_create(&job->thread, NULL, run, job) != 0) {
         pthread_mutex_destroy(&job->mutex);
@@ -115,7 +125,7 @@ static bool start(struct viewer *v, const char *gi, bool other)
         return false;
     }
     v->bake_job = job;
-    viewer_say(v, "baking %s; the old method is shown meanwhile", gi);
+    viewer_say(v, "baking %s; the old method is shown meanwhile", wanted->gi);
     return true;
 }
 
@@ -148,24 +158,34 @@ static bool load(struct viewer *v, const char *gi, struct ag_bake *bakes[VIEWER_
     return all;
 }
 
-static bool set_gi(struct viewer *v, struct rendering *rendering, const char *gi, bool may_bake)
+// The same spec goes on as it runs: it ends before it begins again, between two frames.
+static enum ag_result run_gi(struct viewer *v, const struct wanted *wanted,
+                             const struct ag_bake *const *bakes, int count)
+{
+    struct ag_renderer *renderer = wanted->rendering->renderer;
+    if (wanted->again) ag_renderer_set_gi(renderer, "none", NULL, 0);
+    const enum ag_result result = ag_renderer_set_gi(renderer, wanted->gi, bakes, count);
+    if (wanted->again && result != AG_OK) viewer_runs(v, wanted->rendering == &v->other, "none");
+    return result;
+}
+
+static bool set_gi(struct viewer *v, const struct wanted *wanted)
 {
     struct ag_bake *bakes[VIEWER_BAKES] = { NULL };
+    const char *gi = wanted->gi;
     int count = 0;
-    const bool all = load(v, gi, bakes, &count);
+    const bool all = load(v, gi, bakes, &count), other = wanted->rendering == &v->other;
     enum ag_result result = AG_OK;
-    if (all)
-        result = ag_renderer_set_gi(rendering->renderer, gi, (const struct ag_bake *const *)bakes,
-                                    count);
+    if (all) result = run_gi(v, wanted, (const struct ag_bake *const *)bakes, count);
     for (int i = 0; i < count; i++) ag_bake_destroy(bakes[i]);
-    if (!all && may_bake) {
-        if (v->bake_job && v->bake_job->other != (rendering == &v->other)) {
+    if (!all && wanted->may_bake) {
+        if (v->bake_job && v->bake_job->other != other) {
             viewer_warn(v, "%.400s waits: choose it again after the bake of %.400s", gi,
                         v->bake_job->gi);
             return false;
         }
         bakes_cancel(v);
-        if (start(v, gi, rendering == &v->other)) return false;
+        if (start(v, wanted)) return false;
     }
     if (!all) viewer_warn(v, "%s needs a bake, and that in the cache is of another scene", gi);
     return all && viewer_check(v, result);
@@ -173,7 +193,12 @@ static bool set_gi(struct viewer *v, struct rendering *rendering, const char *gi
 
 bool bakes_set_gi(struct viewer *v, struct rendering *rendering, const char *gi)
 {
-    return set_gi(v, rendering, gi, true);
+    return set_gi(v, &(struct wanted){ rendering, gi, .may_bake = true });
+}
+
+bool bakes_begin_gi_again(struct viewer *v, struct rendering *rendering, const char *gi)
+{
+    return set_gi(v, &(struct wanted){ rendering, gi, .again = true, .may_bake = true });
 }
 
 bool bakes_running(const struct viewer *v)
@@ -204,12 +229,12 @@ void bakes_step(struct viewer *v)
     struct bake_job *job = v->bake_job;
     char gi[METHOD_SPEC];
     if (!job || !job->ended) return;
-    const bool failed = job->failed, other = job->other;
+    const bool failed = job->failed, other = job->other, again = job->again;
     if (failed) viewer_warn(v, "%s", job->error);
     snprintf(gi, sizeof gi, "%s", job->gi);
     end(v);
     if (failed || (other && !v->split)) return;
-    if (!set_gi(v, other ? &v->other : &v->main, gi, false)) return;
+    if (!set_gi(v, &(struct wanted){ other ? &v->other : &v->main, gi, again, false })) return;
     viewer_runs(v, other, gi);
     viewer_say(v, "%s is shown", gi);
 }

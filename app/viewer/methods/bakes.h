@@ -9,6 +9,8 @@ enum { VIEWER_BAKES = 4 };
 // frames go on with the old method: bakes_step then exchanges it. False after a failure, with a
 // message.
 bool bakes_set_gi(struct viewer *v, struct rendering *rendering, const char *gi);
+// The same where `gi` runs already, and files that its options name have changed.
+bool bakes_begin_gi_again(struct viewer *v, struct rendering *rendering, const char *gi);
 // Takes over what the thread has finished.
 void bakes_step(struct viewer *v);
 bool bakes_running(const struct viewer *v);

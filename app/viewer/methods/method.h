@@ -4,7 +4,7 @@
 
 #include <afterglow/afterglow.h>
 
-enum { METHOD_TECHNIQUES = 24, METHOD_OPTIONS = 40, METHOD_VALUE = 128, METHOD_SPEC = 8192 };
+enum { METHOD_TECHNIQUES = 24, METHOD_OPTIONS = 40, METHOD_VALUE = 768, METHOD_SPEC = 8192 };
 enum method_role { ROLE_SOURCE, ROLE_DELTA, ROLE_VISIBILITY, ROLE_COUNT };
 
 struct method {

@@ -58,6 +58,13 @@ bool viewer_set_gi(struct viewer *v, const char *gi)
     return true;
 }
 
+bool viewer_begin_gi_again(struct viewer *v, const char *gi)
+{
+    if (!bakes_begin_gi_again(v, &v->main, gi)) return bakes_running(v);
+    viewer_runs(v, false, gi);
+    return true;
+}
+
 bool viewer_set_split(struct viewer *v, const char *gi)
 {
     viewer_touch(v);

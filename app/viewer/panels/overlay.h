@@ -1,4 +1,4 @@
-// Marks in the image: lights, the box of the surface that was clicked, probes.
+// Marks in the image: lights, the box of the surface that was clicked, probes, blocks.
 #pragma once
 
 #include "viewer/state.h"
@@ -6,3 +6,4 @@
 void overlay_lights(const struct viewer *v);
 void overlay_selection(const struct viewer *v);
 void overlay_probes(struct viewer *v);
+void overlay_blocks(const struct viewer *v); // those that are edited

@@ -17,6 +17,7 @@ void panel_probes(struct viewer *v);
 void panel_texels(struct viewer *v);
 void panel_paint(struct viewer *v);
 void panel_blocks(struct viewer *v);
+void panel_block_edit(struct viewer *v); // a part of it
 
 // Names of the techniques for which `has` is true, with commas.
 void panel_list_techniques(bool (*has)(int technique), char *out, size_t size);

@@ -25,6 +25,7 @@ static void show_blocks(struct viewer *v)
         "Rooms are made of blocks. They are those of the scene's nodes (afterglow_block in their "
         "extras), else found in its free space. The option map chooses (auto, single), the "
         "option blocks reads a file: docs/block-maps.md.");
+    panel_block_edit(v);
 }
 
 static void list_movable(struct viewer *v)
@@ -53,7 +54,7 @@ static void list_movable(struct viewer *v)
 void panel_blocks(struct viewer *v)
 {
     const int technique = v->method.chosen[ROLE_SOURCE];
-    if (ag_technique_debug_view_find(technique, "blocks") < 0) return;
+    if (!block_edit_possible(v)) return;
     if (ui_section("Blocks", true)) show_blocks(v);
     if (!has_option(technique, "occlusion") || !ui_section("Objects in blocks", true)) return;
     ui_faint(

@@ -84,7 +84,7 @@ static void draw_tabs(struct viewer *v)
 void panels_draw(struct viewer *v)
 {
     const struct region r = viewer_images(v);
-    v->inspecting = v->lighting = v->paint.armed = false;
+    v->inspecting = v->lighting = v->paint.armed = v->block_edit.shown = false;
     overlay_probes(v);
     draw_split_labels(v);
     draw_status(v);

@@ -13,6 +13,7 @@ struct state {
     char what[WHAT_SIZE]; // changed since the step before
     struct edits edits;
     char gi[METHOD_SPEC], other_gi[METHOD_SPEC]; // of the right part; "": none
+    struct blocks blocks;
 };
 
 struct undo {
@@ -20,10 +21,19 @@ struct undo {
     int count, at;              // at: index of the present one
 };
 
+static void forget(struct state *state)
+{
+    if (state) blocks_close(&state->blocks);
+    free(state);
+}
+
 static struct state *take(const struct viewer *v, const char *what)
 {
-    struct state *state = malloc(sizeof *state);
-    if (!state) return NULL;
+    struct state *state = calloc(1, sizeof *state);
+    if (!state || !blocks_copy(&state->blocks, &v->block_edit.blocks)) {
+        free(state);
+        return NULL;
+    }
     snprintf(state->what, sizeof state->what, "%s", what);
     state->edits = v->edits;
     snprintf(state->gi, sizeof state->gi, "%s", v->gi);
@@ -45,16 +55,16 @@ struct undo *undo_open(const struct viewer *v)
 
 void undo_close(struct undo *undo)
 {
-    for (int i = 0; undo && i < undo->count; i++) free(undo->steps[i]);
+    for (int i = 0; undo && i < undo->count; i++) forget(undo->steps[i]);
     free(undo);
 }
 
 // Steps that were undone are forgotten; the oldest makes room.
 static void push(struct undo *undo, struct state *state)
 {
-    while (undo->count > undo->at + 1) free(undo->steps[--undo->count]);
+    while (undo->count > undo->at + 1) forget(undo->steps[--undo->count]);
     if (undo->count == STEPS) {
-        free(undo->steps[0]);
+        forget(undo->steps[0]);
         memmove(undo->steps, undo->steps + 1, (STEPS - 1) * sizeof *undo->steps);
         undo->count--;
     }
@@ -114,6 +124,7 @@ static bool go_to(struct viewer *v, int step)
     v->restoring = true;
     const bool done = viewer_check(v, edits_restore(&v->edits, &state->edits, v->desc->scene)) &&
                       restore_methods(v, state);
+    block_edit_restore(v, &state->blocks);
     v->restoring = false;
     undo->at = step;
     viewer_change(v);

@@ -17,7 +17,14 @@
 //   camera NAME|given · look X,Y,Z X,Y,Z
 //   light N X                    switches light N on (1) or off (0)
 //   choose light N|instance N    it gets handles in the tabs Light and Inspect
-//   drag x|y|z|turn DX DY        drags a handle by pixels
+//   drag x|y|z|turn DX DY        drags a handle by pixels; of a block: -x, +x, -y …
+//   blocks read|write FILE       the block map of the method, to be edited; writes and uses it
+//   blocks choose N              a block, for the following
+//   blocks move FACE M           moves a face (-x, +x, -y …) outwards by metres
+//   blocks corner N X,Y,Z · blocks rename NAME
+//   blocks open FACE wall|open|connect
+//   blocks extend FACE|add|duplicate|remove
+//   blocks join on|off           faces move with the corners of connected blocks
 //   path add|every S FPS|record FOLDER
 //                                adds the view as a key; seconds from key to key and images a
 //                                second; writes the flight's images

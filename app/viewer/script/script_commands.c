@@ -291,6 +291,7 @@ const struct script_command script_commands[] = {
     { "camera", false, run_camera },
     { "look", false, run_look },
     { "light", false, run_light },
+    { "blocks", false, script_blocks },
     { "path", false, run_path },
     { "open", false, run_open },
     { "session", false, run_session },

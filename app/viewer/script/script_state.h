@@ -39,6 +39,7 @@ struct script_command {
     bool is_event;                      // others wait for the events of the lines before
     bool (*run)(const struct words *w); // false after a failure
 };
+bool script_blocks(const struct words *w);
 extern const struct script_command script_input[], script_commands[]; // the last has no name
 
 // Ends the script with a sentence; false.

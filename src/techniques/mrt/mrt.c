@@ -87,6 +87,15 @@ static char *drt_block_map(struct host *host, const struct scene_pose *pose, con
     return drt_check(&how) ? mrt_map_json(host, options, true, pose) : NULL;
 }
 
+static char *mrt_read_block_map(struct host *host, const char *json)
+{
+    struct mrt_block_map map;
+    if (!mrt_block_map_parse(host, "block map", json, strlen(json), &map)) return NULL;
+    char *copy = mrt_block_map_json(host, &map);
+    mrt_block_map_finish(&map);
+    return copy;
+}
+
 static bool mrt_bake(struct bake_plan *plan, const struct technique_bake *how)
 {
     const struct mrt_dictionary_options options = dictionary_options(how->options);
@@ -309,10 +318,10 @@ enum { MRT_CAN = CAN_MOVE_LIGHTS | NEEDS_BAKE | PUBLISHES_PROBES | GATHERS_EMISS
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_LIGHT_EVOLVES, .bake_version = 5,                     \
     .options = OPTION_TABLE(struct mrt_options, rows, NULL), .presets = presets,                   \
     .debug_views = debug_views, .state_size = sizeof(struct mrt), .resolve = mrt_resolve,          \
-    .bake = mrt_bake, .bake_report = mrt_bake_report, .load = mrt_load,                            \
-    .set_options = mrt_set_options, .invalidate = mrt_invalidate, .update = mrt_update,            \
-    .record = mrt_record, .debug_view = mrt_debug_view, .probes = mrt_probes,                      \
-    .destroy = mrt_destroy
+    .read_block_map = mrt_read_block_map, .bake = mrt_bake, .bake_report = mrt_bake_report,        \
+    .load = mrt_load, .set_options = mrt_set_options, .invalidate = mrt_invalidate,                \
+    .update = mrt_update, .record = mrt_record, .debug_view = mrt_debug_view,                      \
+    .probes = mrt_probes, .destroy = mrt_destroy
 
 const struct technique technique_mrt = {
     MRT_TECHNIQUE("mrt", "modular radiance transfer",

@@ -59,6 +59,9 @@ bool mrt_block_map_as_cubes(const char *what, struct mrt_block_map *map);
 // ---- block_map_json.c: FAIL_FORMAT where the JSON is malformed.
 
 bool mrt_block_map_read(struct host *host, const char *path, struct mrt_block_map *map);
+// `what` names the text in messages.
+bool mrt_block_map_parse(struct host *host, const char *what, const char *text, size_t size,
+                         struct mrt_block_map *map);
 // Whether the `extras` of a node say that it is clutter, or that it is not.
 bool mrt_clutter_of_extras(const struct node *node, bool *clutter);
 // From the `extras` of nodes in the default pose. A scene without blocks gives an empty map.

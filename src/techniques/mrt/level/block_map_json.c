@@ -301,19 +301,27 @@ static bool read_document(struct host *host, const char *path, const json_t *roo
     return ok;
 }
 
+bool mrt_block_map_parse(struct host *host, const char *what, const char *text, size_t size,
+                         struct mrt_block_map *map)
+{
+    json_error_t error;
+    *map = (struct mrt_block_map){ 0 };
+    json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, &error);
+    bool ok = root ? read_document(host, what, root, map)
+                   : host_fail(host, FAIL_FORMAT, "%s: line %d: %s", what, error.line, error.text);
+    json_decref(root);
+    if (!ok) mrt_block_map_finish(map);
+    return ok;
+}
+
 bool mrt_block_map_read(struct host *host, const char *path, struct mrt_block_map *map)
 {
     enum { MAX_BYTES = 4 << 20 };
     struct file_bytes bytes;
-    json_error_t error;
     *map = (struct mrt_block_map){ 0 };
     if (!file_read(host, path, MAX_BYTES, &bytes)) return false;
-    json_t *root = json_loadb((const char *)bytes.data, bytes.size, JSON_REJECT_DUPLICATES, &error);
+    const bool ok = mrt_block_map_parse(host, path, (const char *)bytes.data, bytes.size, map);
     file_bytes_finish(host, &bytes);
-    bool ok = root ? read_document(host, path, root, map)
-                   : host_fail(host, FAIL_FORMAT, "%s: line %d: %s", path, error.line, error.text);
-    json_decref(root);
-    if (!ok) mrt_block_map_finish(map);
     return ok;
 }
 
