@@ -69,30 +69,6 @@ TEST(the_last_frame_of_a_script_is_a_screenshot)
 
 // ---- the command of a view
 
-// Runs the line as a shell does, for the program under test.
-static void run_line(const char *path, const char *output)
-{
-    char line[4096] = "", command[8192];
-    FILE *file = fopen(path, "r");
-    if (!file || !fgets(line, sizeof line, file)) fail_msg("%s is empty", path);
-    fclose(file);
-    line[strcspn(line, "\n")] = 0;
-    if (strncmp(line, "afterglow ", 10) != 0) fail_msg("no command: %s", line);
-    snprintf(command, sizeof command, "'%s' %s --quiet -o %s", AFTERGLOW_PROGRAM, line + 10,
-             output);
-    if (system(command) != 0) fail_msg("failed: %s", command);
-}
-
-static void check_command(const char *words, const char *script)
-{
-    char lines[1024];
-    snprintf(lines, sizeof lines, "%ssettle\nsave saved.png\ncommand command.sh\n", script);
-    view(words, lines);
-    run_line("command.sh", "rendered.png");
-    if (!files_are_equal("saved.png", "rendered.png"))
-        fail_msg("%s: the command renders another image", words);
-}
-
 TEST(the_command_of_a_view_renders_its_image)
 {
     require_display();

@@ -38,7 +38,7 @@ static bool find_light(struct viewer *v, struct target *out)
     struct ag_light_info info;
     out->kind = TARGET_LIGHT;
     out->index = v->gizmo.light;
-    if (out->index < 0 || out->index >= v->edits.lights.count ||
+    if (!edits_has_light(&v->edits, out->index) ||
         ag_scene_get_light(v->desc->scene, out->index, v->desc->animation, v->time_s, &info) !=
             AG_OK)
         return false;
@@ -300,7 +300,8 @@ static bool choose_light(struct viewer *v)
     struct ag_light_info info;
     float x, y;
     for (int i = 0; v->lighting && i < v->edits.lights.count; i++) {
-        if (ag_scene_get_light(v->desc->scene, i, v->desc->animation, v->time_s, &info) != AG_OK ||
+        if (!edits_has_light(&v->edits, i) ||
+            ag_scene_get_light(v->desc->scene, i, v->desc->animation, v->time_s, &info) != AG_OK ||
             info.light.type == AG_LIGHT_SUN || !viewer_project(v, info.light.position, &x, &y) ||
             hypotf(v->mouse_x - x, v->mouse_y - y) > GRASP_PIXELS * window_scale(v->window))
             continue;

@@ -16,7 +16,8 @@ void overlay_lights(const struct viewer *v)
     for (int i = 0; i < v->edits.lights.count; i++) {
         float x, y;
         char text[16];
-        if (ag_scene_get_light(v->desc->scene, i, v->desc->animation, v->time_s, &light) != AG_OK ||
+        if (!edits_has_light(&v->edits, i) ||
+            ag_scene_get_light(v->desc->scene, i, v->desc->animation, v->time_s, &light) != AG_OK ||
             light.light.type == AG_LIGHT_SUN || !viewer_project(v, light.light.position, &x, &y) ||
             !in_region(v, x, y))
             continue;

@@ -75,7 +75,7 @@ static void edit_light(struct viewer *v, int index)
     snprintf(label, sizeof label, "%d %s %.100s", index, viewer_light_types[light->type],
              info.name ? info.name : "");
     ui_push(index);
-    bool changed = false;
+    bool changed = false, removed = false;
     if (ui_section(label, index < 2)) {
         changed |= ui_switch("on", &light->enabled);
         changed |= edit_intensity(light->intensity, units[light->type],
@@ -85,9 +85,11 @@ static void edit_light(struct viewer *v, int index)
                 ui_numbers("position (m)", light->position, 3, 0.01f * v->look.speed, "%.3f");
         if (light->type != AG_LIGHT_POINT) changed |= edit_direction(light->direction);
         if (light->type == AG_LIGHT_SPOT) changed |= edit_cone(light);
+        removed = ui_small_button("Remove light");
     }
     ui_pop();
-    if (changed && viewer_set_light(v, index, light)) v->gizmo.light = index;
+    if (removed) viewer_remove_light(v, index);
+    if (changed && !removed && viewer_set_light(v, index, light)) v->gizmo.light = index;
 }
 
 // Points and spots are where the camera is; a sun is high.
@@ -125,7 +127,8 @@ void panel_light(struct viewer *v)
         ui_same_line();
         if (ui_small_button(viewer_light_types[i])) add_light(v, (enum ag_light_type)i);
     }
-    for (int i = 0; i < v->edits.lights.count; i++) edit_light(v, i);
+    for (int i = 0; i < v->edits.lights.count; i++)
+        if (edits_has_light(&v->edits, i)) edit_light(v, i);
     edit_sky(v);
     panel_paint(v);
 }

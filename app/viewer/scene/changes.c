@@ -30,8 +30,25 @@ bool viewer_set_material(struct viewer *v, int material, const struct ag_materia
     return finish(v, edits_set_material(&v->edits, &at, material, desc), "material", material);
 }
 
+static bool has_light(struct viewer *v, int light)
+{
+    if (edits_has_light(&v->edits, light)) return true;
+    viewer_warn(v, "there is no light %d", light);
+    return false;
+}
+
+bool viewer_remove_light(struct viewer *v, int light)
+{
+    if (!has_light(v, light) ||
+        !finish(v, edits_remove_light(&v->edits, v->desc->scene, light), "light", light))
+        return false;
+    if (v->gizmo.light == light) v->gizmo.light = -1;
+    return true;
+}
+
 bool viewer_set_light(struct viewer *v, int light, const struct ag_light_desc *desc)
 {
+    if (!has_light(v, light)) return false;
     return finish(v, edits_set_light(&v->edits, v->desc->scene, light, desc), "light", light);
 }
 

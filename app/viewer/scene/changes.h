@@ -9,4 +9,5 @@ bool viewer_move_instance(struct viewer *v, int instance, const float world_from
 bool viewer_set_material(struct viewer *v, int material, const struct ag_material_desc *desc);
 bool viewer_set_light(struct viewer *v, int light, const struct ag_light_desc *desc);
 bool viewer_add_light(struct viewer *v, const struct ag_light_desc *desc);
+bool viewer_remove_light(struct viewer *v, int light);
 bool viewer_set_sky(struct viewer *v, const float radiance[3]); // cd/m²

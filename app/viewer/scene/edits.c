@@ -57,7 +57,8 @@ bool edits_changed_lights(const struct edits *edits)
     const struct edits_lights *a = &edits->first_lights, *b = &edits->lights;
     if (a->count != b->count || !same_floats(a->sky, b->sky, 3)) return true;
     for (int i = 0; i < a->count; i++)
-        if (!same_light(&a->lights[i], &b->lights[i])) return true;
+        if (a->removed[i] != b->removed[i] || !same_light(&a->lights[i], &b->lights[i]))
+            return true;
     return false;
 }
 
@@ -147,10 +148,15 @@ static enum ag_result put_light(struct ag_scene *scene, int light, const struct 
                                : ag_scene_add_light(scene, desc, NULL);
 }
 
+bool edits_has_light(const struct edits *edits, int light)
+{
+    return light >= 0 && light < edits->lights.count && !edits->lights.removed[light];
+}
+
 enum ag_result edits_set_light(struct edits *edits, struct ag_scene *scene, int light,
                                const struct ag_light_desc *desc)
 {
-    if (light < 0 || light >= edits->lights.count) return AG_ERROR_ARGUMENT;
+    if (!edits_has_light(edits, light)) return AG_ERROR_ARGUMENT;
     const enum ag_result result = ag_scene_set_light(scene, light, desc);
     if (result != AG_OK) return result;
     edits->lights.lights[light] = *desc;
@@ -166,7 +172,22 @@ enum ag_result edits_add_light(struct edits *edits, struct ag_scene *scene,
     const enum ag_result result = put_light(scene, lights->count, desc);
     if (result != AG_OK) return result;
     edits->light_touched[lights->count] = true;
+    lights->removed[lights->count] = false;
     lights->lights[lights->count++] = *desc;
+    return AG_OK;
+}
+
+enum ag_result edits_remove_light(struct edits *edits, struct ag_scene *scene, int light)
+{
+    struct edits_lights *lights = &edits->lights;
+    if (!edits_has_light(edits, light)) return AG_ERROR_ARGUMENT;
+    struct ag_light_desc off = lights->lights[light];
+    off.enabled = false;
+    const enum ag_result result = ag_scene_set_light(scene, light, &off);
+    if (result != AG_OK) return result;
+    edits->light_touched[light] = lights->removed[light] = true;
+    while (lights->count > edits->first_lights.count && lights->removed[lights->count - 1])
+        lights->removed[--lights->count] = false;
     return AG_OK;
 }
 
@@ -190,16 +211,21 @@ static enum ag_result apply_instance(const struct edits_instance *edit, struct a
     return result;
 }
 
-// A scene cannot lose one light: those that were undone are off.
+// A scene cannot lose one light: those that were removed, or undone, are off.
+static enum ag_result apply_light(const struct edits *edits, struct ag_scene *scene, int light)
+{
+    struct ag_light_desc desc;
+    ag_light_desc_default(&desc, AG_LIGHT_POINT);
+    if (light < edits->lights.count) desc = edits->lights.lights[light];
+    desc.enabled &= edits_has_light(edits, light);
+    return put_light(scene, light, &desc);
+}
+
 static enum ag_result apply_lights(const struct edits *edits, struct ag_scene *scene)
 {
-    struct ag_light_desc off;
     enum ag_result result = AG_OK;
-    ag_light_desc_default(&off, AG_LIGHT_POINT);
-    off.enabled = false;
     for (int i = 0; i < EDITS_LIGHTS && result == AG_OK; i++)
-        if (edits->light_touched[i])
-            result = put_light(scene, i, i < edits->lights.count ? &edits->lights.lights[i] : &off);
+        if (edits->light_touched[i]) result = apply_light(edits, scene, i);
     if (result == AG_OK && edits->sky_touched) result = ag_scene_set_sky(scene, edits->lights.sky);
     return result;
 }

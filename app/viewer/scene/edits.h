@@ -7,8 +7,9 @@
 enum { EDITS_EACH = 64, EDITS_LIGHTS = 128 };
 
 struct edits_lights {
-    int count;
+    int count; // with those that were removed: indices of the others stay
     struct ag_light_desc lights[EDITS_LIGHTS];
+    bool removed[EDITS_LIGHTS];
     float sky[3]; // cd/m²
 };
 
@@ -53,6 +54,10 @@ enum ag_result edits_set_light(struct edits *edits, struct ag_scene *scene, int 
 // Its index is edits->lights.count before.
 enum ag_result edits_add_light(struct edits *edits, struct ag_scene *scene,
                                const struct ag_light_desc *desc);
+// A scene cannot lose one light: it is off from then on, and its index is not given again unless it
+// is the last.
+enum ag_result edits_remove_light(struct edits *edits, struct ag_scene *scene, int light);
+bool edits_has_light(const struct edits *edits, int light); // false also for one that was removed
 enum ag_result edits_set_sky(struct edits *edits, struct ag_scene *scene, const float radiance[3]);
 
 bool edits_moved(const struct edits_instance *edit);

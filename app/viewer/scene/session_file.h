@@ -12,9 +12,10 @@
 //   scale, split_at, side_by_side, difference, budget_ms   as in the panels
 //   gi                  the method
 //   compare             null, "reference", or the second method
-//   lights              those that were changed or added: "index", "type": sun, point or spot,
+//   lights              those that were changed, added or removed: "index", "type": sun, point or
+//   spot,
 //                       "on", "position": m, "direction", "intensity": lux or cd,
-//                       "inner_rad", "outer_rad"
+//                       "inner_rad", "outer_rad", "removed"
 //   sky                 cd/m², if it was changed
 //   instances           those that were moved: "index", "world_from_mesh": 4×4, column-major
 //   materials           those that were changed: "index" and factors as in glTF, "emissive": cd/m²

@@ -44,8 +44,9 @@ static bool read_camera(struct read *r, json_t *camera)
 
 static bool read_light(struct read *r, json_t *object)
 {
-    static const char *const names[] = { "index",     "type",      "on",        "position",
-                                         "direction", "intensity", "inner_rad", "outer_rad" };
+    static const char *const names[] = { "index",     "type",      "on",
+                                         "position",  "direction", "intensity",
+                                         "inner_rad", "outer_rad", "removed" };
     struct edits_lights *lights = &r->s->edits.lights;
     int index = lights->count;
     const char *type = NULL;
@@ -66,6 +67,7 @@ static bool read_light(struct read *r, json_t *object)
     if (type) return member_wrong(&r->m, "type is sun, point or spot, not %.100s", type);
     r->s->edits.light_touched[index] = true;
     return member_boolean(&r->m, object, "on", &light->enabled) &&
+           member_boolean(&r->m, object, "removed", &lights->removed[index]) &&
            member_floats(&r->m, object, "position", -1e9f, 3, light->position) &&
            member_floats(&r->m, object, "direction", -1e9f, 3, light->direction) &&
            member_floats(&r->m, object, "intensity", 0.0f, 3, light->intensity) &&

@@ -33,8 +33,9 @@ static json_t *camera_of(const struct viewer *v)
     return camera;
 }
 
-static json_t *light_of(int index, const struct ag_light_desc *light)
+static json_t *light_of(const struct edits *edits, int index)
 {
+    const struct ag_light_desc *light = &edits->lights.lights[index];
     json_t *object = json_object();
     put(object, "index", json_integer(index));
     put(object, "type", json_string(viewer_light_types[light->type]));
@@ -44,6 +45,7 @@ static json_t *light_of(int index, const struct ag_light_desc *light)
     put(object, "intensity", json_floats(light->intensity, 3));
     put(object, "inner_rad", json_float(light->inner_rad));
     put(object, "outer_rad", json_float(light->outer_rad));
+    if (edits->lights.removed[index]) put(object, "removed", json_true());
     return object;
 }
 
@@ -51,8 +53,7 @@ static json_t *lights_of(const struct edits *edits)
 {
     json_t *lights = json_array();
     for (int i = 0; i < edits->lights.count; i++)
-        if (edits->light_touched[i])
-            json_array_append_new(lights, light_of(i, &edits->lights.lights[i]));
+        if (edits->light_touched[i]) json_array_append_new(lights, light_of(edits, i));
     return lights;
 }
 

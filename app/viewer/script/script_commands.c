@@ -172,6 +172,9 @@ static bool run_light(const struct words *w)
 {
     int light = -1, on = 0;
     struct ag_light_info info;
+    char word[8] = "";
+    if (sscanf(w->rest, "%d %7s", &light, word) == 2 && strcmp(word, "remove") == 0)
+        return script_done(w, viewer_remove_light(w->v, light));
     sscanf(w->rest, "%d %d", &light, &on);
     if (!viewer_check(w->v, ag_scene_get_light(w->v->desc->scene, light, w->v->desc->animation,
                                                w->v->time_s, &info)))
