@@ -4,6 +4,9 @@
 #include "operations.h"
 #include "shell/words.h"
 
+#include <stdio.h>
+#include <string.h>
+
 static void add_camera(struct words *w, const struct viewer *v)
 {
     float target[3];
@@ -45,17 +48,43 @@ static void add_light(struct words *w, const struct ag_light_desc *light)
     words_add_triple(w, light->intensity);
 }
 
+// That of the command line is left out, or said again; NULL: there is no option for the present
+// one.
+static const char *environment_text(const struct viewer *v)
+{
+    const struct environment_choice *choice = &v->edits.environment;
+    const bool own = v->edits.first_environment.source == ENVIRONMENT_OF_SCENE;
+    const char *given = v->desc->environment;
+    if (choice->source == ENVIRONMENT_FILE) return choice->path;
+    if (choice->source == ENVIRONMENT_OF_SCENE) return given[0] ? given : NULL;
+    return own && !given[0] ? NULL : "";
+}
+
+static void add_environment(struct words *w, const struct viewer *v)
+{
+    const struct environment_choice *choice = &v->edits.environment;
+    const char *text = environment_text(v);
+    char value[ENVIRONMENT_PATH_SIZE + 128];
+    if (!text || !text[0]) return;
+    const bool sky = strncmp(text, "sun-sky:", 8) == 0; // it has members already
+    snprintf(value, sizeof value, "%s%crotation=%.17g,strength=%.9g", text, sky ? ',' : ':',
+             (double)choice->rotation * 57.29577951308232, (double)choice->strength);
+    words_add(w, " --environment");
+    words_add_word(w, value);
+}
+
 static void add_lights(struct words *w, const struct viewer *v)
 {
     struct ag_scene_info info = { 0 };
     struct ag_light_info light;
-    if (!edits_changed_lights(&v->edits)) {
+    if (!edits_changed_lights(&v->edits) && !edits_changed_environment(&v->edits)) {
         words_add(w, "%s", v->desc->light_words);
         return;
     }
     ag_scene_get_info(v->desc->scene, v->desc->animation, v->time_s, &info);
     words_add(w, " --no-scene-lights");
     words_add(w, "%s", v->desc->kept_words);
+    add_environment(w, v);
     for (int i = 0; i < info.lights; i++)
         if (ag_scene_get_light(v->desc->scene, i, v->desc->animation, v->time_s, &light) == AG_OK)
             add_light(w, &light.light);
@@ -69,6 +98,11 @@ bool viewer_command(struct viewer *v, char *out, size_t size)
     if (edits_changed_materials(&v->edits) || edits_changed_instances(&v->edits)) {
         viewer_warn(v, "there is no option for a changed %s: the command cannot render this view",
                     edits_changed_materials(&v->edits) ? "material" : "place of an object");
+        return false;
+    }
+    if (edits_changed_environment(&v->edits) && !environment_text(v)) {
+        viewer_warn(v, "there is no option for another use of the environment of the scene's file: "
+                       "the command cannot render this view");
         return false;
     }
     if (paint_has(v)) {

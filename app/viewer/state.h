@@ -73,9 +73,11 @@ struct viewer {
     struct path path;
     struct record record;
     struct edits edits;
-    struct undo *undo; // NULL: out of memory
-    char change[48];   // by the user, no step of undo yet; "": none
-    bool restoring;    // changes are those of undo
+    struct environments environments;
+    char environment_file[ENVIRONMENT_PATH_SIZE]; // of the panel
+    struct undo *undo;                            // NULL: out of memory
+    char change[48];                              // by the user, no step of undo yet; "": none
+    bool restoring;                               // changes are those of undo
 
     struct bake_job *bake_job;     // NULL: none runs
     struct truth *truth;           // NULL: no comparison with the reference

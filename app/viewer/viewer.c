@@ -142,6 +142,8 @@ static bool begin(struct viewer *v, char error[1024])
     }
     set_defaults(v);
     edits_begin(&v->edits, &at);
+    environments_begin(&v->environments, desc->context, desc->scene, &v->edits.first_environment);
+    v->edits.environment = v->edits.first_environment;
     const bool again = v->frame > 0; // the window has had a scene: a failure leaves it open
     if ((!running_begin(v, desc->gi) && !(again && running_begin(v, "none"))) ||
         (!again && !begin_comparison(v))) {
@@ -164,6 +166,7 @@ static void end(struct viewer *v)
     paint_close(v);
     block_edit_close(v);
     running_end(v);
+    environments_end(&v->environments);
     ag_device_destroy(v->device);
 }
 

@@ -14,6 +14,7 @@ struct viewer_desc {
     const char *scene_words;  // options of the command line that load the scene so, a blank first
     const char *light_words;  // likewise those that light it,
     const char *kept_words;   // those of them that stay when lights change,
+    const char *environment;  // the value of --environment without its use; "": none,
     const char *camera_words; // and those of its camera
     struct ag_camera camera;
     int animation;

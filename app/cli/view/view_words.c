@@ -34,8 +34,18 @@ static void describe_kept_light(const struct arguments *a, struct words *w)
         words_add(w, " --light");
         words_add_word(w, a->light_texts[i]);
     }
-    if (a->environment) words_add(w, " --environment");
-    if (a->environment) words_add_word(w, a->environment);
+}
+
+static void describe_environment(const struct arguments *a, struct words *w)
+{
+    const struct environment_value *value = &a->environment_value;
+    if (!a->environment) return;
+    if (value->path[0])
+        words_add(w, "%s", value->path);
+    else
+        words_add(w, "sun-sky:elevation=%.17g,azimuth=%.17g,turbidity=%.9g",
+                  degrees(value->sky.elevation), degrees(value->sky.azimuth),
+                  (double)value->sky.turbidity);
 }
 
 static void describe_light(const struct session *session, struct words *w)
@@ -59,9 +69,11 @@ static void describe_light(const struct session *session, struct words *w)
 void view_words(const struct session *session, const struct ag_camera *camera,
                 struct view_words *out)
 {
-    out->scene[0] = out->camera[0] = out->light[0] = out->kept[0] = 0;
+    out->scene[0] = out->camera[0] = out->light[0] = out->kept[0] = out->environment[0] = 0;
     describe_scene(session->arguments, &(struct words){ out->scene, sizeof out->scene, 0 });
     describe_camera(session, camera, &(struct words){ out->camera, sizeof out->camera, 0 });
     describe_light(session, &(struct words){ out->light, sizeof out->light, 0 });
     describe_kept_light(session->arguments, &(struct words){ out->kept, sizeof out->kept, 0 });
+    describe_environment(session->arguments,
+                         &(struct words){ out->environment, sizeof out->environment, 0 });
 }

@@ -9,7 +9,8 @@ enum { VIEW_WORDS_SIZE = 8192 };
 struct view_words {
     char scene[SPEC_SIZE + 128], camera[2 * SPEC_SIZE];
     char light[VIEW_WORDS_SIZE];
-    char kept[VIEW_WORDS_SIZE]; // of light: area lights and environment
+    char kept[VIEW_WORDS_SIZE];        // of light: area lights
+    char environment[VIEW_WORDS_SIZE]; // the value of --environment without rotation and strength
 };
 
 // camera: as the session gave it.

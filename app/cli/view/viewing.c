@@ -126,6 +126,7 @@ static void describe(struct viewing *viewing)
     desc->scene_words = viewing->words.scene;
     desc->light_words = viewing->words.light;
     desc->kept_words = viewing->words.kept;
+    desc->environment = viewing->words.environment;
     desc->camera_words = viewing->words.camera;
     desc->animation = viewing->session.animation;
     desc->time_s = a->time_s;

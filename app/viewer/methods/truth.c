@@ -29,6 +29,7 @@ struct truth {
     struct ag_context *context;
     struct ag_scene *scene;
     struct ag_reference *reference;
+    struct environments environments;
     struct edits applied;
     int running; // request that the reference is of
 };
@@ -66,6 +67,8 @@ static bool begin(struct truth *t)
     ag_reference_destroy(t->reference);
     t->reference = NULL;
     const bool done = edits_apply(&t->applied, t->scene) == AG_OK &&
+                      (!t->applied.environment_touched ||
+                       environments_set(&t->environments, &t->applied.environment) == AG_OK) &&
                       ag_reference_create(t->scene, &desc, &t->reference) == AG_OK;
     if (!done) fail(t);
     return done;
@@ -203,7 +206,9 @@ static void *run(void *user)
     struct truth *t = user;
     char error[512] = "";
     thread_yields();
-    const bool loaded = t->desc->open_copy(t->desc->user, &t->context, &t->scene, error);
+    struct environment_choice first;
+    const bool loaded = t->desc->open_copy(t->desc->user, &t->context, &t->scene, error) &&
+                        environments_begin(&t->environments, t->context, t->scene, &first) == AG_OK;
     pthread_mutex_lock(&t->mutex);
     snprintf(t->state.error, sizeof t->state.error, "%s", error);
     pthread_mutex_unlock(&t->mutex);
@@ -214,6 +219,7 @@ static void *run(void *user)
             trace(t);
     }
     ag_reference_destroy(t->reference);
+    environments_end(&t->environments);
     ag_scene_destroy(t->scene);
     ag_context_destroy(t->context);
     return NULL;

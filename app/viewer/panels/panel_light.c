@@ -117,6 +117,44 @@ static void edit_sky(struct viewer *v)
     if (edit_intensity(info.sky, "cd/m²", 5e4f)) viewer_set_sky(v, info.sky);
 }
 
+static void choose_environment(struct viewer *v, enum environment_source source)
+{
+    struct environment_choice choice = v->edits.environment;
+    choice.source = source;
+    snprintf(choice.path, sizeof choice.path, "%s", v->environment_file);
+    viewer_set_environment(v, &choice);
+}
+
+static void edit_environment(struct viewer *v)
+{
+    struct environment_choice choice = v->edits.environment;
+    float degrees = choice.rotation * DEGREES;
+    if (!ui_section("Environment", false)) return;
+    ui_faint("%s", choice.source == ENVIRONMENT_FILE       ? choice.path
+                   : choice.source == ENVIRONMENT_OF_SCENE ? "that of the scene"
+                                                           : "none");
+    if (choice.source != ENVIRONMENT_NONE) {
+        bool changed = ui_number("strength", &choice.strength, 0.0f, 100.0f, "%.4g", true);
+        if (ui_number("rotation (°)", &degrees, -180.0f, 180.0f, "%.1f", false)) {
+            choice.rotation = degrees / DEGREES;
+            changed = true;
+        }
+        ui_tooltip("About the vertical, counterclockwise seen from above.");
+        if (changed) viewer_set_environment(v, &choice);
+    }
+    ui_line("image", v->environment_file, sizeof v->environment_file);
+    ui_tooltip("FILE.hdr or FILE.exr: light from all directions, equirectangular, cd/m². The sky's "
+               "uniform radiance is added to it.");
+    ui_disable(!v->environment_file[0]);
+    if (ui_small_button("Use image")) choose_environment(v, ENVIRONMENT_FILE);
+    ui_enable();
+    ui_same_line();
+    if (ui_small_button("None")) choose_environment(v, ENVIRONMENT_NONE);
+    if (!v->environments.first) return;
+    ui_same_line();
+    if (ui_small_button("Of the scene")) choose_environment(v, ENVIRONMENT_OF_SCENE);
+}
+
 void panel_light(struct viewer *v)
 {
     v->lighting = true;
@@ -130,5 +168,6 @@ void panel_light(struct viewer *v)
     for (int i = 0; i < v->edits.lights.count; i++)
         if (edits_has_light(&v->edits, i)) edit_light(v, i);
     edit_sky(v);
+    edit_environment(v);
     panel_paint(v);
 }

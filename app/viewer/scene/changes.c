@@ -9,7 +9,7 @@ struct edits_moment viewer_moment(const struct viewer *v)
 
 static bool finish(struct viewer *v, enum ag_result result, const char *what, int index)
 {
-    if (result == AG_ERROR_MEMORY)
+    if (result == AG_ERROR_MEMORY && index >= 0)
         viewer_warn(v, "cannot change %s %d: as many others are changed already", what, index);
     else if (viewer_check(v, result)) {
         viewer_change(v);
@@ -61,4 +61,22 @@ bool viewer_add_light(struct viewer *v, const struct ag_light_desc *desc)
 bool viewer_set_sky(struct viewer *v, const float radiance[3])
 {
     return finish(v, edits_set_sky(&v->edits, v->desc->scene, radiance), "sky", -1);
+}
+
+bool viewer_set_environment(struct viewer *v, const struct environment_choice *choice)
+{
+    const enum ag_result result = environments_set(&v->environments, choice);
+    if (result == AG_OK) {
+        v->edits.environment = *choice;
+        v->edits.environment_touched = true;
+    }
+    return finish(v, result, "environment", -1);
+}
+
+bool viewer_restore(struct viewer *v, const struct edits *values)
+{
+    const bool other = !environment_choices_same(&v->edits.environment, &values->environment);
+    if (other && !viewer_check(v, environments_set(&v->environments, &values->environment)))
+        return false;
+    return viewer_check(v, edits_restore(&v->edits, values, v->desc->scene));
 }

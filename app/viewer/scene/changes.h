@@ -11,3 +11,6 @@ bool viewer_set_light(struct viewer *v, int light, const struct ag_light_desc *d
 bool viewer_add_light(struct viewer *v, const struct ag_light_desc *desc);
 bool viewer_remove_light(struct viewer *v, int light);
 bool viewer_set_sky(struct viewer *v, const float radiance[3]); // cd/m²
+bool viewer_set_environment(struct viewer *v, const struct environment_choice *choice);
+// All changes become those of an earlier or later copy.
+bool viewer_restore(struct viewer *v, const struct edits *values);

@@ -62,6 +62,11 @@ bool edits_changed_lights(const struct edits *edits)
     return false;
 }
 
+bool edits_changed_environment(const struct edits *edits)
+{
+    return !environment_choices_same(&edits->first_environment, &edits->environment);
+}
+
 // ---- changes
 
 void edits_begin(struct edits *edits, const struct edits_moment *at)
@@ -249,6 +254,7 @@ void edits_forget(struct edits *edits)
     for (int i = 0; i < edits->material_count; i++)
         edits->materials[i].material = edits->materials[i].first;
     edits->lights = edits->first_lights;
+    edits->environment = edits->first_environment;
 }
 
 // Entries stay in their order: the first are the same in both.
@@ -268,6 +274,8 @@ enum ag_result edits_restore(struct edits *edits, const struct edits *values,
     edits_forget(edits);
     take_objects(edits, values);
     edits->lights = values->lights;
+    edits->environment = values->environment;
+    edits->environment_touched |= values->environment_touched;
     edits->sky_touched |= values->sky_touched;
     for (int i = 0; i < EDITS_LIGHTS; i++) edits->light_touched[i] |= values->light_touched[i];
     return edits_apply(edits, scene);

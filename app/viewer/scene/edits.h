@@ -2,7 +2,7 @@
 // for copies of the scene on other threads.
 #pragma once
 
-#include <afterglow/afterglow.h>
+#include "environments.h"
 
 enum { EDITS_EACH = 64, EDITS_LIGHTS = 128 };
 
@@ -32,6 +32,8 @@ struct edits {
     struct edits_lights first_lights, lights;
     bool light_touched[EDITS_LIGHTS]; // no animation moves it any more
     bool sky_touched;
+    struct environment_choice first_environment, environment; // environments_set applies it
+    bool environment_touched;
 };
 
 // The moment of an animation at which values are read.
@@ -41,7 +43,7 @@ struct edits_moment {
     double time_s;
 };
 
-// Takes the lights as those at first.
+// Takes the lights as those at first; the environment is the caller's.
 void edits_begin(struct edits *edits, const struct edits_moment *at);
 // Each changes the scene and remembers it. AG_ERROR_MEMORY where as many others are changed
 // already.
@@ -65,6 +67,7 @@ bool edits_changed(const struct edits_material *edit);
 bool edits_changed_instances(const struct edits *edits);
 bool edits_changed_materials(const struct edits *edits);
 bool edits_changed_lights(const struct edits *edits); // or the sky
+bool edits_changed_environment(const struct edits *edits);
 
 // The entry of an object, a new one with its present value if need be.
 enum ag_result edits_find_instance(struct edits *edits, const struct edits_moment *at, int index,
@@ -76,5 +79,6 @@ void edits_forget(struct edits *edits);
 // Takes the values of an earlier or later copy, and makes the scene agree.
 enum ag_result edits_restore(struct edits *edits, const struct edits *values,
                              struct ag_scene *scene);
-// Makes the same changes in a scene that was loaded alike, also a second time.
+// Makes the same changes in a scene that was loaded alike, also a second time, but for the
+// environment, which bakes do not depend on.
 enum ag_result edits_apply(const struct edits *edits, struct ag_scene *scene);

@@ -17,6 +17,8 @@
 //                       "on", "position": m, "direction", "intensity": lux or cd,
 //                       "inner_rad", "outer_rad", "removed"
 //   sky                 cd/m², if it was changed
+//   environment         if it was changed: "source": scene, none or file, "file": .hdr or .exr,
+//                       "strength", "rotation": about +y, radians
 //   instances           those that were moved: "index", "world_from_mesh": 4×4, column-major
 //   materials           those that were changed: "index" and factors as in glTF, "emissive": cd/m²
 //   path                "keys": eye, yaw, pitch, fov_deg; "seconds" from key to key; "fps"

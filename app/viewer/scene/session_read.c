@@ -1,6 +1,7 @@
 // Applies session files: all that one says, or nothing.
 #include "session_file.h"
 
+#include "changes.h"
 #include "session_values.h"
 #include "viewer/methods/bakes.h"
 #include "viewer/methods/running.h"
@@ -23,8 +24,7 @@ static bool apply_methods(struct session_values *s)
 static bool apply(struct session_values *s)
 {
     struct viewer *v = s->v;
-    if (!viewer_check(v, edits_restore(&v->edits, &s->edits, v->desc->scene)) || !apply_methods(s))
-        return false;
+    if (!viewer_restore(v, &s->edits) || !apply_methods(s)) return false;
     viewer_set_layer(v, s->layer);
     if (s->debug_view && !bakes_running(v) && !viewer_set_debug_view(v, s->debug_view))
         return false;

@@ -106,6 +106,33 @@ static bool read_material(struct read *r, json_t *object)
            member_floats(&r->m, object, "emissive", 0.0f, 3, m->emissive);
 }
 
+static bool read_environment(struct read *r, json_t *object)
+{
+    static const char *const names[] = { "source", "file", "strength", "rotation" };
+    struct environment_choice *choice = &r->s->edits.environment;
+    const char *source = environment_sources[choice->source], *file = choice->path;
+    if (!object) return true;
+    r->m.where = "environment";
+    if (!KNOWN(r, object, names) || !member_text(&r->m, object, "source", &source) ||
+        !member_text(&r->m, object, "file", &file) ||
+        !member_float(&r->m, object, "strength", 0.0f, 1e6f, &choice->strength) ||
+        !member_float(&r->m, object, "rotation", -1e3f, 1e3f, &choice->rotation))
+        return false;
+    int found = -1;
+    for (int i = 0; source && i < 3; i++)
+        if (strcmp(source, environment_sources[i]) == 0) found = i;
+    if (found < 0) return member_wrong(&r->m, "source is scene, none or file");
+    choice->source = (enum environment_source)found;
+    if (choice->source == ENVIRONMENT_FILE && (!file || !file[0]))
+        return member_wrong(&r->m, "the file is missing");
+    if (file && strlen(file) >= sizeof choice->path)
+        return member_wrong(&r->m, "the file's name is too long");
+    if (file && file != choice->path) strcpy(choice->path, file);
+    r->s->edits.environment_touched = true;
+    r->m.where = "";
+    return true;
+}
+
 static bool read_key(struct read *r, json_t *object)
 {
     static const char *const names[] = { "eye", "yaw", "pitch", "fov_deg" };
@@ -210,11 +237,13 @@ static bool read_all(struct read *r, json_t *document)
         "afterglow_session", "scene",      "options",    "camera",    "time_s",
         "exposure_ev",       "layer",      "gi",         "compare",   "split_at",
         "side_by_side",      "debug_view", "difference", "budget_ms", "lights",
-        "instances",         "scale",      "sky",        "materials", "path"
+        "instances",         "scale",      "sky",        "materials", "path",
+        "environment"
     };
     if (!is_of_scene(r, document) || !KNOWN(r, document, names) || !read_shown(r, document) ||
         !read_camera(r, json_object_get(document, "camera")) ||
         !read_each(r, document, "lights", EDITS_LIGHTS, "light", read_light) ||
+        !read_environment(r, json_object_get(document, "environment")) ||
         !read_each(r, document, "instances", EDITS_EACH, "instance", read_instance) ||
         !read_each(r, document, "materials", EDITS_EACH, "material", read_material))
         return false;

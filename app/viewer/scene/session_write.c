@@ -87,6 +87,16 @@ static json_t *materials_of(const struct edits *edits)
     return materials;
 }
 
+static json_t *environment_of(const struct environment_choice *choice)
+{
+    json_t *object = json_object();
+    put(object, "source", json_string(environment_sources[choice->source]));
+    if (choice->source == ENVIRONMENT_FILE) put(object, "file", json_text(choice->path));
+    put(object, "strength", json_float(choice->strength));
+    put(object, "rotation", json_float(choice->rotation));
+    return object;
+}
+
 static json_t *path_of(const struct path *path)
 {
     json_t *object = json_object(), *keys = json_array();
@@ -133,6 +143,8 @@ static json_t *document_of(const struct viewer *v)
     put(document, "budget_ms", json_float(v->budget_ms));
     put(document, "lights", lights_of(&v->edits));
     if (v->edits.sky_touched) put(document, "sky", json_floats(v->edits.lights.sky, 3));
+    if (v->edits.environment_touched)
+        put(document, "environment", environment_of(&v->edits.environment));
     put(document, "instances", instances_of(&v->edits));
     put(document, "materials", materials_of(&v->edits));
     put(document, "path", path_of(&v->path));

@@ -1,5 +1,6 @@
 #include "undo.h"
 
+#include "changes.h"
 #include "viewer/operations.h"
 #include "viewer/methods/running.h"
 
@@ -122,8 +123,7 @@ static bool go_to(struct viewer *v, int step)
     struct undo *undo = v->undo;
     const struct state *state = undo->steps[step];
     v->restoring = true;
-    const bool done = viewer_check(v, edits_restore(&v->edits, &state->edits, v->desc->scene)) &&
-                      restore_methods(v, state);
+    const bool done = viewer_restore(v, &state->edits) && restore_methods(v, state);
     block_edit_restore(v, &state->blocks);
     v->restoring = false;
     undo->at = step;

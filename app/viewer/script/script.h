@@ -16,6 +16,8 @@
 //   gi SPEC · split SPEC|reference|off · side on|off · layer NAME · exposure EV|auto · scale F
 //   camera NAME|given · look X,Y,Z X,Y,Z
 //   light N X                    switches light N on (1) or off (0), or removes it (remove)
+//   environment file FILE|none|scene
+//   environment strength S · environment rotation DEG
 //   choose light N|instance N    it gets handles in the tabs Light and Inspect
 //   drag x|y|z|turn DX DY        drags a handle by pixels; of a block: -x, +x, -y …
 //   blocks read|write FILE       the block map of the method, to be edited; writes and uses it

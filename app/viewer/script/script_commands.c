@@ -183,6 +183,29 @@ static bool run_light(const struct words *w)
     return script_done(w, viewer_set_light(w->v, light, &info.light));
 }
 
+static bool run_environment(const struct words *w)
+{
+    struct environment_choice choice = w->v->edits.environment;
+    float number;
+    if (sscanf(w->rest, "strength %f", &number) == 1) {
+        choice.strength = number;
+    } else if (sscanf(w->rest, "rotation %f", &number) == 1) {
+        choice.rotation = number * 0.017453292f;
+    } else if (strcmp(w->rest, "none") == 0) {
+        choice.source = ENVIRONMENT_NONE;
+    } else if (strcmp(w->rest, "scene") == 0) {
+        choice.source = ENVIRONMENT_OF_SCENE;
+    } else if (strncmp(w->rest, "file ", 5) == 0) {
+        choice.source = ENVIRONMENT_FILE;
+        snprintf(choice.path, sizeof choice.path, "%s", w->rest + 5);
+    } else {
+        return script_wrong(
+            w->script,
+            "environment takes file FILE, none, scene, strength S or rotation DEG:", w->rest);
+    }
+    return script_done(w, viewer_set_environment(w->v, &choice));
+}
+
 static bool run_path(const struct words *w)
 {
     struct viewer *v = w->v;
@@ -294,6 +317,7 @@ const struct script_command script_commands[] = {
     { "camera", false, run_camera },
     { "look", false, run_look },
     { "light", false, run_light },
+    { "environment", false, run_environment },
     { "blocks", false, script_blocks },
     { "path", false, run_path },
     { "open", false, run_open },
