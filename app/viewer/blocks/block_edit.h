@@ -4,6 +4,7 @@
 
 #include "blocks.h"
 
+struct ag_block_map;
 struct viewer;
 
 struct block_edit {
@@ -24,6 +25,9 @@ bool block_edit_choose(struct viewer *v, int block);
 // The block that is chosen; NULL: none.
 const struct block *block_edit_chosen(const struct viewer *v);
 
+// The library's map of edited blocks; NULL, with a message: they break a rule.
+struct ag_block_map *block_edit_check(struct viewer *v, const struct blocks *blocks);
+
 // Changes of the chosen block, or the map. Each is checked by the library: false, with a message
 // and nothing changed, if the map would be wrong.
 bool block_edit_move_face(struct viewer *v, int face, const float by[3]);
@@ -36,6 +40,8 @@ bool block_edit_extend(struct viewer *v, int face); // a block beyond a face
 bool block_edit_remove(struct viewer *v);
 // For undo: takes over a copy of a map.
 void block_edit_restore(struct viewer *v, const struct blocks *blocks);
+
+// ---- block_file.c
 
 // Writes the map and has the method use it. False, with a message, if the file cannot be written or
 // the method cannot use it.
