@@ -224,6 +224,6 @@ bool frame_step(struct viewer *v, float seconds)
     if (!shown) return true;
     interface_begin((int)v->swapchain.width, (int)v->swapchain.height, seconds);
     panels_draw(v);
-    undo_step(v, interface_is_held() || v->gizmo.held);
+    undo_step(v, interface_is_held() || v->gizmo.held || v->paint.stroke);
     return draw(v);
 }

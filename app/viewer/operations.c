@@ -190,7 +190,7 @@ void viewer_runs(struct viewer *v, bool other, const char *gi)
     snprintf(other ? v->other_gi : v->gi, METHOD_SPEC, "%s", gi);
     method_parse(other ? &v->other_method : &v->method, ag_renderer_gi(rendering->renderer));
     viewer_note(v, CHANGE_METHOD, -1);
-    if (!other) v->paint.gi[0] = 0; // paint_step gives it to the new renderer
+    if (!other) v->paint.texels.gi[0] = 0; // paint_step gives it to the new renderer
     // A view ends with its technique; another technique may have one of the same name.
     if (!other && v->debug_view &&
         !viewer_set_debug_view(v, find_debug_view(&v->method, v->debug_view)))

@@ -1,8 +1,10 @@
-// Painted light: a brush that gives texels of the method's light map irradiance of their own
-// (ag_renderer_paint_light).
+// Painted light: a brush that gives texels of the method's light map irradiance of their own. What
+// is painted is kept as dabs, which other texels, session files and undo get again.
 #pragma once
 
-#include "viewer/methods/method.h"
+#include "paint_texels.h"
+
+#include <afterglow/afterglow.h>
 
 struct viewer;
 
@@ -12,11 +14,8 @@ struct paint {
     bool stroke;  // a button is down
     float radius; // m
     float lux, color[3];
-    char gi[METHOD_SPEC]; // of the texels; "": there are none
-    int width, height, sides;
-    float texel_m;                   // side of a texel
-    float *lux_of[2];                // [height][width][3]; NULL: nothing is painted
-    struct ag_image *place_of[2];    // positions of texels
+    struct dabs dabs;
+    struct paint_texels texels;
     struct ag_image *place, *normal; // of the image's pixels
     struct ag_camera camera;         // of these
     unsigned version;
@@ -30,6 +29,10 @@ bool paint_possible(struct viewer *v);
 // Lets the left button paint; off, with a message, if the method takes no paint.
 void paint_switch(struct viewer *v, bool on);
 void paint_clear(struct viewer *v);
+// Paints one dab. False, with a message, if the method takes no paint or there are too many.
+bool paint_dab(struct viewer *v, const struct dab *dab);
+// For undo and sessions: takes over a copy.
+void paint_restore(struct viewer *v, const struct dabs *dabs);
 // The surface under the mouse; false: none, or it is not known yet.
 bool paint_surface(struct viewer *v, float x, float y, float position[3], float normal[3]);
 // The left button goes down in the image, the mouse moves, the button goes up. False: no paint.
@@ -38,4 +41,4 @@ void paint_move(struct viewer *v);
 void paint_release(struct viewer *v);
 // After a frame: paint follows a method that was created again.
 void paint_step(struct viewer *v);
-bool paint_has(const struct viewer *v); // something is painted
+bool paint_has(const struct viewer *v); // the image shows painted light

@@ -51,7 +51,7 @@ void panel_paint(struct viewer *v)
     ui_number("irradiance (lux)", &p->lux, 0.0f, 2e5f, "%.4g", true);
     ui_tooltip("In the middle of the brush; at its radius the light is as before.");
     ui_color("color##paint", p->color);
-    ui_disable(!paint_has(v));
+    ui_disable(p->dabs.count == 0);
     if (ui_button("Clear paint")) paint_clear(v);
     ui_enable();
     ui_faint("The reference and copied commands are without paint.");

@@ -21,6 +21,8 @@
 //                       "strength", "rotation": about +y, radians
 //   instances           those that were moved: "index", "world_from_mesh": 4×4, column-major
 //   materials           those that were changed: "index" and factors as in glTF, "emissive": cd/m²
+//   paint               dabs of the brush in their order: "position", "radius": m, "normal",
+//                       "lux": irradiance
 //   path                "keys": eye, yaw, pitch, fov_deg; "seconds" from key to key; "fps"
 //
 // A member that is left out keeps its value.

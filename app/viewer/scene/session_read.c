@@ -41,6 +41,7 @@ static bool apply(struct session_values *s)
     v->budget_ms = s->budget_ms;
     record_end(v);
     v->path = s->camera_path;
+    paint_restore(v, &s->paint);
     viewer_change(v);
     return true;
 }
@@ -75,9 +76,10 @@ static bool use(struct viewer *v, const char *path, json_t *document)
         take(v, now);
         take(v, before);
         before->edits = v->edits;
+        done = dabs_copy(&before->paint, &v->paint.dabs);
         now->edits = v->edits; // a session says all changes
         edits_forget(&now->edits);
-        done = session_values_read(now, document, path);
+        done = done && session_values_read(now, document, path);
         if (done && !apply(now)) {
             char why[VIEWER_MESSAGE];
             snprintf(why, sizeof why, "%s", v->message);
@@ -86,6 +88,8 @@ static bool use(struct viewer *v, const char *path, json_t *document)
             done = false;
         }
     }
+    if (now) dabs_close(&now->paint);
+    if (before) dabs_close(&before->paint);
     free(now);
     free(before);
     return done;

@@ -133,6 +133,19 @@ static bool read_environment(struct read *r, json_t *object)
     return true;
 }
 
+static bool read_dab(struct read *r, json_t *object)
+{
+    static const char *const names[] = { "position", "normal", "radius", "lux" };
+    struct dab dab = { .normal = { 0, 1, 0 }, .radius = 0.25f };
+    if (!KNOWN(r, object, names) ||
+        !member_floats(&r->m, object, "position", -1e9f, 3, dab.position) ||
+        !member_floats(&r->m, object, "normal", -1.0f, 3, dab.normal) ||
+        !member_float(&r->m, object, "radius", 1e-4f, 1e4f, &dab.radius) ||
+        !member_floats(&r->m, object, "lux", 0.0f, 3, dab.lux))
+        return false;
+    return dabs_add(&r->s->paint, &dab) || member_wrong(&r->m, "out of memory");
+}
+
 static bool read_key(struct read *r, json_t *object)
 {
     static const char *const names[] = { "eye", "yaw", "pitch", "fov_deg" };
@@ -238,11 +251,12 @@ static bool read_all(struct read *r, json_t *document)
         "exposure_ev",       "layer",      "gi",         "compare",   "split_at",
         "side_by_side",      "debug_view", "difference", "budget_ms", "lights",
         "instances",         "scale",      "sky",        "materials", "path",
-        "environment"
+        "environment",       "paint"
     };
     if (!is_of_scene(r, document) || !KNOWN(r, document, names) || !read_shown(r, document) ||
         !read_camera(r, json_object_get(document, "camera")) ||
         !read_each(r, document, "lights", EDITS_LIGHTS, "light", read_light) ||
+        !read_each(r, document, "paint", DABS_MOST, "paint", read_dab) ||
         !read_environment(r, json_object_get(document, "environment")) ||
         !read_each(r, document, "instances", EDITS_EACH, "instance", read_instance) ||
         !read_each(r, document, "materials", EDITS_EACH, "material", read_material))

@@ -17,6 +17,7 @@ struct session_values {
     char gi[METHOD_SPEC], other_gi[METHOD_SPEC]; // other_gi: "": none
     struct edits edits;
     struct path camera_path;
+    struct dabs paint; // the owner closes it
 };
 
 // Takes the members of a document over the values that are there. False, with a message, if one is

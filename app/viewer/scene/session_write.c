@@ -97,6 +97,21 @@ static json_t *environment_of(const struct environment_choice *choice)
     return object;
 }
 
+static json_t *paint_of(const struct dabs *dabs)
+{
+    json_t *paint = json_array();
+    for (int i = 0; i < dabs->count; i++) {
+        const struct dab *dab = &dabs->at[i];
+        json_t *object = json_object();
+        put(object, "position", json_floats(dab->position, 3));
+        put(object, "normal", json_floats(dab->normal, 3));
+        put(object, "radius", json_float(dab->radius));
+        put(object, "lux", json_floats(dab->lux, 3));
+        json_array_append_new(paint, object);
+    }
+    return paint;
+}
+
 static json_t *path_of(const struct path *path)
 {
     json_t *object = json_object(), *keys = json_array();
@@ -147,6 +162,7 @@ static json_t *document_of(const struct viewer *v)
         put(document, "environment", environment_of(&v->edits.environment));
     put(document, "instances", instances_of(&v->edits));
     put(document, "materials", materials_of(&v->edits));
+    if (v->paint.dabs.count > 0) put(document, "paint", paint_of(&v->paint.dabs));
     put(document, "path", path_of(&v->path));
     return document;
 }

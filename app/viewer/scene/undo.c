@@ -15,6 +15,7 @@ struct state {
     struct edits edits;
     char gi[METHOD_SPEC], other_gi[METHOD_SPEC]; // of the right part; "": none
     struct blocks blocks;
+    struct dabs paint;
 };
 
 struct undo {
@@ -25,14 +26,16 @@ struct undo {
 static void forget(struct state *state)
 {
     if (state) blocks_close(&state->blocks);
+    if (state) dabs_close(&state->paint);
     free(state);
 }
 
 static struct state *take(const struct viewer *v, const char *what)
 {
     struct state *state = calloc(1, sizeof *state);
-    if (!state || !blocks_copy(&state->blocks, &v->block_edit.blocks)) {
-        free(state);
+    if (!state || !blocks_copy(&state->blocks, &v->block_edit.blocks) ||
+        !dabs_copy(&state->paint, &v->paint.dabs)) {
+        forget(state);
         return NULL;
     }
     snprintf(state->what, sizeof state->what, "%s", what);
@@ -125,6 +128,7 @@ static bool go_to(struct viewer *v, int step)
     v->restoring = true;
     const bool done = viewer_restore(v, &state->edits) && restore_methods(v, state);
     block_edit_restore(v, &state->blocks);
+    paint_restore(v, &state->paint);
     v->restoring = false;
     undo->at = step;
     viewer_change(v);

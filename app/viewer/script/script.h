@@ -16,6 +16,8 @@
 //   gi SPEC · split SPEC|reference|off · side on|off · layer NAME · exposure EV|auto · scale F
 //   camera NAME|given · look X,Y,Z X,Y,Z
 //   light N X                    switches light N on (1) or off (0), or removes it (remove)
+//   paint X,Y,Z NX,NY,NZ RADIUS R,G,B · paint clear
+//                                a dab of the brush: point, normal, metres, lux
 //   environment file FILE|none|scene
 //   environment strength S · environment rotation DEG
 //   choose light N|instance N    it gets handles in the tabs Light and Inspect

@@ -1,7 +1,6 @@
 // Commands of scripts that are no input.
 #include "script_state.h"
 
-#include "viewer/scene/changes.h"
 #include "viewer/command.h"
 #include "viewer/scene/opening.h"
 #include "viewer/operations.h"
@@ -168,44 +167,6 @@ static bool run_look(const struct words *w)
     return true;
 }
 
-static bool run_light(const struct words *w)
-{
-    int light = -1, on = 0;
-    struct ag_light_info info;
-    char word[8] = "";
-    if (sscanf(w->rest, "%d %7s", &light, word) == 2 && strcmp(word, "remove") == 0)
-        return script_done(w, viewer_remove_light(w->v, light));
-    sscanf(w->rest, "%d %d", &light, &on);
-    if (!viewer_check(w->v, ag_scene_get_light(w->v->desc->scene, light, w->v->desc->animation,
-                                               w->v->time_s, &info)))
-        return script_done(w, false);
-    info.light.enabled = on != 0;
-    return script_done(w, viewer_set_light(w->v, light, &info.light));
-}
-
-static bool run_environment(const struct words *w)
-{
-    struct environment_choice choice = w->v->edits.environment;
-    float number;
-    if (sscanf(w->rest, "strength %f", &number) == 1) {
-        choice.strength = number;
-    } else if (sscanf(w->rest, "rotation %f", &number) == 1) {
-        choice.rotation = number * 0.017453292f;
-    } else if (strcmp(w->rest, "none") == 0) {
-        choice.source = ENVIRONMENT_NONE;
-    } else if (strcmp(w->rest, "scene") == 0) {
-        choice.source = ENVIRONMENT_OF_SCENE;
-    } else if (strncmp(w->rest, "file ", 5) == 0) {
-        choice.source = ENVIRONMENT_FILE;
-        snprintf(choice.path, sizeof choice.path, "%s", w->rest + 5);
-    } else {
-        return script_wrong(
-            w->script,
-            "environment takes file FILE, none, scene, strength S or rotation DEG:", w->rest);
-    }
-    return script_done(w, viewer_set_environment(w->v, &choice));
-}
-
 static bool run_path(const struct words *w)
 {
     struct viewer *v = w->v;
@@ -316,8 +277,9 @@ const struct script_command script_commands[] = {
     { "scale", false, run_scale },
     { "camera", false, run_camera },
     { "look", false, run_look },
-    { "light", false, run_light },
-    { "environment", false, run_environment },
+    { "light", false, script_light },
+    { "environment", false, script_environment },
+    { "paint", false, script_paint },
     { "blocks", false, script_blocks },
     { "path", false, run_path },
     { "open", false, run_open },

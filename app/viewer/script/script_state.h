@@ -40,6 +40,9 @@ struct script_command {
     bool (*run)(const struct words *w); // false after a failure
 };
 bool script_blocks(const struct words *w);
+bool script_light(const struct words *w);
+bool script_environment(const struct words *w);
+bool script_paint(const struct words *w);
 extern const struct script_command script_input[], script_commands[]; // the last has no name
 
 // Ends the script with a sentence; false.
