@@ -23,8 +23,8 @@ const struct command command_view = {
         "Opens a window with SCENE, or with the scene of a session FILE.json. W A S D, Q and E\n"
         "fly, the right mouse button looks around, the middle one turns around what is in front,\n"
         "the wheel goes nearer, F looks at what was clicked. The panels at the side have lights,\n"
-        "methods with all their options, times and memory; 'Copy as command' gives the command\n"
-        "line for the same image.\n"
+        "the environment, methods with all their options, the blocks of mrt and drt to be edited,\n"
+        "times and memory; 'Copy as command' gives the command line for the same image.\n"
         "Control Z undoes. A scene or session that is dropped on the window opens in it.\n"
         "Bakes are taken from the cache, or run while the window shows the old method.\n",
     .examples = "  afterglow view @atrium --gi lpv\n"

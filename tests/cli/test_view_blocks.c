@@ -68,7 +68,9 @@ TEST(blocks_are_added_connected_and_removed)
     view(MAZE " --gi none", "fails blocks read\nsays mrt, drt\n"
                             "gi " METHOD "\nsettle\nblocks read\nblocks choose 0\n"
                             "blocks extend +y\nblocks rename attic\nblocks open +y open\n"
-                            "blocks write attic.json\nsettle\nblocks remove\n"
+                            "blocks write attic.json\nsettle\nblocks duplicate\n"
+                            "blocks shift 0,9,0\nblocks remove\nblocks choose 11\n"
+                            "blocks remove\n"
                             "blocks write without.json\n");
     json_t *map = json_load_file("attic.json", 0, NULL);
     const json_t *blocks = json_object_get(map, "blocks");

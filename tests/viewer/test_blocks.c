@@ -85,6 +85,17 @@ TEST(a_face_moves_with_that_of_its_neighbor)
     blocks_close(&blocks);
 }
 
+TEST(a_block_that_is_shifted_leaves_its_neighbors)
+{
+    struct blocks blocks = row();
+    blocks_shift(&blocks, B, (const float[3]){ 0, 0.5f, 0 });
+    check_box(&blocks.at[B], 2, 4, 0.5f, 2.5f);
+    CHECK(blocks_disconnect(&blocks) == 2 && blocks.at[A].neighbor[HIGH_X] == -1);
+    blocks_shift(&blocks, B, (const float[3]){ 0, -0.5f, 0 });
+    CHECK(blocks_meeting(&blocks, A, HIGH_X) == B && blocks_meeting(&blocks, B, HIGH_X) == C);
+    blocks_close(&blocks);
+}
+
 TEST(joined_blocks_keep_their_openings)
 {
     struct blocks blocks = row();

@@ -147,6 +147,15 @@ bool block_edit_move_face(struct viewer *v, int face, const float by[3])
     return take(v, &next);
 }
 
+bool block_edit_shift(struct viewer *v, const float by[3])
+{
+    struct blocks next;
+    if (!begin(v, &next)) return false;
+    if (!is_finite(by)) return refuse(v, &next, "the distance is not finite");
+    blocks_shift(&next, v->block_edit.chosen, by);
+    return take(v, &next);
+}
+
 bool block_edit_move_corner(struct viewer *v, int corner, const float to[3])
 {
     struct blocks next;

@@ -31,6 +31,7 @@ struct ag_block_map *block_edit_check(struct viewer *v, const struct blocks *blo
 // Changes of the chosen block, or the map. Each is checked by the library: false, with a message
 // and nothing changed, if the map would be wrong.
 bool block_edit_move_face(struct viewer *v, int face, const float by[3]);
+bool block_edit_shift(struct viewer *v, const float by[3]); // the whole block
 bool block_edit_move_corner(struct viewer *v, int corner, const float to[3]);
 bool block_edit_rename(struct viewer *v, const char *name);
 bool block_edit_open(struct viewer *v, int face, enum opening opening);

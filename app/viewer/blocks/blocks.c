@@ -282,6 +282,12 @@ void blocks_move_face(struct blocks *blocks, int block, int face, const float by
     memcpy(it->corner, corner, sizeof it->corner);
 }
 
+void blocks_shift(struct blocks *blocks, int block, const float by[3])
+{
+    for (int c = 0; c < BLOCK_CORNERS; c++)
+        for (int k = 0; k < 3; k++) blocks->at[block].corner[c][k] += by[k];
+}
+
 void blocks_move_joined(struct blocks *blocks, int block, int face, const float by[3])
 {
     for (int i = 0; i < 4; i++) {

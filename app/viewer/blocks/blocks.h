@@ -55,6 +55,8 @@ int blocks_extend(struct blocks *blocks, int block, int face);
 void blocks_remove(struct blocks *blocks, int block);
 // Moves a face, and with it that of its neighbour.
 void blocks_move_face(struct blocks *blocks, int block, int face, const float by[3]);
+// Moves a whole block; its neighbours stay.
+void blocks_shift(struct blocks *blocks, int block, const float by[3]);
 // Moves the corners of a face, and with them those of connected blocks that are there: openings
 // stay, but blocks beside it lean.
 void blocks_move_joined(struct blocks *blocks, int block, int face, const float by[3]);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Of the distance along the surface, which may be curved, and in texels.
+// A texel is behind if its depth exceeds these: of its distance along a curved surface, in texels.
 static const float BEHIND = 0.5f, BEHIND_TEXELS = 1.5f;
 
 bool dabs_add(struct dabs *dabs, const struct dab *dab)

@@ -50,6 +50,17 @@ static void edit_bounds(struct viewer *v, const struct block *block)
     }
 }
 
+// The whole block.
+static void edit_place(struct viewer *v, const struct block *block)
+{
+    float centre[3], by[3];
+    block_centre(block, centre);
+    memcpy(by, centre, sizeof by);
+    if (!ui_numbers("centre (m)", by, 3, 0.01f, "%.3f")) return;
+    for (int k = 0; k < 3; k++) by[k] -= centre[k];
+    block_edit_shift(v, by);
+}
+
 static void edit_corners(struct viewer *v, const struct block *block)
 {
     for (int c = 0; c < BLOCK_CORNERS; c++) {
@@ -93,6 +104,7 @@ static void edit_opening(struct viewer *v, const struct block *block, int face)
 static void edit_block(struct viewer *v)
 {
     edit_name(v, block_edit_chosen(v));
+    edit_place(v, block_edit_chosen(v));
     const struct block *block = block_edit_chosen(v);
     if (strcmp(block->shape, "cube") != 0) ui_faint("a piece of a pipe: %s", block->shape);
     if (block_is_box(block))

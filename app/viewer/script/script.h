@@ -25,7 +25,7 @@
 //   blocks read|write FILE       the block map of the method, to be edited; writes and uses it
 //   blocks choose N              a block, for the following
 //   blocks move FACE M           moves a face (-x, +x, -y …) outwards by metres
-//   blocks corner N X,Y,Z · blocks rename NAME
+//   blocks shift X,Y,Z · blocks corner N X,Y,Z · blocks rename NAME
 //   blocks open FACE wall|open|connect
 //   blocks extend FACE|add|duplicate|remove
 //   blocks join on|off           faces move with the corners of connected blocks

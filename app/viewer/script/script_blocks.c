@@ -56,6 +56,8 @@ bool script_blocks(const struct words *w)
     if (sscanf(w->rest, "choose %d", &index) == 1)
         return script_done(w, block_edit_choose(v, index));
     if (sscanf(w->rest, "move %7s %f", face, to) == 2) return move_face(w, face, *to);
+    if (sscanf(w->rest, "shift %f,%f,%f", to, to + 1, to + 2) == 3)
+        return script_done(w, block_edit_shift(v, to));
     if (sscanf(w->rest, "corner %d %f,%f,%f", &index, to, to + 1, to + 2) == 4 && index >= 0 &&
         index < BLOCK_CORNERS)
         return script_done(w, block_edit_move_corner(v, index, to));
@@ -73,7 +75,7 @@ bool script_blocks(const struct words *w)
     if (strncmp(w->rest, "write ", 6) == 0) return script_done(w, block_edit_write(v, w->rest + 6));
     return script_wrong(
         w->script,
-        "blocks takes read, choose N, move FACE M, corner N X,Y,Z, open FACE HOW, "
+        "blocks takes read, choose N, move FACE M, shift X,Y,Z, corner N X,Y,Z, open FACE HOW, "
         "extend FACE, join on|off, rename NAME, add, duplicate, remove or write FILE:",
         w->rest);
 }
