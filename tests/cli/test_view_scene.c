@@ -3,6 +3,7 @@
 
 #include "image/exr.h"
 
+#include <stdio.h>
 #include <string.h>
 
 TEST(light_of_an_object_that_moved_is_complete_when_the_image_has_settled)
@@ -135,4 +136,31 @@ TEST(the_command_and_the_reference_have_the_environment)
     // Indirect light of the box is missing; without the environment it is far above 1.
     const double energy = energy_in("errors.json");
     if (energy < 0.6 || energy > 1.2) fail_msg("the energy is %g", energy);
+}
+
+static void copy_file(const char *from, const char *to)
+{
+    static char bytes[1 << 20];
+    FILE *file = fopen(from, "rb");
+    if (!file) fail_msg("cannot read %s", from);
+    const size_t size = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    write_file(to, bytes, size);
+}
+
+// The environment of a file is in it: no option says another use of it.
+TEST(the_command_refuses_another_use_of_a_files_environment)
+{
+    require_display();
+    copy_file(IMAGE_LIGHT, "light.gltf");
+    view("view light.gltf --quiet" LEAST,
+         "settle\nsave first.png\ncommand command.sh\nenvironment rotation 50\nsettle\n"
+         "fails command no.sh\nsays there is no option for another use of the environment\n"
+         "environment none\nsettle\nfails command no.sh\nsave none.png\n"
+         "environment scene\nenvironment rotation 0\nsettle\nsave last.png\n"
+         "command command.sh\n");
+    check_equal("first.png", "last.png");
+    check_differ("first.png", "none.png");
+    run_line("command.sh", "rendered.png");
+    check_equal("first.png", "rendered.png");
 }
