@@ -11,6 +11,7 @@ if(AFTERGLOW_VIEWER)
   foreach(name view view_scene view_blocks view_paint)
     ag_test(cli/${name} USES image api LIBRARIES ag_test_program TIMEOUT 600)
   endforeach()
+  target_sources(test_cli PRIVATE ${CMAKE_CURRENT_LIST_DIR}/view_run.c)
   target_compile_definitions(test_cli PRIVATE
     IMAGE_LIGHT="${CMAKE_SOURCE_DIR}/tests/fuzz/corpus/gltf/image_light.gltf")
 endif()
