@@ -84,6 +84,15 @@ static bool run_fails(const struct words *w)
     return true;
 }
 
+static bool run_try(const struct words *w)
+{
+    struct script *script = w->script;
+    run_line(script, w->v, w->queue, w->rest);
+    if (script->error[0]) viewer_warn(w->v, "%s", script->error);
+    script->error[0] = 0;
+    return true;
+}
+
 static bool run_line(struct script *script, struct viewer *v, struct event_queue *queue, char *line)
 {
     char *name = line + strspn(line, " \t"), *rest = name + strcspn(name, " \t");
@@ -92,6 +101,7 @@ static bool run_line(struct script *script, struct viewer *v, struct event_queue
     const struct words w = { v, script, queue, name, rest };
     const struct script_command *command = find(name, strlen(name));
     if (script_is(&w, "fails")) return run_fails(&w);
+    if (script_is(&w, "try")) return run_try(&w);
     if (script_is(&w, "says")) return run_says(&w);
     return command ? command->run(&w) : script_wrong(script, "unknown command", name);
 }
@@ -127,10 +137,12 @@ static bool goes_on(struct script *script, struct viewer *v, struct event_queue 
         script_push_random(script, v, queue);
         return true;
     }
-    if (v->screenshot[0]) return true;         // the window had no image
-    if (v->record.runs) return true;           // until the last image is written
+    if (v->screenshot[0]) return true; // the window had no image
+    script->records = script->records && v->record.runs;
+    if (script->records) return true;          // until the last image is written
     if (v->opening[0] || v->next) return true; // until the scene is there
-    script->settles = script->settles && (v->dirty > 0 || bakes_running(v));
+    script->settles = script->settles && (v->dirty > 0 || bakes_running(v)) &&
+                      (script->settle_frames == 0 || --script->settle_frames > 0);
     return script->settles || lacks_samples(script, v);
 }
 
@@ -143,7 +155,8 @@ static bool is_event(const char *line)
 
 bool script_step(struct script *script, struct viewer *v, struct event_queue *queue)
 {
-    if (v->screenshot_failed || v->record.failed) return script_wrong(script, v->message, "");
+    if (v->screenshot_failed || (script->records && v->record.failed))
+        return script_wrong(script, v->message, "");
     while (!goes_on(script, v, queue)) {
         if (!script->text[0] && !read_line(script, script->text)) return false;
         if (queue->count > 0 && !is_event(script->text)) return true;

@@ -2,7 +2,7 @@
 // are separated by spaces; the last may have some. '#' begins a comment.
 //
 //   wait N                       frames pass
-//   settle                       frames pass until the image is complete
+//   settle [N]                   frames pass until the image is complete, at most N
 //   samples N                    frames pass until the reference has N a pixel
 //   mouse X Y                    pixels of the window
 //   button left|right|middle down|up
@@ -41,9 +41,11 @@
 //   pace clear|FILE              durations of the window's frames since the last pace, as JSON
 //   inspect FILE                 the layers at the pixel under the mouse, as JSON
 //   command FILE                 the command that renders this view
+//   memory FILE                  bytes on the device and in main memory, as JSON
 //   fails LINE · says TEXT       a line that must fail; the status line must have a text
+//   try LINE                     a line that may fail
 //   lose                         as if the device were lost
-//   random SEED N                N random events
+//   random SEED N                N random events; no text of them has a slash
 //   quit
 //
 // A line that fails ends the script: viewer_run returns its sentence.

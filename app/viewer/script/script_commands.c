@@ -20,6 +20,7 @@ static bool run_wait(const struct words *w)
 
 static bool run_settle(const struct words *w)
 {
+    w->script->settle_frames = atoi(w->rest);
     return w->script->settles = true;
 }
 
@@ -185,7 +186,8 @@ static bool run_path(const struct words *w)
     if (strncmp(w->rest, "record ", 7) != 0)
         return script_wrong(w->script, "path takes add, every S FPS or record FOLDER:", w->rest);
     snprintf(v->record.folder, sizeof v->record.folder, "%s", w->rest + 7);
-    return script_done(w, record_begin(v));
+    w->script->records = record_begin(v);
+    return script_done(w, w->script->records);
 }
 
 static bool run_open(const struct words *w)
@@ -288,6 +290,7 @@ const struct script_command script_commands[] = {
     { "errors", false, run_errors },
     { "pace", false, run_pace },
     { "inspect", false, run_inspect },
+    { "memory", false, script_run_memory },
     { "screenshot", false, run_screenshot },
     { NULL, false, NULL },
 };

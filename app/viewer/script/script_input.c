@@ -112,7 +112,10 @@ void script_push_random(struct script *script, struct viewer *v, struct event_qu
                                          "e",      "f",    "tab",  "enter", "space",
                                          "escape", "home", "down", "up",    "backspace" };
     struct event event = { .kind = EVENT_MOUSE };
-    switch (draw(script, 8)) {
+    switch (draw(script, 9)) {
+    case 8:
+        if (interface_element(draw(script, 1 << 20), &event.x, &event.y)) break;
+        // fall through
     case 0:
     case 1:
     case 2:
@@ -135,6 +138,7 @@ void script_push_random(struct script *script, struct viewer *v, struct event_qu
         event.kind = draw(script, 2) ? EVENT_SCROLL : EVENT_TEXT;
         event.y = (float)draw(script, 5) - 2.0f;
         event.code = (int)draw(script, 95) + 32;
+        if (event.code == '/') event.code = '.'; // files are those of this folder
         break;
     default:
         break;

@@ -16,6 +16,8 @@ struct script {
     char text[SCRIPT_LINE]; // the next line; "": to be read
     int waits;              // further frames
     bool settles;           // until the image is complete
+    int settle_frames;      // at most; 0: no limit
+    bool records;           // until a flight of its own is recorded
     int samples;            // until the reference has N; 0: none
     float click_x, click_y;
     int click;            // steps of a click that are left: down, up
@@ -50,5 +52,6 @@ bool script_wrong(struct script *script, const char *what, const char *text);
 // `success`, or ends the script with the sentence of the status line.
 bool script_done(const struct words *w, bool success);
 bool script_is(const struct words *w, const char *name);
+bool script_run_memory(const struct words *w);
 // Appends a random event.
 void script_push_random(struct script *script, struct viewer *v, struct event_queue *queue);

@@ -295,6 +295,15 @@ bool interface_find(const char *label, float *x, float *y)
     return false;
 }
 
+bool interface_element(unsigned number, float *x, float *y)
+{
+    if (element_count == 0) return false;
+    const element &e = elements[number % static_cast<unsigned>(element_count)];
+    *x = e.x;
+    *y = e.y;
+    return true;
+}
+
 // ---- elements
 
 bool ui_panel_begin(const char *title, float x, float y, float width, float height)

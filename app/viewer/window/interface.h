@@ -31,6 +31,8 @@ bool interface_wants_keys(void);
 bool interface_is_held(void); // an element is being changed: its mouse button is down
 // The centre of an element of the last frame by its label, for scripts; false: it is not shown.
 bool interface_find(const char *label, float *x, float *y);
+// Likewise, of any element: numbers beyond the last begin again at the first.
+bool interface_element(unsigned number, float *x, float *y);
 
 // ---- elements: true when the user changed the value or pressed
 
