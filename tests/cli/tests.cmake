@@ -8,10 +8,10 @@ endforeach()
 target_compile_definitions(test_cli PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
 add_dependencies(test_cli afterglow)
 if(AFTERGLOW_VIEWER)
-  foreach(name view view_scene view_blocks view_paint)
+  foreach(name view view_scene view_blocks view_paint view_random)
     ag_test(cli/${name} USES image api LIBRARIES ag_test_program TIMEOUT 600)
   endforeach()
-  target_sources(test_cli PRIVATE ${CMAKE_CURRENT_LIST_DIR}/view_run.c)
+  target_sources(test_cli PRIVATE ${CMAKE_CURRENT_LIST_DIR}/view_random.c ${CMAKE_CURRENT_LIST_DIR}/view_run.c ${CMAKE_CURRENT_LIST_DIR}/window.c)
   target_compile_definitions(test_cli PRIVATE
     IMAGE_LIGHT="${CMAKE_SOURCE_DIR}/tests/fuzz/corpus/gltf/image_light.gltf")
 endif()
@@ -74,3 +74,6 @@ set_tests_properties(bench.frame PROPERTIES TIMEOUT 300 LABELS examples PASS_REG
 set_tests_properties(cli.bake cli.environment cli.info cli.interrupt cli.render cli.compare examples.minimal examples.textured examples.measure examples.side_by_side examples.balls examples.views examples.host examples.engine
   examples.embed_1 examples.embed_2 examples.embed_3 bench.frame
   PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
+if(AFTERGLOW_VIEWER)
+  set_tests_properties(cli.view cli.view_random PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
+endif()
