@@ -173,9 +173,19 @@ static bool fit_window(struct viewer *v)
     return swapchain_resize(&v->swapchain, width, height);
 }
 
+// Minimised: nobody sees the frames of animations and fading histories. A recorded flight goes on.
+static bool is_hidden(const struct viewer *v)
+{
+    int width, height;
+    if (v->script || v->desc->frames > 0 || v->record.runs) return false;
+    window_pixels(v->window, &width, &height);
+    return width == 0 || height == 0 || !v->swapchain.handle;
+}
+
 static bool is_idle(const struct viewer *v)
 {
     if (v->script) return script_waits(v->script, v);
+    if (is_hidden(v)) return true;
     return v->dirty == 0 && !v->opening[0] && !v->playing && v->desc->frames == 0 && !v->turning;
 }
 
@@ -217,6 +227,10 @@ bool frame_step(struct viewer *v, float seconds)
     if (v->playing && !v->record.runs) v->time_s += (double)seconds;
     if (v->playing) viewer_change(v);
     if (!fit_window(v)) return false;
+    if (is_hidden(v)) {
+        running_step(v);
+        return true;
+    }
     const bool shown = v->swapchain.handle != VK_NULL_HANDLE;
     if (shown && fit_renderings(v) && (v->dirty > 0 || v->playing) && render(v)) record_take(v);
     running_step(v);
