@@ -1,6 +1,10 @@
-// The viewer's window under a window manager, where there is one: minimised, resized, closed.
+// The viewer's window: minimised, resized and closed under a window manager, where there is one; on
+// a display of high density.
 #include "cli/window.h"
 
+#include "image/png_file.h"
+
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,6 +20,7 @@
     "view @cornell:light=point --quiet --size 400x300 --scale 0.1 --gi lpv:dim=8,cascades=1"
 enum { WAIT_MS = 60000, STEP_MS = 100, REST_MS = 1000, MEASURE_MS = 3000, RESIZES = 40 };
 static const double MOST_SHARE = 0.15;      // of one processor, while nothing is shown
+static const double MOST_DIFFERENCE = 0.02; // of linear pixels, in the mean
 
 static pid_t manager, viewer;
 
@@ -169,4 +174,67 @@ TEST(a_storm_of_sizes_is_silent)
     }
     test_pause_ms(REST_MS);
     close_viewer();
+}
+
+// ---- density
+
+static struct image read_window(const char *prefix, const char *tab)
+{
+    char path[64];
+    struct image image;
+    snprintf(path, sizeof path, "%s-%s.png", prefix, tab);
+    CHECK(png_read(test_host(), path, &image));
+    return image;
+}
+
+// The panels, 350 units wide, in windows of 640x480 units, one with four pixels for each of the
+// other's.
+static double panel_difference(const struct image *once, const struct image *twice)
+{
+    enum { LEFT = 290, WIDTH = 640, HEIGHT = 480 };
+    double sum = 0;
+    CHECK(once->width == WIDTH && once->height == HEIGHT);
+    CHECK(twice->width == 2 * WIDTH && twice->height == 2 * HEIGHT);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int i = 3 * LEFT; i < 3 * WIDTH; i++) {
+            const int x = i / 3, c = i % 3;
+            double four = 0;
+            for (int k = 0; k < 4; k++)
+                four +=
+                    (double)twice->pixels[3 * ((2 * y + k / 2) * 2 * WIDTH + 2 * x + k % 2) + c];
+            sum += fabs((double)once->pixels[3 * (y * WIDTH + x) + c] - 0.25 * four);
+        }
+    return sum / (3.0 * (WIDTH - LEFT) * HEIGHT);
+}
+
+static void shoot_tabs(const char *prefix, const char *const *tabs, int count, const char *words)
+{
+    char script[2048] = "settle\n";
+    for (int i = 0; i < count; i++) {
+        const size_t used = strlen(script);
+        snprintf(script + used, sizeof script - used, "tab %s\nscreenshot %s-%s.png\n", tabs[i],
+                 prefix, tabs[i]);
+    }
+    view(words, script);
+}
+
+// Text and elements of half the size, or rows that overlap, differ by more.
+TEST(the_interface_has_the_size_of_the_display)
+{
+    static const char *const tabs[] = { "View", "Light", "Method", "Compare", "Cost", "Inspect" };
+    enum { TABS = sizeof tabs / sizeof *tabs };
+    require_display_of(192);
+    shoot_tabs("dense", tabs, TABS,
+               "view @cornell:light=point --quiet --size 640x480 --scale 0.1 --gi lpv:dim=8");
+    require_display();
+    shoot_tabs("usual", tabs, TABS,
+               "view @cornell:light=point --quiet --size 640x480 --scale 0.2 --gi lpv:dim=8");
+    for (int i = 0; i < TABS; i++) {
+        struct image usual = read_window("usual", tabs[i]), dense = read_window("dense", tabs[i]);
+        const double difference = panel_difference(&usual, &dense);
+        image_finish(&usual, test_host());
+        image_finish(&dense, test_host());
+        printf("%s: %.4f\n", tabs[i], difference);
+        if (difference > MOST_DIFFERENCE) fail_msg("%s differs by %.4f", tabs[i], difference);
+    }
 }

@@ -12,6 +12,7 @@ static bool in_region(const struct viewer *v, float x, float y)
 
 void overlay_lights(const struct viewer *v)
 {
+    const float unit = window_scale(v->window);
     struct ag_light_info light;
     for (int i = 0; i < v->edits.lights.count; i++) {
         float x, y;
@@ -22,9 +23,9 @@ void overlay_lights(const struct viewer *v)
             !in_region(v, x, y))
             continue;
         snprintf(text, sizeof text, "%d", i);
-        ui_disk(x, y, 6.0f, 0x101012c0);
-        ui_disk(x, y, 4.0f, light.light.enabled ? 0xffe080ff : 0x808080ff);
-        ui_label(x + 8.0f, y - 7.0f, 0xffffffff, text);
+        ui_disk(x, y, 6.0f * unit, 0x101012c0);
+        ui_disk(x, y, 4.0f * unit, light.light.enabled ? 0xffe080ff : 0x808080ff);
+        ui_label(x + 8.0f * unit, y - 7.0f * unit, 0xffffffff, text);
     }
 }
 
@@ -53,6 +54,6 @@ void overlay_selection(const struct viewer *v)
             corner(&mesh, instance.world_from_mesh, i, from);
             corner(&mesh, instance.world_from_mesh, i | axis, to);
             if (viewer_project(v, from, &x0, &y0) && viewer_project(v, to, &x1, &y1))
-                ui_stroke(x0, y0, x1, y1, 0xffc040c0, 1.5f);
+                ui_stroke(x0, y0, x1, y1, 0xffc040c0, 1.5f * window_scale(v->window));
         }
 }

@@ -33,7 +33,8 @@ static void draw_ring(struct viewer *v)
         for (int i = 0; i < 3; i++)
             point[i] = position[i] + v->paint.radius * (cosf(angle) * a[i] + sinf(angle) * b[i]);
         if (!viewer_project(v, point, &at[0], &at[1])) return;
-        if (k > 0) ui_stroke(last[0], last[1], at[0], at[1], 0xffffffc0, 1.5f);
+        if (k > 0)
+            ui_stroke(last[0], last[1], at[0], at[1], 0xffffffc0, 1.5f * window_scale(v->window));
         last[0] = at[0];
         last[1] = at[1];
     }

@@ -37,7 +37,7 @@ static void draw_split_labels(struct viewer *v)
     const struct region r = viewer_region(v);
     const float x = r.x0 + viewer_first_share(v) * (r.x1 - r.x0), scale = window_scale(v->window);
     if (!viewer_is_divided(v)) return;
-    ui_stroke(x, r.y0, x, r.y1, 0xffffffc0, 2.0f);
+    ui_stroke(x, r.y0, x, r.y1, 0xffffffc0, 2.0f * scale);
     char left[128], right[128];
     snprintf(left, sizeof left, "%.120s", v->gi);
     snprintf(right, sizeof right, "%.120s",
