@@ -1,5 +1,4 @@
-// view: scripts under a virtual display, with the validation layers, whose messages fail the
-// program. AFTERGLOW_TEST_VIEW_TECHNIQUES=lpv,vct also tests each option of these alone.
+// view: scripts under a virtual display.
 #include "cli/view_run.h"
 
 #include "image/exr.h"
@@ -10,9 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { SCRIPT_SIZE = 65536, SPEC_SIZE = 4096, VALUE_SIZE = 64 };
-#define MAX_BYTES 60000000u
 
 // ---- the window
 
@@ -219,121 +215,6 @@ TEST(probes_are_balls_and_light_is_painted)
     const double added = irradiance_in("bright.json") - irradiance_in("dark.json");
     // The brush is metres wide: 1000 lux at its middle, and what returns from other surfaces.
     if (added < 900 || added > 1500) fail_msg("a brush of 1000 lux adds %g lux", added);
-}
-
-// ---- methods
-
-// Two values that exclude each other are an error only on a device.
-static bool excluded(const char *gi)
-{
-    const char *levels = strstr(gi, "levels=");
-    return levels && levels[7] != '1' && strstr(gi, "storage=svo");
-}
-
-static bool fits(struct ag_context *context, const char *gi)
-{
-    struct ag_renderer_desc desc;
-    uint64_t bytes;
-    ag_renderer_desc_default(&desc);
-    desc.width = 96;
-    desc.height = 96;
-    desc.gi = gi;
-    if (excluded(gi)) return false;
-    return ag_renderer_estimate_memory(context, &desc, 1, &bytes) == AG_OK && bytes <= MAX_BYTES;
-}
-
-// The least (0) or greatest (1) value; false: a text.
-static bool extreme(const struct ag_option_info *option, int which, char out[VALUE_SIZE])
-{
-    if (strcmp(option->type, "text") == 0) return false;
-    if (strcmp(option->type, "bool") == 0)
-        snprintf(out, VALUE_SIZE, "%s", which ? "true" : "false");
-    else if (strcmp(option->type, "choice") == 0 && which)
-        snprintf(out, VALUE_SIZE, "%s",
-                 strrchr(option->unit, '|') ? strrchr(option->unit, '|') + 1 : option->unit);
-    else if (strcmp(option->type, "choice") == 0)
-        snprintf(out, VALUE_SIZE, "%.*s", (int)strcspn(option->unit, "|"), option->unit);
-    else
-        snprintf(out, VALUE_SIZE, "%.9g", which ? option->max : option->min);
-    return true;
-}
-
-static void add_method(char script[SCRIPT_SIZE], const char *gi)
-{
-    const size_t used = strlen(script);
-    const int wrote = snprintf(script + used, SCRIPT_SIZE - used, "gi %s\nwait 1\n", gi);
-    if (wrote < 0 || used + (size_t)wrote >= SCRIPT_SIZE) fail_msg("the script is too long");
-}
-
-// Each option alone, then as it was.
-static void add_each_option(char script[SCRIPT_SIZE], struct ag_context *context, int technique,
-                            const char *start)
-{
-    struct ag_option_info option;
-    for (int k = 0; ag_technique_option_get(technique, k, &option); k++)
-        for (int which = 0; which < 2; which++) {
-            char gi[SPEC_SIZE], value[VALUE_SIZE];
-            if (!extreme(&option, which, value)) continue;
-            snprintf(gi, sizeof gi, "%s:%s=%s", start, option.name, value);
-            if (!fits(context, gi)) continue;
-            add_method(script, gi);
-            add_method(script, start);
-        }
-}
-
-// All options at once, apart from those that would take too much memory.
-static void add_extremes(char script[SCRIPT_SIZE], struct ag_context *context, int technique,
-                         const char *start, int which)
-{
-    struct ag_option_info option;
-    char gi[SPEC_SIZE];
-    snprintf(gi, sizeof gi, "%s", start);
-    for (int k = 0; ag_technique_option_get(technique, k, &option); k++) {
-        char value[VALUE_SIZE];
-        const size_t used = strlen(gi);
-        if (!extreme(&option, which, value)) continue;
-        snprintf(gi + used, sizeof gi - used, "%c%s=%s", strchr(gi, ':') ? ',' : ':', option.name,
-                 value);
-        if (!fits(context, gi)) gi[used] = 0;
-    }
-    add_method(script, gi);
-}
-
-static bool is_listed(const char *list, const char *name)
-{
-    const size_t length = strlen(name);
-    for (; list; list = strchr(list, ',') ? strchr(list, ',') + 1 : NULL)
-        if (strncmp(list, name, length) == 0 && strchr(",", list[length])) return true;
-    return false;
-}
-
-static void add_technique(char script[SCRIPT_SIZE], struct ag_context *context, int technique,
-                          const struct ag_technique_info *info)
-{
-    char start[VALUE_SIZE];
-    const bool source = strcmp(info->role, "source") == 0;
-    snprintf(start, sizeof start, "%s%s", source ? "" : "ambient+", info->name);
-    add_method(script, start);
-    for (int which = 0; which < 2; which++) add_extremes(script, context, technique, start, which);
-    if (is_listed(getenv("AFTERGLOW_TEST_VIEW_TECHNIQUES"), info->name))
-        add_each_option(script, context, technique, start);
-}
-
-TEST(methods_with_extreme_options_leave_the_first_as_it_was)
-{
-    static char script[SCRIPT_SIZE];
-    struct ag_technique_info info;
-    struct ag_context *context = NULL;
-    require_display();
-    CHECK(ag_context_create(NULL, &context) == AG_OK);
-    snprintf(script, sizeof script, "settle\nsave first.png\n");
-    for (int i = 0; ag_technique_get(i, &info); i++)
-        if (!info.needs_bake) add_technique(script, context, i, &info);
-    ag_context_destroy(context);
-    add_method(script, "lpv:dim=16");
-    snprintf(script + strlen(script), SCRIPT_SIZE - strlen(script), "settle\nsave last.png\n");
-    view(CORNELL " --size 640x240 --scale 0.12 --gi lpv:dim=16", script);
-    check_equal("first.png", "last.png");
 }
 
 // ---- sizes, events

@@ -1,5 +1,7 @@
 #include "cli/view_random.h"
 
+#include "cli/cheap_bakes.h"
+
 #include <afterglow/afterglow.h>
 
 #include <stdbool.h>
@@ -28,20 +30,6 @@ static double between(struct writer *w, double least, double most)
 #define CHOOSE(w, list) (list)[draw(w, sizeof(list) / sizeof *(list))]
 
 // ---- methods
-
-// Options with which bakes take moments.
-static const char *const bakes[][2] = {
-    { "mrt", "texels=4,rays=256,prior_modes=8,modes=4,enrich=false,block_probes=1,"
-             "lightfield_positions=4,lightfield_directions=6,lightfield_supersampling=1,"
-             "lightfield_modes=16,lightfield_rounds=0,response_modes=4" },
-    { "drt", "texels=4,rays=256,prior_modes=8,modes=4,enrich=false,block_probes=1,"
-             "lightfield_positions=4,lightfield_directions=6,lightfield_supersampling=1,"
-             "lightfield_modes=16,lightfield_rounds=0,response_modes=4,delta_rays=64" },
-    { "radiosity", "texels=2048,rays=16,sources=8" },
-    { "ort", "texels=64,rays=16,offsets=50,local=1" },
-    { "prt", "texels=64,rays=16,bounces=1" },
-    { "dnrt", "rays=16,keys=1" },
-};
 
 // Options that take much time at their ends, and the greatest value here.
 static const struct {
@@ -94,19 +82,12 @@ static void draw_value(struct writer *w, const struct ag_option_info *option, ch
     }
 }
 
-static const char *bake_of(const char *technique)
-{
-    for (size_t i = 0; i < sizeof bakes / sizeof *bakes; i++)
-        if (strcmp(bakes[i][0], technique) == 0) return bakes[i][1];
-    return NULL;
-}
-
 static void add_technique(struct writer *w, int technique, char spec[SPEC_SIZE])
 {
     struct ag_technique_info info;
     struct ag_option_info option;
     ag_technique_get(technique, &info);
-    const char *bake = bake_of(info.name);
+    const char *bake = cheap_bake(info.name);
     size_t used = strlen(spec);
     used += (size_t)snprintf(spec + used, SPEC_SIZE - used, "%s%s%s%s", used ? "+" : "", info.name,
                              bake ? ":" : "", bake ? bake : "");

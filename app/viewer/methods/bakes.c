@@ -191,14 +191,22 @@ static bool set_gi(struct viewer *v, const struct wanted *wanted)
     return all && viewer_check(v, result);
 }
 
+// The newest choice holds: no bake of an older one takes its place later.
+static bool choose(struct viewer *v, const struct wanted *wanted)
+{
+    const bool done = set_gi(v, wanted);
+    if (done) bakes_cancel_part(v, wanted->rendering == &v->other);
+    return done;
+}
+
 bool bakes_set_gi(struct viewer *v, struct rendering *rendering, const char *gi)
 {
-    return set_gi(v, &(struct wanted){ rendering, gi, .may_bake = true });
+    return choose(v, &(struct wanted){ rendering, gi, .may_bake = true });
 }
 
 bool bakes_begin_gi_again(struct viewer *v, struct rendering *rendering, const char *gi)
 {
-    return set_gi(v, &(struct wanted){ rendering, gi, .again = true, .may_bake = true });
+    return choose(v, &(struct wanted){ rendering, gi, .again = true, .may_bake = true });
 }
 
 bool bakes_running(const struct viewer *v)
@@ -222,6 +230,11 @@ void bakes_cancel(struct viewer *v)
     if (!v->bake_job) return;
     v->bake_job->cancelled = true;
     end(v);
+}
+
+void bakes_cancel_part(struct viewer *v, bool other)
+{
+    if (v->bake_job && v->bake_job->other == other) bakes_cancel(v);
 }
 
 void bakes_step(struct viewer *v)

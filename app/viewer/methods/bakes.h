@@ -17,3 +17,4 @@ bool bakes_running(const struct viewer *v);
 // Share of the bake that is done, 0…1, its stage and the seconds that are left.
 double bakes_progress(struct viewer *v, char stage[64], double *seconds_left);
 void bakes_cancel(struct viewer *v); // waits for the thread, which stops within a second
+void bakes_cancel_part(struct viewer *v, bool other); // the same for a bake of that part alone

@@ -69,6 +69,7 @@ bool viewer_set_split(struct viewer *v, const char *gi)
 {
     viewer_touch(v);
     if (!gi) {
+        bakes_cancel_part(v, true);
         rendering_close(&v->other);
         if (v->split) viewer_note(v, CHANGE_METHOD, -1);
         v->split = false;
