@@ -8,6 +8,7 @@
 #include "scene/limits.h"
 #include "scene/rescale.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static const double MAX_TIME_S = 1e9;

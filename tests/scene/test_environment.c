@@ -3,6 +3,8 @@
 
 #include "core/rng.h"
 
+#include <stdio.h>
+
 static const double PI = 3.14159265358979;
 
 static const vec3s DIRECTIONS[] = { { { 1, 0, 0 } },

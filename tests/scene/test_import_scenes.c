@@ -5,6 +5,7 @@
 #include "scene/pose.h"
 #include "scene/scene.h"
 
+#include <stdio.h>
 #include <string.h>
 
 struct expected {

@@ -3,6 +3,7 @@
 #include "techniques/ort/bake_fixture.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -7,6 +7,7 @@
 #include "techniques/technique_rules.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 // ---- without shadows
