@@ -1,4 +1,4 @@
-// What scripts of the viewer save: files, images, the command of a view.
+// Files and images that scripts of the viewer save, and the command of a view.
 #pragma once
 
 #include "cli/window.h"
