@@ -6,6 +6,7 @@
 
 #include <afterglow/afterglow.h>
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,9 +15,10 @@ enum { SCRIPT_SIZE = 262144, SPEC_SIZE = 4096, VALUE_SIZE = 64 };
 #define CORNELL   "view @cornell:light=point --quiet"
 #define MAX_BYTES 60000000u
 
-// Two values that exclude each other are an error only on a device.
+// Two values that exclude each other are an error only on a device, or in a bake.
 static bool excluded(const char *gi)
 {
+    if (strstr(gi, "prior_modes=8,") && strstr(gi, ",modes=64")) return true;
     const char *levels = strstr(gi, "levels=");
     return levels && levels[7] != '1' && strstr(gi, "storage=svo");
 }
@@ -167,42 +169,57 @@ static void set_option(const char *spec, const char *name, const char *value, ch
     if (wrote < 0 || wrote >= SPEC_SIZE) fail_msg("the spec is too long");
 }
 
-enum cost { COST_MOMENTS, COST_LONG, COST_TOO_LARGE };
+enum cost { COST_NONE, COST_MOMENTS, COST_LONG, COST_TOO_LARGE, COSTS };
 
-static enum cost cost_of(struct ag_scene *scene, const char *gi)
+static bool estimate(struct ag_scene *scene, const char *gi, struct ag_bake_estimate *out,
+                     struct ag_bake_info *info)
 {
-    static const double most_rays = 5e6;
-    static const uint64_t most_bytes = 400000000u;
     struct ag_bake *bake = NULL;
-    struct ag_bake_estimate estimate = { 0 };
-    enum cost cost = COST_TOO_LARGE;
-    if (ag_bake_create(scene, gi, NULL, &bake) == AG_OK &&
-        ag_bake_estimate_cost(bake, false, &estimate) == AG_OK &&
-        estimate.peak_memory_bytes < most_bytes && estimate.file_bytes < most_bytes)
-        cost = estimate.rays > most_rays ? COST_LONG : COST_MOMENTS;
+    const bool done = ag_bake_create(scene, gi, NULL, &bake) == AG_OK &&
+                      ag_bake_get_info(bake, info) == AG_OK &&
+                      ag_bake_estimate_cost(bake, false, out) == AG_OK;
     ag_bake_destroy(bake);
-    return cost;
+    return done;
 }
 
-// An option of bakes: a bake that would take long begins, and ends with the next method.
+// None: it has the key of the first bake. Moments: it takes at most twice as many rays.
+static enum cost cost_of(struct ag_scene *scene, const char *gi, const char *start)
+{
+    static const double least_rays = 5e6;
+    static const uint64_t most_bytes = 400000000u;
+    struct ag_bake_estimate first = { 0 }, other = { 0 };
+    struct ag_bake_info first_info = { 0 }, info = { 0 };
+    CHECK(estimate(scene, start, &first, &first_info));
+    if (!estimate(scene, gi, &other, &info) || other.peak_memory_bytes > most_bytes ||
+        other.file_bytes > most_bytes)
+        return COST_TOO_LARGE;
+    if (strcmp(first_info.key, info.key) == 0) return COST_NONE;
+    return other.rays > fmax(least_rays, 2.0 * first.rays) ? COST_LONG : COST_MOMENTS;
+}
+
+// A bake that would take long begins, and ends with the next method.
 static void add_each_bake(char script[SCRIPT_SIZE], struct ag_context *context,
                           struct ag_scene *scene, int technique, const char *start)
 {
+    static const char *const waits[COSTS] = { "wait 1", "settle 900\nsays is shown", "wait 3",
+                                              NULL };
     struct ag_option_info option;
-    int counts[3] = { 0 };
+    int counts[COSTS] = { 0 };
     for (int k = 0; ag_technique_option_get(technique, k, &option); k++)
         for (int which = 0; which < 2; which++) {
             char gi[SPEC_SIZE], value[VALUE_SIZE];
             if (!extreme(&option, which, value)) continue;
             set_option(start, option.name, value, gi);
-            const enum cost cost = fits(context, gi) ? cost_of(scene, gi) : COST_TOO_LARGE;
+            enum cost cost = fits(context, gi) ? COST_NONE : COST_TOO_LARGE;
+            if (cost == COST_NONE && strcmp(option.effect, "rebake") == 0)
+                cost = cost_of(scene, gi, start);
             counts[cost]++;
             if (cost == COST_TOO_LARGE) continue;
-            add_method_for(script, gi, cost == COST_LONG ? "wait 3" : "settle 300");
+            add_method_for(script, gi, waits[cost]);
             add_method_for(script, start, "wait 2");
         }
-    printf("%s: %d values, %d bakes cancelled, %d values too large\n", start, counts[COST_MOMENTS],
-           counts[COST_LONG], counts[COST_TOO_LARGE]);
+    printf("%s: %d values with the same bake, %d baked, %d begun, %d too large\n", start,
+           counts[COST_NONE], counts[COST_MOMENTS], counts[COST_LONG], counts[COST_TOO_LARGE]);
 }
 
 static void run_bakes(int technique, const struct ag_technique_info *info)
@@ -211,8 +228,9 @@ static void run_bakes(int technique, const struct ag_technique_info *info)
     char start[SPEC_SIZE];
     struct ag_context *context = NULL;
     struct ag_scene *scene = NULL;
-    snprintf(start, sizeof start, "%s%s:%s", strcmp(info->role, "source") == 0 ? "" : "ambient+",
-             info->name, cheap_bake(info->name));
+    const bool source = strcmp(info->role, "source") == 0; // others change the light of probes
+    snprintf(start, sizeof start, "%s%s:%s", source ? "" : "lpv:dim=8,cascades=1+", info->name,
+             cheap_bake(info->name));
     CHECK(ag_context_create(NULL, &context) == AG_OK);
     CHECK(ag_scene_load(context, "@cornell:light=point", &scene) == AG_OK);
     snprintf(script, sizeof script, "settle\nsave first.png\nmemory first.json\n");

@@ -117,11 +117,13 @@ static int draw_technique(struct writer *w, const char *role)
     return 0;
 }
 
+// A delta technique changes the light of a source with probes.
 static void draw_gi(struct writer *w, char spec[SPEC_SIZE])
 {
-    spec[0] = 0;
-    add_technique(w, draw_technique(w, "source"), spec);
-    if (draw(w, 6) == 0) add_technique(w, draw_technique(w, "delta"), spec);
+    const bool delta = draw(w, 6) == 0;
+    snprintf(spec, SPEC_SIZE, "%s", delta ? "lpv:dim=8,cascades=1" : "");
+    if (!delta || draw(w, 8) == 0) add_technique(w, draw_technique(w, "source"), spec);
+    if (delta) add_technique(w, draw_technique(w, "delta"), spec);
     if (draw(w, 3) == 0) add_technique(w, draw_technique(w, "visibility"), spec);
 }
 

@@ -6,6 +6,12 @@
 #ifdef __linux__
 #include <unistd.h>
 #endif
+#ifdef __GLIBC__
+#if __GLIBC_PREREQ(2, 33)
+#include <malloc.h>
+#define HAS_MALLINFO2
+#endif
+#endif
 
 enum { MOST_OWNERS = 64 };
 
@@ -21,6 +27,17 @@ static json_t *resident_bytes(void)
     return json_null();
 }
 
+// Allocated and not freed: without what the allocator keeps.
+static json_t *heap_bytes(void)
+{
+#ifdef HAS_MALLINFO2
+    const struct mallinfo2 heap = mallinfo2();
+    return json_integer((json_int_t)(heap.uordblks + heap.hblkhd));
+#else
+    return json_null();
+#endif
+}
+
 bool script_run_memory(const struct words *w)
 {
     struct ag_memory owners[MOST_OWNERS];
@@ -31,7 +48,7 @@ bool script_run_memory(const struct words *w)
         json_object_set_new(list, owners[i].owner, json_integer((json_int_t)owners[i].bytes));
         sum += (json_int_t)owners[i].bytes;
     }
-    json_t *document = json_pack("{s:I, s:o, s:o}", "device_bytes", sum, "owners", list,
-                                 "resident_bytes", resident_bytes());
+    json_t *document = json_pack("{s:I, s:o, s:o, s:o}", "device_bytes", sum, "owners", list,
+                                 "resident_bytes", resident_bytes(), "heap_bytes", heap_bytes());
     return script_done(w, viewer_write_json(w->v, w->rest, document, 0));
 }
