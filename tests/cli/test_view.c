@@ -248,6 +248,16 @@ TEST(random_events_end_without_a_message)
     view(CORNELL SMALL " --gi lpv:dim=16", "settle\nrandom 3 120\nwait 2\n");
 }
 
+// A camera that is at no place projects handles to no pixel.
+TEST(a_camera_is_finite)
+{
+    require_display();
+    view(CORNELL LEAST, "settle\nsave first.png\ntab Light\nchoose light 0\nwait 1\n"
+                        "fails look nan,0,0 1,1,1\nsays finite\nfails look 1,1,1 inf,0,0\n"
+                        "settle\nsave last.png\n");
+    check_equal("first.png", "last.png");
+}
+
 TEST(a_click_switches_a_light_off)
 {
     require_display();

@@ -115,7 +115,7 @@ bool look_project(const struct look *look, float aspect, const float point[3], f
         z += to * forward[i];
     }
     const float half = tanf(0.5f * look->fov_deg * PI / 180.0f);
-    if (z <= 1e-4f) return false;
+    if (!(z > 1e-4f)) return false; // also where it is no number
     out[0] = x / (z * half * aspect);
     out[1] = -y / (z * half);
     return true;

@@ -9,6 +9,7 @@
 #include "viewer/scene/undo.h"
 #include "shell/json_values.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -160,6 +161,9 @@ static bool run_look(const struct words *w)
     float *e = camera.eye, *t = camera.target;
     if (sscanf(w->rest, "%f,%f,%f %f,%f,%f", e, e + 1, e + 2, t, t + 1, t + 2) != 6)
         return script_wrong(w->script, "look takes X,Y,Z X,Y,Z:", w->rest);
+    for (int i = 0; i < 3; i++)
+        if (!isfinite(e[i]) || !isfinite(t[i]))
+            return script_wrong(w->script, "look takes finite numbers:", w->rest);
     const float speed = w->v->look.speed;
     look_from_camera(&w->v->look, &camera, 0);
     w->v->look.speed = speed;
