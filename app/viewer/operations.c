@@ -143,7 +143,7 @@ bool viewer_project(const struct viewer *v, const float point[3], float *x, floa
     if (!look_project(&v->look, aspect_of(&r), point, at)) return false;
     *x = r.x0 + 0.5f * (at[0] + 1.0f) * (r.x1 - r.x0);
     *y = r.y0 + 0.5f * (at[1] + 1.0f) * (r.y1 - r.y0);
-    return true;
+    return isfinite(*x) && isfinite(*y); // an image of no width has no pixel
 }
 
 void viewer_ray(const struct viewer *v, float x, float y, float eye[3], float direction[3])

@@ -258,6 +258,14 @@ TEST(a_camera_is_finite)
     check_equal("first.png", "last.png");
 }
 
+// Half of a window of one pixel has no width.
+TEST(an_image_without_width_has_no_handles)
+{
+    require_display();
+    view(CORNELL LEAST, "split ambient\nside on\nlook 0,2,9 0,2,0\nsize 1x1\nwait 3\ntab Light\n"
+                        "choose light 0\nwait 1\nfails drag z 9 9\nsays no handle\nwait 2\n");
+}
+
 TEST(a_click_switches_a_light_off)
 {
     require_display();
