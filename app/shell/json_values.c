@@ -16,10 +16,7 @@ json_t *json_float(float value)
 {
     char text[64];
     if (!isfinite(value)) return json_null();
-    for (int digits = 6; digits <= 9; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, (double)value);
-        if (strtof(text, NULL) == value) break;
-    }
+    text_float(value, text, sizeof text);
     return json_real(strtod(text, NULL));
 }
 

@@ -2,6 +2,7 @@
 #include "core/option.h"
 
 #include "core/c_locale.h"
+#include "core/text.h"
 
 #include <errno.h>
 #include <math.h>
@@ -117,15 +118,6 @@ static int32_t choice_index(const char *choices, const char *name)
 
 // ---- printing
 
-// The shortest decimal that parses to the same float; nine digits always suffice.
-static void print_float(float value, char *out, size_t out_size)
-{
-    for (int digits = 1; digits <= 9; digits++) {
-        snprintf(out, out_size, "%.*g", digits, (double)value);
-        if (strtof(out, NULL) == value) return;
-    }
-}
-
 // Bytes that would end a text in a list of options, or begin an escape.
 static bool is_escaped(char c)
 {
@@ -149,7 +141,7 @@ static void print_value(const struct option_row *row, double value, char *out, s
         snprintf(out, out_size, "%.0f", value);
         break;
     case OPTION_TYPE_float32:
-        print_float((float)value, out, out_size);
+        text_float((float)value, out, out_size);
         break;
     case OPTION_TYPE_bool8:
         snprintf(out, out_size, "%s", value != 0.0 ? "true" : "false");

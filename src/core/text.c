@@ -1,9 +1,10 @@
-// UTF-8 and control characters in names.
+// UTF-8 and control characters in names; numbers.
 #include "core/text.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { ESCAPE_SIZE = 8 }; // "\u202e" and a zero
@@ -59,4 +60,13 @@ size_t text_escape(const char *text, char *out, size_t size)
     }
     if (out && size > 0) out[used] = 0;
     return used;
+}
+
+void text_float(float value, char *out, size_t size)
+{
+    enum { ENOUGH_DIGITS = 9 };
+    for (int digits = 1; digits <= ENOUGH_DIGITS; digits++) {
+        snprintf(out, size, "%.*g", digits, (double)value);
+        if (strtof(out, NULL) == value) return;
+    }
 }

@@ -1,4 +1,5 @@
-// Text of files for people: names come from scene files and paths and may be any bytes.
+// Text of files for people: names come from scene files and paths and may be any bytes. Numbers as
+// text.
 #pragma once
 
 #include <stddef.h>
@@ -12,3 +13,7 @@ size_t text_utf8_length(const char *text);
 // and paragraph separators and bidirectional controls as \uXXXX, bytes that are not UTF-8 as \xXX.
 // Returns the length written. out NULL: the length that the whole text needs; size is unused.
 size_t text_escape(const char *text, char *out, size_t size);
+
+// The shortest decimal that parses to the same float; 16 bytes always suffice.
+// The decimal point is that of the thread's locale.
+void text_float(float value, char *out, size_t size);

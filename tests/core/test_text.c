@@ -58,6 +58,24 @@ TEST(truncation_is_between_characters)
     CHECK(text_escape(text, NULL, 0) == 11);
 }
 
+TEST(floats_are_the_shortest_decimal_that_parses_to_them)
+{
+    static const struct {
+        float value;
+        const char *text;
+    } cases[] = { { 0.1f, "0.1" },
+                  { -2.0f, "-2" },
+                  { 1e20f, "1e+20" },
+                  { 1.0f / 3.0f, "0.33333334" },
+                  { 16777216.0f, "16777216" },
+                  { 0.0f, "0" } };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[16];
+        text_float(cases[i].value, text, sizeof text);
+        CHECK_STRING(text, cases[i].text);
+    }
+}
+
 TEST(a_log_message_has_no_controls)
 {
     test_forget_messages();

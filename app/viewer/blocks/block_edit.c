@@ -78,7 +78,7 @@ void block_edit_restore(struct viewer *v, const struct blocks *blocks)
     if (blocks_copy(&copy, blocks))
         replace(v, &copy);
     else
-        viewer_warn(v, "the blocks stay as they are: out of memory");
+        viewer_warn(v, "cannot restore the blocks: out of memory");
 }
 
 // ---- changes
@@ -106,7 +106,8 @@ static bool begin(struct viewer *v, struct blocks *next)
     return false;
 }
 
-// Takes over the changed map if it is right. A map without blocks is no file, but may be edited.
+// Replaces the map by the changed one if the library accepts it, or if it has no blocks, which no
+// file may state.
 static bool take(struct viewer *v, struct blocks *next)
 {
     const int parted = blocks_disconnect(next);

@@ -72,7 +72,7 @@ void paint_restore(struct viewer *v, const struct dabs *dabs)
     struct dabs copy;
     if (dabs_same(&v->paint.dabs, dabs)) return;
     if (!dabs_copy(&copy, dabs)) {
-        viewer_warn(v, "the painted light stays as it is: out of memory");
+        viewer_warn(v, "cannot restore the painted light: out of memory");
         return;
     }
     dabs_close(&v->paint.dabs);

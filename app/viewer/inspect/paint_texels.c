@@ -84,7 +84,8 @@ static bool mix(struct paint_texels *t, int side, const struct dab *dab, int fro
     from[0] = t->width;
     from[1] = t->height;
     to[0] = to[1] = 0;
-    for (int y = 0; begin_side(t, side) && y < t->height; y++)
+    if (!begin_side(t, side)) return false;
+    for (int y = 0; y < t->height; y++)
         for (int x = 0; x < t->width; x++) {
             const size_t at = 3 * ((size_t)y * (size_t)t->width + (size_t)x);
             const float weight = dab_weight(dab, places + at, t->texel_m);

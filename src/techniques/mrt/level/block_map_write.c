@@ -1,6 +1,8 @@
 // Block maps as JSON text.
 #include "block_map.h"
 
+#include "core/text.h"
+
 #include <jansson.h>
 
 #include <math.h>
@@ -8,15 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The shortest decimal that reads back as the same float.
 static json_t *number(float value)
 {
     char text[32];
     if (value == truncf(value) && fabsf(value) < 1e6f) return json_integer((json_int_t)value);
-    for (int digits = 6; digits <= 9; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, (double)value);
-        if (strtof(text, NULL) == value) break;
-    }
+    text_float(value, text, sizeof text);
     return json_real(strtod(text, NULL));
 }
 
