@@ -1,9 +1,8 @@
 // From a scene and a dictionary to the level that the run time lights.
 #include "techniques/mrt/mrt_state.h"
 
+#include "techniques/mrt/clutter/clutter_operators.h"
 #include "techniques/mrt/level/make_map.h"
-#include "techniques/mrt/runtime/clutter/delta_operators.h"
-#include "techniques/mrt/runtime/level_operators.h"
 
 // ---- the map
 
@@ -231,50 +230,40 @@ struct mrt_runtime_options mrt_runtime_options_of(const struct mrt_options *opti
     };
 }
 
-static bool finish_runtime(const struct mrt *mrt, struct host *host,
-                           const struct mrt_runtime_input *input, const struct mrt_build *how,
-                           struct mrt_runtime *out)
+static bool add_clutter(const struct mrt *mrt, const struct mrt_parts *parts,
+                        const struct mrt_build *how, struct mrt_operators *operators)
 {
-    const struct mrt_runtime_options options = mrt_runtime_options_of(&mrt->options);
-    return how->plan ? mrt_runtime_plan(out, how->plan, input, &options)
-                     : mrt_runtime_init(out, host, mrt->gpu, input, &options);
-}
-
-static bool make_delta(const struct mrt *mrt, struct host *host, const struct mrt_parts *parts,
-                       struct mrt_level_operators *level_operators, const struct mrt_build *how,
-                       struct mrt_runtime *out)
-{
-    const struct mrt_delta_options options = { .rays = mrt->options.delta_rays,
-                                               .depth = mrt->options.depth,
-                                               .occlusion = mrt->options.occlusion,
-                                               .reflection = mrt->options.reflection,
-                                               .gather = mrt->options.gather &&
-                                                         mrt->options.reflection &&
-                                                         mrt->options.vector,
-                                               .stop = how->stop };
-    struct mrt_delta_operators operators;
-    const bool ok =
-        mrt_delta_operators_init(&operators, host, level_operators, &mrt->level, &parts->clutter,
-                                 parts->clutter_texels, how->cache, &options) &&
-        finish_runtime(mrt, host, &operators.input, how, out);
-    mrt_delta_operators_finish(&operators);
-    return ok;
+    const struct mrt_options *options = &mrt->options;
+    const struct mrt_clutter_changes changes = { .rays = options->delta_rays,
+                                                 .depth = options->depth,
+                                                 .occlusion = options->occlusion,
+                                                 .reflection = options->reflection,
+                                                 .gather = options->gather && options->reflection &&
+                                                           options->vector,
+                                                 .stop = how->stop };
+    return parts->clutter.triangles == 0 ||
+           mrt_operators_add_clutter(operators, &mrt->level, &parts->clutter, parts->clutter_texels,
+                                     how->cache, &changes);
 }
 
 bool mrt_make_runtime(const struct mrt *mrt, struct host *host, const struct mrt_parts *parts,
                       const struct mrt_build *how, struct mrt_runtime *out)
 {
-    struct mrt_level_operators level_operators;
-    bool ok = mrt_level_operators_init(host, &mrt->level, &level_operators);
-    if (ok) {
-        level_operators.input.atlas = &mrt->atlas;
-        level_operators.input.images = &parts->images;
-        level_operators.input.published = &mrt->published;
-        ok = parts->clutter.triangles > 0
-                 ? make_delta(mrt, host, parts, &level_operators, how, out)
-                 : finish_runtime(mrt, host, &level_operators.input, how, out);
-    }
-    mrt_level_operators_finish(&level_operators);
+    struct mrt_operators operators;
+    const struct mrt_runtime_options options = mrt_runtime_options_of(&mrt->options);
+    const struct mrt_runtime_input input = { .map = &mrt->map,
+                                             .atlas = &mrt->atlas,
+                                             .images = &parts->images,
+                                             .operators = &operators,
+                                             .clutter = &parts->clutter,
+                                             .clutter_texels = parts->clutter_texels,
+                                             .published = &mrt->published };
+    bool ok = mrt_operators_init(&operators, host, &mrt->level) &&
+              add_clutter(mrt, parts, how, &operators);
+    if (ok)
+        ok = how->plan ? mrt_runtime_plan(out, how->plan, &input, &options)
+                       : mrt_runtime_init(out, host, mrt->gpu, &input, &options);
+    mrt_operators_finish(&operators);
     return ok;
 }
 

@@ -9,12 +9,7 @@ struct mrt_runtime_fixture {
     struct mrt_block_map map;
     struct mrt_atlas atlas;
     struct mrt_scene_images images;
-    struct mrt_basis_input *bases;
-    int *basis_of_block;
-    struct mrt_opening_input *openings;
-    struct mrt_pair_input *pairs;
-    float *t_br; // of all pairs
-    struct mrt_response_input responses[CUBE_FACES];
+    struct mrt_operators operators;
     struct mrt_runtime_input input;
 };
 

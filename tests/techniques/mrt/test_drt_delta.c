@@ -26,6 +26,8 @@ struct room {
     struct mrt_clutter clutter;
     struct trace_scene *objects;
     struct matrix_f32 l_imp;
+    const struct matrix_f32 *of_blocks[1]; // l_imp
+    struct mrt_clutter_rays rays;
     struct mrt_shape shape;
     struct mrt_delta_block delta;
 };
@@ -105,16 +107,15 @@ static void room_trace(struct room *room)
         row[CONSTANT] = 1.0f;
         row[LINEAR] = linear(mrt_shape_texel(&room->shape, t).position);
     }
-    const struct mrt_delta_input input = { .block = &room->map.blocks[0],
-                                           .shape = room->shape,
-                                           .l_imp = &room->l_imp,
-                                           .clutter = &room->clutter,
-                                           .objects = room->objects,
-                                           .bounds = mrt_clutter_bounds_in(&room->clutter,
-                                                                           &room->map.blocks[0]),
-                                           .rays = RAYS,
-                                           .probes = 2 };
-    CHECK(mrt_delta_block_init(&room->delta, test_host(), &input));
+    room->of_blocks[0] = &room->l_imp;
+    room->rays = (struct mrt_clutter_rays){ .map = &room->map,
+                                            .l_imp = room->of_blocks,
+                                            .resolution = TEXELS,
+                                            .clutter = &room->clutter,
+                                            .objects = room->objects,
+                                            .rays = RAYS,
+                                            .probes = 2 };
+    CHECK(mrt_delta_block_init(&room->delta, test_host(), &room->rays, 0));
 }
 
 static void room_finish(struct room *room)
@@ -274,7 +275,7 @@ TEST(inpainting_takes_valid_neighbors_alone)
     static const int around[7] = { 0, 1, 2, 4, 8, 9, 10 };
     for (int i = 0; i < 7; i++) rows.at[(size_t)around[i] * rows.stride] = (float)i;
     rows.at[5 * rows.stride] = NAN;
-    mrt_inpaint_texels(&rows, 4, 1, 1, inside);
+    mrt_inpaint(&rows, 4, 1, 1, inside);
     CHECK_NEAR(rows.at[5 * rows.stride], 3.0, 1e-5);
     CHECK(rows.at[0] == 0.0f && rows.at[15 * rows.stride] == 1000.0f);
     CHECK(isfinite(rows.at[6 * rows.stride]));
@@ -287,15 +288,8 @@ TEST(faces_receive_the_light_of_walls)
     struct room room;
     room_init(&room, WITH_BOX);
     room_trace(&room);
-    const struct matrix_f32 *l_imp = &room.l_imp;
-    const struct mrt_gather_input input = { .map = &room.map,
-                                            .l_imp = &l_imp,
-                                            .resolution = TEXELS,
-                                            .clutter = &room.clutter,
-                                            .objects = room.objects,
-                                            .rays = RAYS };
     struct mrt_gather_faces faces;
-    CHECK(mrt_gather_faces_init(&faces, test_host(), &input, 0));
+    CHECK(mrt_gather_faces_init(&faces, test_host(), &room.rays, 0));
     CHECK(faces.count == 1 && faces.from[0].source == 0);
     for (size_t f = 0; f < FACES; f++) {
         const float *row = faces.from[0].of_b.at + f * faces.from[0].of_b.stride;
@@ -334,10 +328,7 @@ TEST(the_light_map_of_clutter_has_the_light_of_rays)
     room_init(&room, WITH_BOX);
     room_trace(&room);
     CHECK(raycast_init(&rays, test_host(), &room.pose));
-    const struct mrt_clutter_transfer_input input = { &room.map,     &room.l_imp,  TEXELS,
-                                                      &room.clutter, room.objects, RAYS,
-                                                      NULL };
-    CHECK(mrt_clutter_transfer_init(&map, test_host(), &input, 0));
+    CHECK(mrt_clutter_transfer_init(&map, test_host(), &room.rays, 0));
     CHECK(map.texel_count == room.clutter.charts.texel_count);
     for (size_t i = 0; i < map.texel_count; i += 7) {
         const uint32_t texel = room.clutter.texels[i];
@@ -423,18 +414,13 @@ TEST(light_through_an_opening_is_of_walls_or_of_clutter)
     }
     CHECK(matrix_f32_init(test_host(), &u_r, ALL, 1));
     for (size_t i = 0; i < ALL; i++) u_r.at[i * u_r.stride] = 1.0f;
-    const struct mrt_delta_entry_input input = { .map = &pair.map,
-                                                 .l_imp = l_imp,
-                                                 .resolution = TEXELS,
-                                                 .clutter = &pair.clutter,
-                                                 .objects = pair.objects,
-                                                 .rays = ENTRY_RAYS,
-                                                 .block = 0,
-                                                 .face = 1,
-                                                 .u_r = &u_r,
-                                                 .sources = (const int[]){ 1 },
-                                                 .source_count = 1 };
-    CHECK(mrt_delta_entry_init(&entry, test_host(), &input));
+    const struct mrt_clutter_rays all_rays = { .map = &pair.map,
+                                               .l_imp = l_imp,
+                                               .resolution = TEXELS,
+                                               .clutter = &pair.clutter,
+                                               .objects = pair.objects };
+    const struct mrt_entered_opening opening = { 0, 1, &u_r, (const int[]){ 1 }, 1 };
+    CHECK(mrt_delta_entry_init(&entry, test_host(), &all_rays, &opening));
     CHECK(mrt_rays_init(test_host(), MRT_IRRADIANCE, ENTRY_RAYS, &rays));
     const struct mrt_shape open = mrt_cube(TEXELS, 1u << 1), closed = mrt_cube(TEXELS, 0);
     for (int t = 0; t < ALL; t++)

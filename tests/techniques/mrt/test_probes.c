@@ -11,7 +11,7 @@
 #include "techniques/mrt/dictionary/interface.h"
 #include "techniques/mrt/dictionary/prior.h"
 #include "techniques/mrt/level/probes.h"
-#include "techniques/mrt/runtime/rotated_probes.h"
+#include "techniques/mrt/level/rotated.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -147,8 +147,8 @@ TEST(mrt_turned_probes_are_the_turned_function)
     for (int face = 0; face < CUBE_FACES; face++) {
         mat3s turn = mrt_block_from_entry(face);
         const struct mrt_shape closed = mrt_cube(4, 0);
-        const struct mrt_probe_turn how = { &closed, &closed, turn };
-        CHECK(mrt_turn_probes(test_host(), P, &how, &from, &to));
+        const struct mrt_rotation how = { closed, closed, turn };
+        CHECK(mrt_rotate_light(test_host(), &how, P, MRT_PROBE, &from, &to));
         for (int i = 0; i < PROBES; i++) {
             vec3s cell = glms_mat3_mulv(turn, mrt_probe_cell(P, i)),
                   direction = vec3_of(.6f, 0, .8f);

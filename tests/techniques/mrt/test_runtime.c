@@ -98,7 +98,7 @@ TEST_GPU(mrt_gpu_equals_the_matrices)
         mrt_runtime_fixture_init(&f, mrt_random_grid(3, 2, 0.8f, true, 3), resolutions[i], K_B, K_R,
                                  vec3_of(0.5f, 0.5f, 0.5f));
         mrt_runtime_fixture_randomize(&f, 11);
-        CHECK(f.input.opening_count > 4);
+        CHECK(f.operators.opening_count > 4);
         expect_matrices(gpu, &f, false, 1e-5);
         expect_matrices(gpu, &f, true, 1e-3);
         mrt_runtime_fixture_finish(&f);

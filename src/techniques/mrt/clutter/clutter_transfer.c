@@ -2,7 +2,6 @@
 #include "techniques/mrt/clutter/clutter_transfer.h"
 
 #include "techniques/mrt/clutter/cell_ray.h"
-#include "techniques/mrt/clutter/delta.h"
 
 #include "core/parallel.h"
 #include "core/sh.h"
@@ -18,7 +17,7 @@ enum { VALUES = MRT_VECTOR_COEFFICIENTS };
 static const float Y0 = 0.28209479f, Y1 = 0.48860251f, Y2 = 0.63078313f; // at the pole, by band
 
 struct job {
-    const struct mrt_clutter_transfer_input *input;
+    const struct mrt_clutter_rays *input;
     struct mrt_clutter_transfer *out;
     int first_face;
     struct mrt_rays rays;
@@ -57,7 +56,7 @@ static void add_wall(const struct texel_job *t, const float weight[VALUES],
 {
     const struct matrix_f32 *b = &t->job->out->b;
     for (int q = 0; q < VALUES; q++)
-        mrt_add_radiosity(wall, weight[q], t->job->input->l_imp,
+        mrt_add_radiosity(wall, weight[q], t->job->input->l_imp[t->job->out->block],
                           b->at + (t->index * VALUES + (size_t)q) * b->stride);
 }
 
@@ -76,7 +75,7 @@ static void add_face(struct texel_job *t, const float weight[VALUES], const stru
 
 static void follow(struct texel_job *t, int r)
 {
-    const struct mrt_clutter_transfer_input *input = t->job->input;
+    const struct mrt_clutter_rays *input = t->job->input;
     const vec3s local = t->job->rays.direction[r], way = glms_mat3_mulv(t->frame, local);
     const float cosine = 2.0f * local.z / (float)t->job->rays.count; // of uniform rays
     float weight[VALUES];
@@ -100,7 +99,7 @@ static void follow(struct texel_job *t, int r)
         add_wall(t, weight, &wall);
 }
 
-static uint32_t own_texel(const struct mrt_clutter_transfer_input *input,
+static uint32_t own_texel(const struct mrt_clutter_rays *input,
                           const struct mrt_clutter_transfer *transfer, size_t i)
 {
     return input->clutter->texels[transfer->first_texel + i];
@@ -126,13 +125,13 @@ static void trace_texel(void *user, size_t i)
 }
 
 bool mrt_clutter_transfer_init(struct mrt_clutter_transfer *out, struct host *host,
-                               const struct mrt_clutter_transfer_input *input, int block)
+                               const struct mrt_clutter_rays *rays, int block)
 {
-    struct job job = { .input = input, .out = out };
-    const int faces = mrt_faces_of_block(input->clutter, block, &job.first_face);
+    struct job job = { .input = rays, .out = out };
+    const int faces = mrt_faces_of_block(rays->clutter, block, &job.first_face);
     *out = (struct mrt_clutter_transfer){ .host = host, .block = block };
     if (faces > 0) {
-        const struct mrt_clutter *clutter = input->clutter;
+        const struct mrt_clutter *clutter = rays->clutter;
         const struct mrt_clutter_face *first = &clutter->faces[job.first_face],
                                       *end = first + faces;
         out->first_texel = first->first_texel;
@@ -147,11 +146,12 @@ bool mrt_clutter_transfer_init(struct mrt_clutter_transfer *out, struct host *ho
         out->kept[f] = host_alloc(host, out->texel_count, sizeof **out->kept);
         ok = ok && out->kept[f];
     }
-    ok = ok && matrix_f32_init(host, &out->b, out->texel_count * VALUES, input->l_imp->columns) &&
+    ok = ok &&
+         matrix_f32_init(host, &out->b, out->texel_count * VALUES, rays->l_imp[block]->columns) &&
          matrix_f32_init(host, &out->c, out->texel_count * VALUES, (size_t)faces) &&
-         mrt_rays_init(host, MRT_VECTOR, input->rays, &job.rays);
+         mrt_rays_init(host, MRT_VECTOR, rays->rays, &job.rays);
     if (ok) parallel_for(out->texel_count, 4, trace_texel, &job);
-    ok = ok && !mrt_is_stopped(input->stop);
+    ok = ok && !mrt_is_stopped(rays->stop);
     mrt_rays_finish(host, &job.rays);
     if (!ok) mrt_clutter_transfer_finish(out);
     return ok;
@@ -195,7 +195,7 @@ static void probes_around(int p, vec3s cell, int index[CORNERS], float weight[CO
 }
 
 struct response_job {
-    const struct mrt_clutter_transfer_input *input;
+    const struct mrt_clutter_rays *input;
     const struct mrt_clutter_transfer *transfer;
     const struct matrix_f32 *probes;
     const float *kept;
@@ -250,16 +250,16 @@ static void respond(void *user, size_t i)
 }
 
 bool mrt_clutter_transfer_response(const struct mrt_clutter_transfer *transfer, struct host *host,
-                                   const struct mrt_clutter_transfer_input *input, int face,
-                                   const struct matrix_f32 *probes, int p, struct matrix_f32 *out)
+                                   const struct mrt_clutter_rays *rays, int face,
+                                   const struct matrix_f32 *probes, struct matrix_f32 *out)
 {
     const struct response_job job = {
-        .input = input,
+        .input = rays,
         .transfer = transfer,
         .probes = probes,
         .kept = transfer->kept[face],
-        .p = p,
-        .world_from_cell = mrt_block_rotation(&input->map->blocks[transfer->block]),
+        .p = rays->probes,
+        .world_from_cell = mrt_block_rotation(&rays->map->blocks[transfer->block]),
         .out = out,
     };
     if (!matrix_f32_init(host, out, transfer->texel_count * VALUES, probes->columns)) return false;

@@ -7,13 +7,7 @@
 // share of its rays to the opening that no clutter blocks.
 #pragma once
 
-#include "core/linalg.h"
-#include "trace/trace.h"
-
-#include "techniques/mrt/dictionary/rays.h"
-#include "techniques/mrt/clutter/clutter.h"
-
-#include <stdatomic.h>
+#include "techniques/mrt/clutter/delta.h"
 
 struct mrt_clutter_transfer {
     struct host *host;
@@ -26,24 +20,13 @@ struct mrt_clutter_transfer {
     bool *inside;            // of each texel: it is inside another object
 };
 
-struct mrt_clutter_transfer_input {
-    const struct mrt_block_map *map;
-    const struct matrix_f32 *l_imp; // of the block, in its frame
-    int resolution;                 // of walls
-    const struct mrt_clutter *clutter;
-    const struct trace_scene *objects;
-    int rays;                // of a texel, a power of two
-    const atomic_bool *stop; // as of mrt_delta_input
-};
-
-// The same bits for any number of threads. A block without faces has no texels.
-// mrt_clutter_transfer_finish accepts zero.
+// A block without faces has no texels. mrt_clutter_transfer_finish accepts zero.
 bool mrt_clutter_transfer_init(struct mrt_clutter_transfer *out, struct host *host,
-                               const struct mrt_clutter_transfer_input *input, int block);
+                               const struct mrt_clutter_rays *rays, int block);
 void mrt_clutter_transfer_finish(struct mrt_clutter_transfer *transfer);
 
 // Light of an opening at the texels, texels · 4 × k_r, from that of its probes: p³ · 9 × k_r in
 // the frame of the cell.
 bool mrt_clutter_transfer_response(const struct mrt_clutter_transfer *transfer, struct host *host,
-                                   const struct mrt_clutter_transfer_input *input, int face,
-                                   const struct matrix_f32 *probes, int p, struct matrix_f32 *out);
+                                   const struct mrt_clutter_rays *rays, int face,
+                                   const struct matrix_f32 *probes, struct matrix_f32 *out);

@@ -12,7 +12,7 @@
 #include <string.h>
 
 struct job {
-    const struct mrt_delta_input *input;
+    const struct mrt_clutter_cell *cell;
     struct mrt_delta *out;
     struct mrt_rays rays;
     enum mrt_measure measure;
@@ -30,7 +30,7 @@ static void subtract_wall(const struct job *job, size_t row, const float *weight
 {
     const struct matrix_f32 *b = &job->out->b;
     for (int q = 0; q < job->rays.values; q++)
-        mrt_add_radiosity(wall, -weight[q], job->input->l_imp,
+        mrt_add_radiosity(wall, -weight[q], job->cell->rays->l_imp[job->cell->index],
                           b->at + (row + (size_t)q) * b->stride);
 }
 
@@ -55,9 +55,9 @@ static void follow(const struct job *job, size_t i, struct mrt_point point, int 
     const vec3s way = glms_mat3_mulv(point.frame, job->rays.direction[ray]);
     struct mrt_hit wall;
     struct trace_hit hit;
-    mrt_shape_trace(&job->input->shape, point.position, way, &wall);
+    mrt_shape_trace(&job->cell->shape, point.position, way, &wall);
     const vec3s end = glms_vec3_muladds(way, wall.distance, point.position);
-    const bool blocked = mrt_delta_blocked(job->input, point.position, end, &hit);
+    const bool blocked = mrt_delta_blocked(job->cell, point.position, end, &hit);
     if (wall.opening >= 0) {
         passing->all[wall.opening] += weight[0];
         if (!blocked) passing->kept[wall.opening] += weight[0];
@@ -67,17 +67,17 @@ static void follow(const struct job *job, size_t i, struct mrt_point point, int 
     count->backs += !hit.front;
     job->touched[i] = true;
     if (wall.opening < 0) subtract_wall(job, row, weight, &wall);
-    add_face(job, row, weight, mrt_face_of_hit(job->input->clutter, job->input->index, &hit));
+    add_face(job, row, weight, mrt_face_of_hit(job->cell->rays->clutter, job->cell->index, &hit));
 }
 
 static void trace_point(void *user, size_t i)
 {
     const struct job *job = user;
     const struct mrt_point point =
-        mrt_gather_point(&job->input->shape, job->input->probes, job->measure, (int)i);
+        mrt_gather_point(&job->cell->shape, job->cell->rays->probes, job->measure, (int)i);
     struct passing passing = { 0 };
     struct blocked count = { 0 };
-    if (mrt_is_stopped(job->input->stop)) return;
+    if (mrt_is_stopped(job->cell->rays->stop)) return;
     for (int r = 0; r < job->rays.count; r++) follow(job, i, point, r, &passing, &count);
     job->out->inside[i] = is_inside(count.backs, job->rays.count);
     job->out->closed[i] = count.rays == job->rays.count;
@@ -87,22 +87,18 @@ static void trace_point(void *user, size_t i)
                                                      : 1.0f;
 }
 
-static size_t points_of(const struct mrt_delta_input *input, enum mrt_measure measure)
-{
-    return (size_t)(measure == MRT_PROBE ? mrt_probes_of_block(input->probes)
-                                         : mrt_shape_texels(&input->shape));
-}
-
-static bool trace_measure(struct mrt_delta_block *out, const struct mrt_delta_input *input,
+static bool trace_measure(struct mrt_delta_block *out, const struct mrt_clutter_cell *cell,
                           enum mrt_measure measure)
 {
-    const size_t points = points_of(input, measure);
+    const struct mrt_clutter_rays *rays = cell->rays;
+    const size_t points = (size_t)(measure == MRT_PROBE ? mrt_probes_of_block(rays->probes)
+                                                        : mrt_shape_texels(&cell->shape));
     struct host *host = out->host;
     struct mrt_delta *delta = &out->of[measure];
     struct job job = {
-        .input = input, .out = delta, .measure = measure, .first_face = out->first_face
+        .cell = cell, .out = delta, .measure = measure, .first_face = out->first_face
     };
-    bool ok = mrt_rays_init(host, measure, input->rays, &job.rays);
+    bool ok = mrt_rays_init(host, measure, rays->rays, &job.rays);
     const size_t rows = ok ? points * (size_t)job.rays.values : 0;
     job.touched = host_alloc(host, points, sizeof *job.touched);
     delta->inside = host_alloc(host, points, sizeof *delta->inside);
@@ -112,10 +108,10 @@ static bool trace_measure(struct mrt_delta_block *out, const struct mrt_delta_in
         ok = ok && delta->kept[f];
     }
     ok = ok && job.touched && delta->inside && delta->closed &&
-         matrix_f32_init(host, &delta->b, rows, input->l_imp->columns) &&
+         matrix_f32_init(host, &delta->b, rows, rays->l_imp[cell->index]->columns) &&
          matrix_f32_init(host, &delta->c, rows, (size_t)out->face_count);
     if (ok) parallel_for(points, 4, trace_point, &job);
-    ok = ok && !mrt_is_stopped(input->stop);
+    ok = ok && !mrt_is_stopped(rays->stop);
     for (size_t i = 0; ok && i < points; i++) out->touched = out->touched || job.touched[i];
     host_free(host, job.touched);
     mrt_rays_finish(host, &job.rays);
@@ -133,23 +129,24 @@ int mrt_faces_of_block(const struct mrt_clutter *clutter, int block, int *first)
     return count;
 }
 
-static bool find_sight(struct mrt_delta_block *out, const struct mrt_delta_input *input)
+static bool find_sight(struct mrt_delta_block *out, const struct mrt_clutter_cell *cell)
 {
-    const size_t edge = (size_t)mrt_sight_edge(input->probes);
+    const size_t edge = (size_t)mrt_sight_edge(cell->rays->probes);
     out->sight = host_alloc(out->host, edge * edge * edge, sizeof *out->sight);
-    if (out->sight) mrt_probe_sight(input, out->sight);
-    return out->sight && !mrt_is_stopped(input->stop);
+    if (out->sight) mrt_probe_sight(cell, out->sight);
+    return out->sight && !mrt_is_stopped(cell->rays->stop);
 }
 
 bool mrt_delta_block_init(struct mrt_delta_block *out, struct host *host,
-                          const struct mrt_delta_input *input)
+                          const struct mrt_clutter_rays *rays, int block)
 {
+    const struct mrt_clutter_cell cell = mrt_clutter_cell_of(rays, block);
     *out = (struct mrt_delta_block){ .host = host };
-    out->face_count = mrt_faces_of_block(input->clutter, input->index, &out->first_face);
-    if (box3_is_empty(input->bounds)) return true;
+    out->face_count = mrt_faces_of_block(rays->clutter, block, &out->first_face);
+    if (box3_is_empty(cell.bounds)) return true;
     const bool ok =
-        trace_measure(out, input, MRT_IRRADIANCE) && trace_measure(out, input, MRT_VECTOR) &&
-        (input->probes == 0 || (trace_measure(out, input, MRT_PROBE) && find_sight(out, input)));
+        trace_measure(out, &cell, MRT_IRRADIANCE) && trace_measure(out, &cell, MRT_VECTOR) &&
+        (rays->probes == 0 || (trace_measure(out, &cell, MRT_PROBE) && find_sight(out, &cell)));
     if (!ok) mrt_delta_block_finish(out);
     return ok;
 }

@@ -38,15 +38,16 @@ struct mrt_delta_block {
     uint32_t *sight; // probe_sight.h; NULL: without probes
 };
 
-struct mrt_delta_input {
-    const struct mrt_block *block;
-    int index; // of the block
-    struct mrt_shape shape;
-    const struct matrix_f32 *l_imp; // texels × k_b, in the frame of the block
+// Rays through a level that meet clutter: input of all of its operators, which are the same bits
+// for any number of threads.
+struct mrt_clutter_rays {
+    const struct mrt_block_map *map;
+    const struct matrix_f32 *const *l_imp; // of each block, in its frame: texels × k_b
+    int resolution;                        // of walls
     const struct mrt_clutter *clutter;
     const struct trace_scene *objects; // of the clutter alone
-    struct box3 bounds;                // of clutter in the block, world; empty: there is none
-    int rays, probes;                  // per point; along an edge, 0: none
+    int rays, probes;                  // per point, a power of two; along an edge, 0: none
+    int depth;                         // openings that a ray passes at most
     const atomic_bool *stop;           // NULL, or ends the work early, as a failure
 };
 
@@ -55,23 +56,33 @@ static inline bool mrt_is_stopped(const atomic_bool *stop)
     return stop && atomic_load_explicit(stop, memory_order_relaxed);
 }
 
-// The same bits for any number of threads. mrt_delta_block_finish accepts zero.
+// mrt_delta_block_finish accepts zero.
 bool mrt_delta_block_init(struct mrt_delta_block *out, struct host *host,
-                          const struct mrt_delta_input *input);
+                          const struct mrt_clutter_rays *rays, int block);
 void mrt_delta_block_finish(struct mrt_delta_block *delta);
 
 // Faces of a block; returns their count.
 int mrt_faces_of_block(const struct mrt_clutter *clutter, int block, int *first);
 
-// Rows of texels inside objects become the mean of their valid neighbours' on the same wall,
-// outward from these (section 5.4.2); rows of probes, of their neighbours'. `values` rows for each
-// point.
-void mrt_inpaint_texels(struct matrix_f32 *rows, int resolution, int walls, int values,
-                        const bool *inside);
-void mrt_inpaint_probes(struct matrix_f32 *rows, int p, const bool *inside);
+// Rows of points inside objects, on a grid of edge × edge × layers with `values` rows for each,
+// become the mean of their valid neighbours', outward from these (section 5.4.2).
+void mrt_inpaint(struct matrix_f32 *rows, int edge, int layers, int values, const bool *inside);
 
 // ---- delta_ray.c
 
+// The cell of a block, and the bounds of clutter in it: world; empty: there is none.
+struct mrt_clutter_cell {
+    const struct mrt_clutter_rays *rays;
+    const struct mrt_block *block;
+    int index;
+    struct mrt_shape shape;
+    struct box3 bounds;
+};
+struct mrt_clutter_cell mrt_clutter_cell_of(const struct mrt_clutter_rays *rays, int block);
 // Whether clutter is on the segment between two points of the cell.
-bool mrt_delta_blocked(const struct mrt_delta_input *input, vec3s from, vec3s to,
+bool mrt_delta_blocked(const struct mrt_clutter_cell *cell, vec3s from, vec3s to,
                        struct trace_hit *hit);
+// Bounds of a block, wider by more than the rounding of rays that run along its sides, and of a
+// triangle of clutter.
+struct box3 mrt_bounds_of_block(const struct mrt_block *block);
+struct box3 mrt_bounds_of_triangle(const struct chart_triangle *triangle);

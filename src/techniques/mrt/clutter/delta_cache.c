@@ -12,70 +12,19 @@ bool mrt_delta_cache_init(struct mrt_delta_cache *out, struct host *host, int bl
     return out->blocks && out->entries;
 }
 
-static void forget_delta(struct mrt_kept_block *kept)
-{
-    mrt_delta_block_finish(&kept->delta);
-    kept->has_delta = false;
-}
-
-static void forget_gathered(struct mrt_kept_block *kept)
-{
-    mrt_gather_faces_finish(&kept->gathered);
-    kept->has_gathered = false;
-}
-
-static void forget_transfer(struct mrt_kept_block *kept)
-{
-    mrt_clutter_transfer_finish(&kept->transfer);
-    kept->has_transfer = false;
-}
-
 void mrt_delta_cache_finish(struct mrt_delta_cache *cache)
 {
     if (!cache->host) return;
     for (int b = 0; cache->blocks && b < cache->count; b++) {
-        forget_delta(&cache->blocks[b]);
-        forget_gathered(&cache->blocks[b]);
-        forget_transfer(&cache->blocks[b]);
+        mrt_delta_block_finish(&cache->blocks[b].delta);
+        mrt_gather_faces_finish(&cache->blocks[b].gathered);
+        mrt_clutter_transfer_finish(&cache->blocks[b].transfer);
     }
     for (int i = 0; cache->entries && i < cache->count * CUBE_FACES; i++)
         mrt_delta_entry_finish(&cache->entries[i].entry);
     host_free(cache->host, cache->blocks);
     host_free(cache->host, cache->entries);
     *cache = (struct mrt_delta_cache){ 0 };
-}
-
-// ---- clutter of a block
-
-// By more than the rounding of rays that run along its sides.
-static struct box3 widened(struct box3 box)
-{
-    const float margin = 1e-3f * glms_vec3_max(box3_size(box));
-    const vec3s by = vec3_of(margin, margin, margin);
-    return (struct box3){ glms_vec3_sub(box.min, by), glms_vec3_add(box.max, by) };
-}
-
-static struct box3 bounds_of_block(const struct mrt_block *block)
-{
-    return widened(mrt_warp_bounds(block->corner));
-}
-
-static struct box3 bounds_of_triangle(const struct chart_triangle *triangle)
-{
-    struct box3 box = box3_empty();
-    for (int k = 0; k < 3; k++) box = box3_add_point(box, triangle->corner[k]);
-    return box;
-}
-
-struct box3 mrt_clutter_bounds_in(const struct mrt_clutter *clutter, const struct mrt_block *block)
-{
-    const struct box3 at = bounds_of_block(block);
-    struct box3 all = box3_empty();
-    for (uint32_t t = 0; t < clutter->charts.triangle_count; t++) {
-        const struct box3 box = bounds_of_triangle(&clutter->charts.triangles[t]);
-        if (box3_intersects(box, at)) all = box3_union(all, box);
-    }
-    return box3_is_empty(all) ? all : widened(all);
 }
 
 // ---- keys
@@ -108,7 +57,7 @@ static struct hash128 add_triangles(struct hash128 key, const struct mrt_clutter
 {
     for (uint32_t t = 0; t < clutter->charts.triangle_count; t++) {
         const struct chart_triangle *triangle = &clutter->charts.triangles[t];
-        if (!box3_intersects(bounds_of_triangle(triangle), box)) continue;
+        if (!box3_intersects(mrt_bounds_of_triangle(triangle), box)) continue;
         const int face = mrt_face_of_chart(clutter, block, triangle->chart);
         key = add_triangle(key, clutter, triangle, face < 0 ? -1 : face - first_face);
     }
@@ -168,98 +117,105 @@ static void find_reached(const struct mrt_block_map *map, int first, int depth, 
             }
 }
 
-static struct hash128 entry_key(const struct mrt_delta_entry_input *input, const int *openings)
+static struct hash128 entry_key(const struct mrt_clutter_rays *rays, const int *openings)
 {
     struct hash128 key = { 0 };
-    for (int b = 0; b < input->map->count; b++) {
+    for (int b = 0; b < rays->map->count; b++) {
         int first;
-        const int faces = mrt_faces_of_block(input->clutter, b, &first);
+        const int faces = mrt_faces_of_block(rays->clutter, b, &first);
         if (openings[b] < 0) continue;
         key = hash128_add(key, &faces, sizeof faces);
-        key = add_triangles(key, input->clutter, b, first, bounds_of_block(&input->map->blocks[b]));
+        key =
+            add_triangles(key, rays->clutter, b, first, mrt_bounds_of_block(&rays->map->blocks[b]));
     }
     return key;
 }
 
 // Rays of texels end in their block, but may begin beyond it.
-static struct hash128 transfer_key(const struct mrt_clutter_transfer_input *input, int block)
+static struct hash128 transfer_key(const struct mrt_clutter_rays *rays, int block)
 {
-    struct box3 box = bounds_of_block(&input->map->blocks[block]);
+    struct box3 box = mrt_bounds_of_block(&rays->map->blocks[block]);
     int first;
-    const int faces = mrt_faces_of_block(input->clutter, block, &first);
-    const struct hash128 key = add_faces((struct hash128){ 0 }, input->clutter, first, faces, &box);
-    return add_triangles(key, input->clutter, block, first, box);
+    const int faces = mrt_faces_of_block(rays->clutter, block, &first);
+    const struct hash128 key = add_faces((struct hash128){ 0 }, rays->clutter, first, faces, &box);
+    return add_triangles(key, rays->clutter, block, first, box);
+}
+
+static struct hash128 delta_key(const struct mrt_clutter_rays *rays, int block)
+{
+    int first;
+    const int faces = mrt_faces_of_block(rays->clutter, block, &first);
+    const struct hash128 key = hash128_add((struct hash128){ 0 }, &faces, sizeof faces);
+    return add_triangles(key, rays->clutter, block, first,
+                         mrt_bounds_of_block(&rays->map->blocks[block]));
 }
 
 // ---- operators
 
-const struct mrt_delta_block *mrt_kept_delta(struct mrt_delta_cache *cache,
-                                             const struct mrt_delta_input *input)
+// Else the key is that of what is made next.
+static bool is_kept(struct mrt_kept *kept, struct hash128 key)
 {
-    struct mrt_kept_block *kept = &cache->blocks[input->index];
-    int first;
-    const int faces = mrt_faces_of_block(input->clutter, input->index, &first);
-    const struct hash128 key = add_triangles((struct hash128){ 0 }, input->clutter, input->index,
-                                             first, bounds_of_block(input->block));
-    if (kept->has_delta && hash128_same(kept->delta_key, key) && kept->delta.face_count == faces) {
-        kept->delta.first_face = first;
-        return &kept->delta;
+    if (kept->valid && hash128_same(kept->key, key)) return true;
+    *kept = (struct mrt_kept){ .key = key };
+    return false;
+}
+
+const struct mrt_delta_block *mrt_kept_delta(struct mrt_delta_cache *cache,
+                                             const struct mrt_clutter_rays *rays, int block)
+{
+    struct mrt_kept_block *at = &cache->blocks[block];
+    if (!is_kept(&at->of_delta, delta_key(rays, block))) {
+        mrt_delta_block_finish(&at->delta);
+        if (!mrt_delta_block_init(&at->delta, cache->host, rays, block)) return NULL;
+        cache->traced += at->delta.touched;
+        at->of_delta.valid = true;
     }
-    forget_delta(kept);
-    if (!mrt_delta_block_init(&kept->delta, cache->host, input)) return NULL;
-    cache->traced += kept->delta.touched;
-    kept->delta_key = key;
-    kept->has_delta = true;
-    return &kept->delta;
+    mrt_faces_of_block(rays->clutter, block, &at->delta.first_face);
+    return &at->delta;
 }
 
 const struct mrt_gather_faces *mrt_kept_gather(struct mrt_delta_cache *cache,
-                                               const struct mrt_gather_input *input, int block)
+                                               const struct mrt_clutter_rays *rays, int block)
 {
-    struct mrt_kept_block *kept = &cache->blocks[block];
-    const struct hash128 key = gather_key(input->clutter, block);
-    if (kept->has_gathered && hash128_same(kept->gathered_key, key)) return &kept->gathered;
-    forget_gathered(kept);
-    if (!mrt_gather_faces_init(&kept->gathered, cache->host, input, block)) return NULL;
-    kept->gathered_key = key;
-    kept->has_gathered = true;
-    return &kept->gathered;
+    struct mrt_kept_block *at = &cache->blocks[block];
+    if (!is_kept(&at->of_gathered, gather_key(rays->clutter, block))) {
+        mrt_gather_faces_finish(&at->gathered);
+        if (!mrt_gather_faces_init(&at->gathered, cache->host, rays, block)) return NULL;
+        at->of_gathered.valid = true;
+    }
+    return &at->gathered;
 }
 
 const struct mrt_clutter_transfer *mrt_kept_transfer(struct mrt_delta_cache *cache,
-                                                     const struct mrt_clutter_transfer_input *input,
-                                                     int block)
+                                                     const struct mrt_clutter_rays *rays, int block)
 {
-    struct mrt_kept_block *kept = &cache->blocks[block];
-    const struct hash128 key = transfer_key(input, block);
+    struct mrt_kept_block *at = &cache->blocks[block];
     int first;
-    const int faces = mrt_faces_of_block(input->clutter, block, &first);
-    if (kept->has_transfer && hash128_same(kept->transfer_key, key)) {
-        kept->transfer.first_texel = faces > 0 ? input->clutter->faces[first].first_texel : 0;
-        return &kept->transfer;
+    if (!is_kept(&at->of_transfer, transfer_key(rays, block))) {
+        mrt_clutter_transfer_finish(&at->transfer);
+        if (!mrt_clutter_transfer_init(&at->transfer, cache->host, rays, block)) return NULL;
+        at->of_transfer.valid = true;
     }
-    forget_transfer(kept);
-    if (!mrt_clutter_transfer_init(&kept->transfer, cache->host, input, block)) return NULL;
-    kept->transfer_key = key;
-    kept->has_transfer = true;
-    return &kept->transfer;
+    if (mrt_faces_of_block(rays->clutter, block, &first) > 0)
+        at->transfer.first_texel = rays->clutter->faces[first].first_texel;
+    return &at->transfer;
 }
 
 const struct mrt_delta_entry *mrt_kept_entry(struct mrt_delta_cache *cache,
-                                             const struct mrt_delta_entry_input *input)
+                                             const struct mrt_clutter_rays *rays,
+                                             const struct mrt_entered_opening *opening)
 {
-    struct mrt_kept_entry *kept = &cache->entries[input->block * CUBE_FACES + input->face];
+    const int beyond = rays->map->blocks[opening->block].neighbor[opening->face].block;
+    struct mrt_kept_entry *at = &cache->entries[opening->block * CUBE_FACES + opening->face];
     int *openings = host_alloc(cache->host, (size_t)cache->count, sizeof *openings);
     if (!openings) return NULL;
-    find_reached(input->map, input->map->blocks[input->block].neighbor[input->face].block,
-                 input->depth, openings);
-    const struct hash128 key = entry_key(input, openings);
+    find_reached(rays->map, beyond, rays->depth, openings);
+    const struct hash128 key = entry_key(rays, openings);
     host_free(cache->host, openings);
-    if (kept->valid && hash128_same(kept->key, key)) return &kept->entry;
-    kept->valid = false;
-    mrt_delta_entry_finish(&kept->entry);
-    if (!mrt_delta_entry_init(&kept->entry, cache->host, input)) return NULL;
-    kept->key = key;
-    kept->valid = true;
-    return &kept->entry;
+    if (!is_kept(&at->kept, key)) {
+        mrt_delta_entry_finish(&at->entry);
+        if (!mrt_delta_entry_init(&at->entry, cache->host, rays, opening)) return NULL;
+        at->kept.valid = true;
+    }
+    return &at->entry;
 }

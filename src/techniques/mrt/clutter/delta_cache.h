@@ -8,17 +8,20 @@
 #include "techniques/mrt/clutter/delta_entry.h"
 #include "techniques/mrt/clutter/delta_gather.h"
 
+struct mrt_kept {
+    bool valid;
+    struct hash128 key;
+};
+
 struct mrt_kept_block {
-    bool has_delta, has_gathered, has_transfer;
-    struct hash128 delta_key, gathered_key, transfer_key;
+    struct mrt_kept of_delta, of_gathered, of_transfer;
     struct mrt_delta_block delta;
     struct mrt_gather_faces gathered;
     struct mrt_clutter_transfer transfer;
 };
 
 struct mrt_kept_entry {
-    bool valid;
-    struct hash128 key;
+    struct mrt_kept kept;
     struct mrt_delta_entry entry;
 };
 
@@ -34,19 +37,14 @@ struct mrt_delta_cache {
 bool mrt_delta_cache_init(struct mrt_delta_cache *out, struct host *host, int blocks);
 void mrt_delta_cache_finish(struct mrt_delta_cache *cache);
 
-// The operators of a block, kept or new; NULL: failed or stopped. Faces are numbered as the clutter
-// of the input does.
+// The operators of a block or an opening, kept or new; NULL: failed or stopped. Faces are numbered
+// as the clutter of the rays does.
 const struct mrt_delta_block *mrt_kept_delta(struct mrt_delta_cache *cache,
-                                             const struct mrt_delta_input *input);
+                                             const struct mrt_clutter_rays *rays, int block);
 const struct mrt_gather_faces *mrt_kept_gather(struct mrt_delta_cache *cache,
-                                               const struct mrt_gather_input *input, int block);
-
-const struct mrt_clutter_transfer *mrt_kept_transfer(struct mrt_delta_cache *cache,
-                                                     const struct mrt_clutter_transfer_input *input,
-                                                     int block);
-
+                                               const struct mrt_clutter_rays *rays, int block);
+const struct mrt_clutter_transfer *
+mrt_kept_transfer(struct mrt_delta_cache *cache, const struct mrt_clutter_rays *rays, int block);
 const struct mrt_delta_entry *mrt_kept_entry(struct mrt_delta_cache *cache,
-                                             const struct mrt_delta_entry_input *input);
-
-// Bounds of the triangles of clutter that reach into a block.
-struct box3 mrt_clutter_bounds_in(const struct mrt_clutter *clutter, const struct mrt_block *block);
+                                             const struct mrt_clutter_rays *rays,
+                                             const struct mrt_entered_opening *opening);

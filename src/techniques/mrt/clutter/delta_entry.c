@@ -7,11 +7,15 @@
 
 #include "techniques/mrt/dictionary/gather.h"
 
+// Rays of a texel. All texels of a block make a few coefficients.
+enum { ENTRY_RAYS = 256 };
+
 // Segments start and end so much of their way from walls.
 static const float OFFSET = 1e-3f;
 
 struct job {
-    const struct mrt_delta_entry_input *input;
+    const struct mrt_clutter_rays *input;
+    const struct mrt_entered_opening *opening;
     struct mrt_rays rays;
     struct mrt_shape closed, open; // the entered cube, without and with the opening
     size_t k_b, faces;
@@ -20,7 +24,7 @@ struct job {
     bool *hidden;        // [points][sources]
 };
 
-static int source_of(const struct mrt_delta_entry_input *input, int block)
+static int source_of(const struct mrt_entered_opening *input, int block)
 {
     for (int i = 0; i < input->source_count; i++)
         if (input->sources[i] == block) return i;
@@ -33,7 +37,7 @@ static void add_wall(const struct job *job, size_t point, int source, int block,
     float *to = job->b.at + point * job->b.stride + (size_t)source * job->k_b;
     const float weight = 1.0f / (float)job->rays.count;
     if (hidden) {
-        job->hidden[point * (size_t)job->input->source_count + (size_t)source] = true;
+        job->hidden[point * (size_t)job->opening->source_count + (size_t)source] = true;
         return;
     }
     mrt_add_radiosity(wall, weight, job->input->l_imp[block], to);
@@ -62,7 +66,7 @@ static void follow(const struct job *job, size_t point, vec3s from, vec3s way, i
         struct mrt_hit wall;
         if (block < 0 || !mrt_cell_ray_enter(map, block, from, way, &ray)) return;
         const vec3s end = mrt_cell_ray_end(map, job->input->resolution, &ray, &wall);
-        const int source = source_of(job->input, block);
+        const int source = source_of(job->opening, block);
         hidden = hidden || meets_face(job, block, from, end, point);
         if (wall.opening < 0) {
             if (source >= 0) add_wall(job, point, source, block, hidden, &wall);
@@ -76,9 +80,9 @@ static void follow(const struct job *job, size_t point, vec3s from, vec3s way, i
 static void trace_point(void *user, size_t i)
 {
     const struct job *job = user;
-    const struct mrt_block *block = &job->input->map->blocks[job->input->block];
+    const struct mrt_block *block = &job->input->map->blocks[job->opening->block];
     const size_t in_face = (size_t)(job->closed.resolution * job->closed.resolution);
-    if (i / in_face == (size_t)job->input->face || mrt_is_stopped(job->input->stop)) return;
+    if (i / in_face == (size_t)job->opening->face || mrt_is_stopped(job->input->stop)) return;
     const struct mrt_point point = mrt_shape_texel(&job->closed, (int)i);
     for (int r = 0; r < job->rays.count; r++) {
         const vec3s way = glms_mat3_mulv(point.frame, job->rays.direction[r]);
@@ -88,43 +92,45 @@ static void trace_point(void *user, size_t i)
         const vec3s at = glms_vec3_muladds(way, hit.distance, point.position);
         const vec3s world = glms_mat3_mulv(mrt_warp_jacobian(block->corner, at), way);
         follow(job, i, mrt_warp_point(block->corner, at), vec3_unit(world),
-               block->neighbor[job->input->face].block);
+               block->neighbor[job->opening->face].block);
     }
 }
 
 static bool project(struct host *host, const struct job *job, struct mrt_delta_source *out,
                     int source)
 {
-    const struct mrt_delta_entry_input *input = job->input;
+    const struct mrt_entered_opening *opening = job->opening;
     int first;
-    const int faces = mrt_faces_of_block(input->clutter, out->block, &first);
+    const int faces = mrt_faces_of_block(job->input->clutter, out->block, &first);
     const struct matrix_f32 b =
         matrix_f32_block(&job->b, 0, (size_t)source * job->k_b, job->b.rows, job->k_b);
     for (size_t p = 0; p < job->b.rows; p++)
-        out->hidden = out->hidden || job->hidden[p * (size_t)input->source_count + (size_t)source];
-    if (!matrix_f32_init(host, &out->b, input->u_r->columns, job->k_b) ||
-        !matrix_f32_multiply(host, 1.0f, input->u_r, TRANSPOSED, &b, NOT_TRANSPOSED, 0.0f, &out->b))
+        out->hidden =
+            out->hidden || job->hidden[p * (size_t)opening->source_count + (size_t)source];
+    if (!matrix_f32_init(host, &out->b, opening->u_r->columns, job->k_b) ||
+        !matrix_f32_multiply(host, 1.0f, opening->u_r, TRANSPOSED, &b, NOT_TRANSPOSED, 0.0f,
+                             &out->b))
         return false;
     if (faces == 0) return true;
     const struct matrix_f32 c =
         matrix_f32_block(&job->c, 0, (size_t)first, job->c.rows, (size_t)faces);
-    return matrix_f32_init(host, &out->c, input->u_r->columns, (size_t)faces) &&
-           matrix_f32_multiply(host, 1.0f, input->u_r, TRANSPOSED, &c, NOT_TRANSPOSED, 0.0f,
+    return matrix_f32_init(host, &out->c, opening->u_r->columns, (size_t)faces) &&
+           matrix_f32_multiply(host, 1.0f, opening->u_r, TRANSPOSED, &c, NOT_TRANSPOSED, 0.0f,
                                &out->c);
 }
 
 static bool trace_entry(struct mrt_delta_entry *out, struct host *host, struct job *job)
 {
-    const struct mrt_delta_entry_input *input = job->input;
-    const size_t points = input->u_r->rows, sources = (size_t)input->source_count;
+    const struct mrt_entered_opening *opening = job->opening;
+    const size_t points = opening->u_r->rows, sources = (size_t)opening->source_count;
     job->hidden = host_alloc(host, points * sources, sizeof *job->hidden);
     bool ok = job->hidden && matrix_f32_init(host, &job->b, points, sources * job->k_b) &&
               matrix_f32_init(host, &job->c, points, job->faces) &&
-              mrt_rays_init(host, MRT_IRRADIANCE, input->rays, &job->rays);
+              mrt_rays_init(host, MRT_IRRADIANCE, ENTRY_RAYS, &job->rays);
     if (ok) parallel_for(points, 4, trace_point, job);
-    ok = ok && !mrt_is_stopped(input->stop);
-    for (int i = 0; ok && i < input->source_count; i++) {
-        out->sources[i].block = input->sources[i];
+    ok = ok && !mrt_is_stopped(job->input->stop);
+    for (int i = 0; ok && i < opening->source_count; i++) {
+        out->sources[i].block = opening->sources[i];
         ok = project(host, job, &out->sources[i], i);
     }
     mrt_rays_finish(host, &job->rays);
@@ -135,15 +141,17 @@ static bool trace_entry(struct mrt_delta_entry *out, struct host *host, struct j
 }
 
 bool mrt_delta_entry_init(struct mrt_delta_entry *out, struct host *host,
-                          const struct mrt_delta_entry_input *input)
+                          const struct mrt_clutter_rays *rays,
+                          const struct mrt_entered_opening *opening)
 {
-    struct job job = { .input = input,
-                       .closed = mrt_cube(input->resolution, 0),
-                       .open = mrt_cube(input->resolution, 1u << input->face),
-                       .k_b = input->l_imp[input->block]->columns,
-                       .faces = (size_t)input->clutter->face_count };
-    *out = (struct mrt_delta_entry){ .host = host, .count = input->source_count };
-    out->sources = host_alloc(host, (size_t)input->source_count, sizeof *out->sources);
+    struct job job = { .input = rays,
+                       .opening = opening,
+                       .closed = mrt_cube(rays->resolution, 0),
+                       .open = mrt_cube(rays->resolution, 1u << opening->face),
+                       .k_b = rays->l_imp[opening->block]->columns,
+                       .faces = (size_t)rays->clutter->face_count };
+    *out = (struct mrt_delta_entry){ .host = host, .count = opening->source_count };
+    out->sources = host_alloc(host, (size_t)opening->source_count, sizeof *out->sources);
     const bool ok = out->sources && trace_entry(out, host, &job);
     if (!ok) mrt_delta_entry_finish(out);
     return ok;

@@ -20,25 +20,20 @@ struct mrt_delta_source {
 
 struct mrt_delta_entry {
     struct host *host;
-    struct mrt_delta_source *sources; // as input->sources
+    struct mrt_delta_source *sources; // as of the opening
     int count;
 };
 
-struct mrt_delta_entry_input {
-    const struct mrt_block_map *map;
-    const struct matrix_f32 *const *l_imp; // of each block, in its frame
-    int resolution;                        // of walls
-    const struct mrt_clutter *clutter;
-    const struct trace_scene *objects;
-    int rays, depth;              // of a texel, a power of two; openings that a ray passes at most
-    int block, face;              // of the opening
-    const struct matrix_f32 *u_r; // of its response
-    const int *sources;           // blocks that send light to it
+// The opening of a block that light enters by, its response, and the blocks that send it.
+struct mrt_entered_opening {
+    int block, face;
+    const struct matrix_f32 *u_r;
+    const int *sources;
     int source_count;
-    const atomic_bool *stop; // as of mrt_delta_input
 };
 
-// The same bits for any number of threads. mrt_delta_entry_finish accepts zero.
+// mrt_delta_entry_finish accepts zero.
 bool mrt_delta_entry_init(struct mrt_delta_entry *out, struct host *host,
-                          const struct mrt_delta_entry_input *input);
+                          const struct mrt_clutter_rays *rays,
+                          const struct mrt_entered_opening *opening);
 void mrt_delta_entry_finish(struct mrt_delta_entry *entry);

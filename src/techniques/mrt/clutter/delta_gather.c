@@ -12,7 +12,7 @@
 #include <math.h>
 
 struct job {
-    const struct mrt_gather_input *input;
+    const struct mrt_clutter_rays *input;
     struct mrt_gather_faces *out;
     int block, first_face;
     float *of_b;   // [blocks][faces][k_b]
@@ -135,20 +135,20 @@ static bool keep_sources(struct mrt_gather_faces *out, const struct job *job)
 }
 
 bool mrt_gather_faces_init(struct mrt_gather_faces *out, struct host *host,
-                           const struct mrt_gather_input *input, int block)
+                           const struct mrt_clutter_rays *rays, int block)
 {
-    const size_t blocks = (size_t)input->map->count;
+    const size_t blocks = (size_t)rays->map->count;
     struct job job = {
-        .input = input, .out = out, .block = block, .k_b = input->l_imp[block]->columns
+        .input = rays, .out = out, .block = block, .k_b = rays->l_imp[block]->columns
     };
     *out = (struct mrt_gather_faces){ .host = host };
-    job.faces = (size_t)mrt_faces_of_block(input->clutter, block, &job.first_face);
+    job.faces = (size_t)mrt_faces_of_block(rays->clutter, block, &job.first_face);
     job.of_b = host_alloc(host, blocks * job.faces, job.k_b * sizeof *job.of_b);
     job.reached = host_alloc(host, blocks * job.faces, sizeof *job.reached);
     bool ok = job.of_b && job.reached &&
-              matrix_f32_init(host, &out->of_c, job.faces, (size_t)input->clutter->face_count);
+              matrix_f32_init(host, &out->of_c, job.faces, (size_t)rays->clutter->face_count);
     if (ok) parallel_for(job.faces, 1, trace_face, &job);
-    ok = ok && !mrt_is_stopped(input->stop) && keep_sources(out, &job);
+    ok = ok && !mrt_is_stopped(rays->stop) && keep_sources(out, &job);
     host_free(host, job.of_b);
     host_free(host, job.reached);
     if (!ok) mrt_gather_faces_finish(out);

@@ -17,18 +17,7 @@ struct mrt_gather_faces {
     struct matrix_f32 of_c; // faces × all faces
 };
 
-struct mrt_gather_input {
-    const struct mrt_block_map *map;
-    const struct matrix_f32 *const *l_imp; // of each block, in its frame
-    int resolution;                        // of walls
-    const struct mrt_clutter *clutter;
-    const struct trace_scene *objects;
-    int rays;                // of a face, at least
-    int depth;               // openings that a ray passes at most
-    const atomic_bool *stop; // as of mrt_delta_input
-};
-
-// The same bits for any number of threads. mrt_gather_faces_finish accepts zero.
+// mrt_gather_faces_finish accepts zero. A face has at least as many rays as a texel.
 bool mrt_gather_faces_init(struct mrt_gather_faces *out, struct host *host,
-                           const struct mrt_gather_input *input, int block);
+                           const struct mrt_clutter_rays *rays, int block);
 void mrt_gather_faces_finish(struct mrt_gather_faces *gather);

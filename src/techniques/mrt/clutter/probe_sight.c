@@ -12,7 +12,7 @@ enum { CORNERS = 8, POINTS, DIRECTIONS = 16, ALL_OPEN = 255 };
 static const float CORNER = 0.49f; // of a voxel's edge, from its middle
 
 struct job {
-    const struct mrt_delta_input *input;
+    const struct mrt_clutter_cell *cell;
     uint32_t *voxels;
     int edge;
 };
@@ -24,13 +24,13 @@ struct voxel {
 
 // In the cell. Probes beyond an opening are sought up to it; those beyond a wall are the nearest of
 // the block (bricks.comp).
-static float coordinate_of(const struct mrt_delta_input *input, int axis, int texel)
+static float coordinate_of(const struct mrt_clutter_cell *cell, int axis, int texel)
 {
-    const float p = (float)input->probes;
+    const int probes = cell->rays->probes;
+    const float p = (float)probes;
     const int side = texel > 0, face = 2 * axis + side;
     float most = 0.5f - 0.5f / p;
-    if (texel == 0 || texel > input->probes)
-        most = input->block->neighbor[face].block >= 0 ? 0.5f : most;
+    if (texel == 0 || texel > probes) most = cell->block->neighbor[face].block >= 0 ? 0.5f : most;
     return fminf(fmaxf(((float)texel - 0.5f) / p - 0.5f, -most), most);
 }
 
@@ -41,7 +41,7 @@ static struct voxel voxel_of(const struct job *job, size_t i)
     for (int a = 0; a < 3; a++) {
         const float unit = ((float)at[a] + 0.5f) / (float)job->edge;
         out.middle.raw[a] = unit - 0.5f;
-        out.texel[a] = (int)floorf(unit * (float)job->input->probes + 0.5f);
+        out.texel[a] = (int)floorf(unit * (float)job->cell->rays->probes + 0.5f);
     }
     return out;
 }
@@ -65,8 +65,8 @@ static uint32_t visible_from(const struct job *job, const struct voxel *voxel, v
         struct trace_hit hit;
         vec3s to;
         for (int a = 0; a < 3; a++)
-            to.raw[a] = coordinate_of(job->input, a, voxel->texel[a] + (c >> a & 1));
-        if (!mrt_delta_blocked(job->input, from, to, &hit))
+            to.raw[a] = coordinate_of(job->cell, a, voxel->texel[a] + (c >> a & 1));
+        if (!mrt_delta_blocked(job->cell, from, to, &hit))
             visible |= 1u << c;
         else
             backs += !hit.front;
@@ -82,9 +82,9 @@ static uint32_t open_from(const struct job *job, vec3s from)
         const vec3s way = sample_sphere(sobol_2d(i, 1));
         struct mrt_hit wall;
         struct trace_hit hit;
-        mrt_shape_trace(&job->input->shape, from, way, &wall);
+        mrt_shape_trace(&job->cell->shape, from, way, &wall);
         open +=
-            !mrt_delta_blocked(job->input, from, glms_vec3_muladds(way, wall.distance, from), &hit);
+            !mrt_delta_blocked(job->cell, from, glms_vec3_muladds(way, wall.distance, from), &hit);
     }
     return ALL_OPEN * open / DIRECTIONS;
 }
@@ -97,7 +97,7 @@ static void find_visibility(void *user, size_t i)
     uint32_t visible = MRT_VOXEL_PROBES, open = ALL_OPEN;
     bool solid[POINTS];
     int solids = 0;
-    if (mrt_is_stopped(job->input->stop)) return;
+    if (mrt_is_stopped(job->cell->rays->stop)) return;
     for (int k = 0; k < POINTS; k++) {
         const uint32_t of = visible_from(job, &voxel, point_of(job, &voxel, k), &solid[k]);
         solids += solid[k];
@@ -112,9 +112,9 @@ static void find_visibility(void *user, size_t i)
     if (solids > 0) job->voxels[i] |= MRT_VOXEL_SOLID;
 }
 
-void mrt_probe_sight(const struct mrt_delta_input *input, uint32_t *voxels)
+void mrt_probe_sight(const struct mrt_clutter_cell *cell, uint32_t *voxels)
 {
-    struct job job = { input, voxels, mrt_sight_edge(input->probes) };
+    struct job job = { cell, voxels, mrt_sight_edge(cell->rays->probes) };
     const size_t n = (size_t)job.edge;
     parallel_for(n * n * n, 64, find_visibility, &job);
 }

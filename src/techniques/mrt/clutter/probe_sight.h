@@ -24,4 +24,4 @@ static inline int mrt_sight_edge(int p)
 }
 
 // mrt_sight_edge³ voxels, x fastest. The same bits for any number of threads.
-void mrt_probe_sight(const struct mrt_delta_input *input, uint32_t *voxels);
+void mrt_probe_sight(const struct mrt_clutter_cell *cell, uint32_t *voxels);

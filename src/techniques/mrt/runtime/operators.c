@@ -64,7 +64,7 @@ static float largest_in(const float *at, size_t count, size_t stride)
     return most;
 }
 
-static float balance(const struct mrt_basis_input *basis, size_t mode)
+static float balance(const struct mrt_block_basis *basis, size_t mode)
 {
     float t = largest_in(basis->t_db.at + mode * basis->t_db.stride, basis->t_db.columns, 1);
     float u = largest_in(basis->u[0].at + mode, basis->u[0].rows, basis->u[0].stride);
@@ -72,16 +72,15 @@ static float balance(const struct mrt_basis_input *basis, size_t mode)
     return exp2f(roundf(0.5f * (log2f(u) - log2f(t))));
 }
 
-static bool scales_init(struct mrt_scales *s, struct host *host,
-                        const struct mrt_runtime_input *input)
+static bool scales_init(struct mrt_scales *s, struct host *host, const struct mrt_operators *o)
 {
-    size_t count = (size_t)input->basis_count * (size_t)input->k_b;
-    *s = (struct mrt_scales){ .k_b = input->k_b };
+    const size_t k_b = (size_t)o->k_b, count = (size_t)o->basis_count * k_b;
+    *s = (struct mrt_scales){ .k_b = o->k_b };
     s->of_b = host_alloc(host, count, sizeof *s->of_b);
     s->inverse = host_alloc(host, count, sizeof *s->inverse);
     if (!s->of_b || !s->inverse) return false;
     for (size_t i = 0; i < count; i++) {
-        s->of_b[i] = balance(&input->bases[i / (size_t)input->k_b], i % (size_t)input->k_b);
+        s->of_b[i] = balance(&o->bases[i / k_b], i % k_b);
         s->inverse[i] = 1.0f / s->of_b[i];
     }
     return true;
@@ -95,22 +94,22 @@ static void scales_finish(struct mrt_scales *s, struct host *host)
 
 // ---- operators
 
-static size_t rows_of_bases(const struct mrt_runtime_input *input)
+static size_t rows_of_bases(const struct mrt_operators *o, enum mrt_measure measure)
 {
     size_t rows = 0;
-    for (int i = 0; i < input->basis_count; i++) rows += input->bases[i].u[0].rows;
+    for (int i = 0; i < o->basis_count; i++) rows += o->bases[i].u[measure].rows;
     return rows;
 }
 
-static bool upload_t_db(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+static bool upload_t_db(struct mrt_runtime *runtime, const struct mrt_operators *o,
                         const struct mrt_scales *scales)
 {
     struct words w;
-    if (!words_init(&w, runtime, rows_of_bases(input), input->k_b)) return false;
-    for (int i = 0; i < input->basis_count; i++) {
-        const struct matrix_f32 *t = &input->bases[i].t_db;
+    if (!words_init(&w, runtime, rows_of_bases(o, MRT_IRRADIANCE), o->k_b)) return false;
+    for (int i = 0; i < o->basis_count; i++) {
+        const struct matrix_f32 *t = &o->bases[i].t_db;
         for (size_t texel = 0; texel < t->columns; texel++)
-            pack_row(&w, t->at + texel, t->stride, scales->of_b + i * scales->k_b, input->k_b);
+            pack_row(&w, t->at + texel, t->stride, scales->of_b + i * scales->k_b, o->k_b);
     }
     return words_upload(&w, runtime, "t_db", &runtime->buffers.t_db);
 }
@@ -121,77 +120,74 @@ static void pack_matrix(struct words *w, const struct matrix_f32 *m, const float
         pack_row(w, m->at + row * m->stride, 1, factor, count);
 }
 
-static bool upload_u_b(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                       const struct mrt_scales *scales, enum mrt_measure measure, gpu_buffer *out)
+// U_b and U_r of a measure.
+static bool upload_light(struct mrt_runtime *runtime, const struct mrt_operators *o,
+                         const struct mrt_scales *scales, enum mrt_measure measure, gpu_buffer *u_b,
+                         gpu_buffer *u_r)
 {
-    static const char *const names[] = { "u_b", "u_b_vector", "u_b_probes" };
+    static const char *const names_b[] = { "u_b", "u_b_vector", "u_b_probes" };
+    static const char *const names_r[] = { "u_r", "u_r_vector", "u_r_probes" };
     struct words w;
     size_t rows = 0;
-    for (int i = 0; i < input->basis_count; i++) rows += input->bases[i].u[measure].rows;
-    if (!words_init(&w, runtime, rows, input->k_b)) return false;
-    for (int i = 0; i < input->basis_count; i++)
-        pack_matrix(&w, &input->bases[i].u[measure], scales->inverse + i * scales->k_b, input->k_b);
-    return words_upload(&w, runtime, names[measure], out);
+    if (!words_init(&w, runtime, rows_of_bases(o, measure), o->k_b)) return false;
+    for (int i = 0; i < o->basis_count; i++)
+        pack_matrix(&w, &o->bases[i].u[measure], scales->inverse + i * scales->k_b, o->k_b);
+    if (!words_upload(&w, runtime, names_b[measure], u_b)) return false;
+    for (int i = 0; i < o->response_count; i++) rows += o->responses[i].u[measure].rows;
+    if (!words_init(&w, runtime, rows, o->k_r)) return false;
+    for (int i = 0; i < o->response_count; i++)
+        pack_matrix(&w, &o->responses[i].u[measure], NULL, o->k_r);
+    return words_upload(&w, runtime, names_r[measure], u_r);
 }
 
-static bool upload_u_r(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                       enum mrt_measure measure, gpu_buffer *out)
+static void pack_zeros(struct words *w, size_t count)
 {
-    static const char *const names[] = { "u_r", "u_r_vector", "u_r_probes" };
-    struct words w;
-    size_t rows = 0;
-    for (int i = 0; i < input->response_count; i++) rows += input->responses[i].u[measure].rows;
-    if (!words_init(&w, runtime, rows, input->k_r)) return false;
-    for (int i = 0; i < input->response_count; i++)
-        pack_matrix(&w, &input->responses[i].u[measure], NULL, input->k_r);
-    return words_upload(&w, runtime, names[measure], out);
+    for (size_t i = 0; i < count; i++) pack(w, 0.0f);
 }
 
-// By column: [pair][k_b][k_r], with k_b padded too.
-static bool upload_t_br(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+// By column, with k_b padded too.
+static void pack_t_br(struct words *w, const struct matrix_f32 *of_b, const float *inverse)
+{
+    const size_t k_r = of_b->columns, quads = 4 * mrt_quads((int)k_r);
+    for (size_t m = 0; m < of_b->rows; m++) {
+        for (size_t k = 0; k < k_r; k++) pack(w, of_b->at[m * of_b->stride + k] * inverse[m]);
+        pack_zeros(w, quads - k_r);
+    }
+    pack_zeros(w, (4 * mrt_quads((int)of_b->rows) - of_b->rows) * quads);
+}
+
+// [pair][k_b][k_r]
+static bool upload_t_br(struct mrt_runtime *runtime, const struct mrt_operators *o,
                         const struct mrt_scales *scales)
 {
     struct words w;
-    const int columns = (int)(4 * mrt_quads(input->k_b));
-    const float zero = 0.0f;
-    if (!words_init(&w, runtime, (size_t)input->pair_count * (size_t)columns, input->k_r))
-        return false;
-    for (int i = 0; i < input->pair_count; i++) {
-        const struct mrt_pair_input *pair = &input->pairs[i];
-        const float *inverse = scales->inverse + input->basis_of_block[pair->source] * scales->k_b;
-        for (int m = 0; m < columns; m++) {
-            const bool kept = m < input->k_b;
-            for (int k = 0; k < (int)(4 * mrt_quads(input->k_r)); k++)
-                pack(&w, kept && k < input->k_r
-                             ? pair->t_br[m * input->t_br_stride + k] * inverse[m]
-                             : zero);
+    if (!words_init(&w, runtime, mrt_pair_count(o) * 4 * mrt_quads(o->k_b), o->k_r)) return false;
+    for (int i = 0; i < o->opening_count; i++)
+        for (int k = 0; k < o->openings[i].pair_count; k++) {
+            const struct mrt_pair *pair = &o->openings[i].pairs[k];
+            pack_t_br(&w, &pair->of_b,
+                      scales->inverse + o->basis_of_block[pair->source] * scales->k_b);
         }
-    }
     return words_upload(&w, runtime, "t_br", &runtime->buffers.t_br);
 }
 
 // ---- clutter
 
 // T_c→r and C_c, face after face of each opening.
-static bool upload_coupling(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+static bool upload_coupling(struct mrt_runtime *runtime, const struct mrt_operators *o)
 {
     struct words w;
     uint32_t count = 0;
-    for (int i = 0; i < input->opening_count; i++) count += mrt_senders(input, i, NULL);
-    struct mrt_sender *senders = host_alloc(runtime->host, count, sizeof *senders);
-    bool ok = senders && words_init(&w, runtime, count, input->k_r);
-    for (int i = 0; ok && i < input->opening_count; i++) {
-        const uint32_t of_opening = mrt_senders(input, i, senders);
-        for (uint32_t k = 0; k < of_opening; k++)
-            pack_row(&w, senders[k].of_c, 1, NULL, input->k_r);
-    }
+    struct mrt_sender *senders = mrt_all_senders(runtime->host, o, &count);
+    const bool ok = senders && words_init(&w, runtime, count, o->k_r);
+    for (uint32_t i = 0; ok && i < count; i++) pack_row(&w, senders[i].of_c, 1, NULL, o->k_r);
     host_free(runtime->host, senders);
     return ok && words_upload(&w, runtime, "clutter_coupling", &runtime->clutter.coupling);
 }
 
 // ---- the light map of clutter
 
-static size_t rows_of_map(const struct mrt_clutter_rows_input *rows)
+static size_t rows_of_map(const struct mrt_clutter_rows *rows)
 {
     return MRT_VECTOR_COEFFICIENTS * (size_t)MRT_LOCAL *
            mrt_clutter_map_tiles((size_t)rows->texel_count);
@@ -200,60 +196,64 @@ static size_t rows_of_map(const struct mrt_clutter_rows_input *rows)
 static void pack_padded(struct words *w, const struct matrix_f32 *m, size_t rows,
                         const float *factor, int count)
 {
-    const float zero = 0.0f;
     pack_matrix(w, m, factor, count);
-    for (size_t i = m->rows * 4 * mrt_quads(count); i < rows * 4 * mrt_quads(count); i++)
-        pack(w, zero);
+    pack_zeros(w, (rows - m->rows) * 4 * mrt_quads(count));
+}
+
+static bool upload_clutter_u_b(struct mrt_runtime *runtime, const struct mrt_operators *o,
+                               const struct mrt_scales *scales)
+{
+    struct words w;
+    size_t rows = 0;
+    for (int i = 0; i < o->row_count; i++) rows += rows_of_map(&o->rows[i]);
+    if (!words_init(&w, runtime, rows, o->k_b)) return false;
+    for (int i = 0; i < o->row_count; i++)
+        pack_padded(&w, &o->rows[i].u_b, rows_of_map(&o->rows[i]),
+                    scales->inverse + o->basis_of_block[o->rows[i].block] * scales->k_b, o->k_b);
+    return words_upload(&w, runtime, "clutter_u_b", &runtime->clutter.map.u_b);
+}
+
+static size_t rows_of_opening(const struct mrt_operators *o, const struct mrt_opening *opening)
+{
+    const struct mrt_clutter_rows *rows = mrt_rows_of(o, opening->block);
+    return rows ? rows_of_map(rows) : 0;
 }
 
 // T rows of a block and opening are those of its tiles.
-static bool upload_clutter_map(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                               const struct mrt_scales *scales)
+static bool upload_clutter_u_r(struct mrt_runtime *runtime, const struct mrt_operators *o)
 {
-    const struct mrt_clutter_atlas_input *atlas = &input->clutter->atlas;
-    struct mrt_runtime_clutter_map *to = &runtime->clutter.map;
-    struct words b, r;
-    size_t rows_b = 0, rows_r = 0;
-    for (int i = 0; i < atlas->count; i++) {
-        rows_b += rows_of_map(&atlas->rows[i]);
-        for (int k = 0; k <= CUBE_FACES && atlas->rows[i].u_r[k].rows > 0; k++)
-            rows_r += rows_of_map(&atlas->rows[i]);
-    }
-    if (!words_init(&b, runtime, rows_b, input->k_b)) return false;
-    if (!words_init(&r, runtime, rows_r, input->k_r)) {
-        host_free(b.host, b.at);
-        return false;
-    }
-    for (int i = 0; i < atlas->count; i++) {
-        const struct mrt_clutter_rows_input *rows = &atlas->rows[i];
-        const size_t count = rows_of_map(rows);
-        pack_padded(&b, &rows->u_b, count,
-                    scales->inverse + input->basis_of_block[rows->block] * scales->k_b, input->k_b);
-        for (int k = 0; k <= CUBE_FACES && rows->u_r[k].rows > 0; k++)
-            pack_padded(&r, &rows->u_r[k], count, NULL, input->k_r);
-    }
-    const bool ok = words_upload(&b, runtime, "clutter_u_b", &to->u_b);
-    return words_upload(&r, runtime, "clutter_u_r", &to->u_r) && ok;
+    struct words w;
+    size_t rows = 0;
+    for (int i = 0; i < o->opening_count; i++) rows += rows_of_opening(o, &o->openings[i]);
+    if (!words_init(&w, runtime, rows, o->k_r)) return false;
+    for (int i = 0; i < o->opening_count; i++)
+        pack_padded(&w, &o->openings[i].at_clutter, rows_of_opening(o, &o->openings[i]), NULL,
+                    o->k_r);
+    return words_upload(&w, runtime, "clutter_u_r", &runtime->clutter.map.u_r);
+}
+
+static bool upload_all(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                       const struct mrt_scales *scales)
+{
+    struct mrt_runtime_buffers *b = &runtime->buffers;
+    const struct mrt_operators *o = input->operators;
+    return upload_t_db(runtime, o, scales) &&
+           upload_light(runtime, o, scales, MRT_IRRADIANCE, &b->u_b, &b->u_r) &&
+           upload_t_br(runtime, o, scales) && mrt_reflection_upload(runtime, input, scales) &&
+           (!runtime->options.vector ||
+            upload_light(runtime, o, scales, MRT_VECTOR, &b->u_b_vector, &b->u_r_vector)) &&
+           (!runtime->options.probes || upload_light(runtime, o, scales, MRT_PROBE,
+                                                     &runtime->probes.u_b, &runtime->probes.u_r)) &&
+           (o->clutter_count == 0 || upload_coupling(runtime, o)) &&
+           (o->row_count == 0 ||
+            (upload_clutter_u_b(runtime, o, scales) && upload_clutter_u_r(runtime, o)));
 }
 
 bool mrt_operators_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_scales scales = { 0 };
-    struct mrt_runtime_buffers *b = &runtime->buffers;
-    bool ok = scales_init(&scales, runtime->host, input) && upload_t_db(runtime, input, &scales) &&
-              upload_u_b(runtime, input, &scales, MRT_IRRADIANCE, &b->u_b) &&
-              upload_u_r(runtime, input, MRT_IRRADIANCE, &b->u_r) &&
-              upload_t_br(runtime, input, &scales);
-    ok = ok && mrt_reflection_upload(runtime, input, &scales);
-    if (ok && runtime->options.vector)
-        ok = upload_u_b(runtime, input, &scales, MRT_VECTOR, &b->u_b_vector) &&
-             upload_u_r(runtime, input, MRT_VECTOR, &b->u_r_vector);
-    if (ok && runtime->options.probes)
-        ok = upload_u_b(runtime, input, &scales, MRT_PROBE, &runtime->probes.u_b) &&
-             upload_u_r(runtime, input, MRT_PROBE, &runtime->probes.u_r);
-    if (ok && input->clutter) ok = upload_coupling(runtime, input);
-    if (ok && input->clutter && input->clutter->atlas.count > 0)
-        ok = upload_clutter_map(runtime, input, &scales);
+    const bool ok = scales_init(&scales, runtime->host, input->operators) &&
+                    upload_all(runtime, input, &scales);
     scales_finish(&scales, runtime->host);
     return ok;
 }

@@ -20,7 +20,7 @@ enum { VALUES = MRT_PROBE_VALUES };
 
 static size_t rows_of_block(const struct mrt_runtime_input *input)
 {
-    return (size_t)(VALUES * mrt_probes_of_block(input->probes));
+    return (size_t)(VALUES * mrt_probes_of_block(input->operators->probes));
 }
 
 // ---- tables
@@ -30,28 +30,30 @@ static void fill_tiles(const struct mrt_runtime_input *input, void *items)
     struct mrt_gpu_tile *tiles = items;
     const uint32_t rows = (uint32_t)rows_of_block(input);
     for (int b = 0; b < input->map->count; b++)
-        tiles[b] = (struct mrt_gpu_tile){ .block = (uint32_t)b,
-                                          .first_texel = (uint32_t)b * rows,
-                                          .basis_row = (uint32_t)input->basis_of_block[b] * rows };
+        tiles[b] =
+            (struct mrt_gpu_tile){ .block = (uint32_t)b,
+                                   .first_texel = (uint32_t)b * rows,
+                                   .basis_row =
+                                       (uint32_t)input->operators->basis_of_block[b] * rows };
 }
 
 static void fill_openings(const struct mrt_runtime_input *input, void *items)
 {
+    const struct mrt_operators *o = input->operators;
     struct mrt_gpu_opening *openings = items;
-    for (int i = 0; i < input->opening_count; i++)
+    for (int i = 0; i < o->opening_count; i++)
         openings[i] = (struct mrt_gpu_opening){
-            .response = (uint32_t)input->openings[i].response * (uint32_t)rows_of_block(input),
-            .quads = mrt_used_quads(input, i),
+            .response = (uint32_t)o->openings[i].response * (uint32_t)rows_of_block(input),
+            .quads = mrt_used_quads(o, &o->openings[i]),
         };
 }
 
 static void fill_sources(const struct mrt_runtime_input *input, void *items)
 {
     uint32_t *sources = items;
-    const int texels = mrt_brick_texels(input->probes);
+    const int p = input->operators->probes, texels = mrt_brick_texels(p);
     for (int i = 0; i < input->map->count * texels; i++)
-        sources[i] =
-            (uint32_t)mrt_probe_of_brick_texel(input->map, input->probes, i / texels, i % texels);
+        sources[i] = (uint32_t)mrt_probe_of_brick_texel(input->map, p, i / texels, i % texels);
 }
 
 // Row i of the matrix that turns SH is coefficient i of the rotated unit vectors.
@@ -79,12 +81,13 @@ static bool upload_tables(struct mrt_runtime *runtime, const struct mrt_runtime_
 {
     struct mrt_runtime_probes *p = &runtime->probes;
     const size_t blocks = (size_t)input->map->count;
-    const size_t probes = blocks * (size_t)mrt_probes_of_block(input->probes);
-    const size_t texels = blocks * (size_t)mrt_brick_texels(input->probes);
+    const size_t probes = blocks * (size_t)mrt_probes_of_block(input->operators->probes);
+    const size_t texels = blocks * (size_t)mrt_brick_texels(input->operators->probes);
     return mrt_table_upload(runtime, input, "probe_tiles", blocks, sizeof(struct mrt_gpu_tile),
                             fill_tiles, &p->tiles) &&
-           mrt_table_upload(runtime, input, "probe_openings", (size_t)input->opening_count,
-                            sizeof(struct mrt_gpu_opening), fill_openings, &p->openings) &&
+           mrt_table_upload(runtime, input, "probe_openings",
+                            (size_t)input->operators->opening_count, sizeof(struct mrt_gpu_opening),
+                            fill_openings, &p->openings) &&
            mrt_table_upload(runtime, input, "brick_sources", texels, sizeof(uint32_t), fill_sources,
                             &p->sources) &&
            mrt_table_upload(runtime, input, "probe_turns", blocks, VALUES * VALUES * sizeof(float),
@@ -97,14 +100,14 @@ static bool upload_tables(struct mrt_runtime *runtime, const struct mrt_runtime_
 
 static bool make_bricks(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
-    const int blocks = input->map->count, edge = input->probes + 2;
+    const int blocks = input->map->count, edge = input->operators->probes + 2;
     const int columns = (int)ceil(sqrt((double)blocks));
     const struct frame_probes bricks = { .count_x = columns * edge,
                                          .count_y = (blocks + columns - 1) / columns * edge,
                                          .slab = edge };
     const struct gpu_image_desc desc = probe_volume_desc("bricks", bricks, FRAME_PROBE_SLABS);
     runtime->level.brick_columns = (uint32_t)columns;
-    runtime->level.probes = (uint32_t)input->probes;
+    runtime->level.probes = (uint32_t)input->operators->probes;
     return mrt_image_of(runtime, &desc, &runtime->probes.bricks);
 }
 
@@ -112,9 +115,9 @@ _Static_assert(MRT_VOXEL_PROBES == MRT_SIGHT_PROBES && MRT_VOXEL_OPEN == MRT_SIG
                    MRT_VOXEL_SOLID == MRT_SIGHT_SOLID,
                "shaders read what probe_sight.c writes");
 
-uint32_t mrt_sight_voxels(const struct mrt_runtime_input *input)
+uint32_t mrt_sight_voxels(const struct mrt_operators *operators)
 {
-    return input->sight ? (uint32_t)mrt_sight_edge(input->probes) : 0;
+    return operators->sight ? (uint32_t)mrt_sight_edge(operators->probes) : 0;
 }
 
 static bool make_volume(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
@@ -134,8 +137,9 @@ static bool make_volume(struct mrt_runtime *runtime, const struct mrt_runtime_in
 bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_probes *p = &runtime->probes;
-    if (!mrt_buffer_of(runtime, "probe_sight", input->sight,
-                       input->sight ? input->sight_count * sizeof *input->sight : 0, &p->sight))
+    const struct mrt_operators *o = input->operators;
+    if (!mrt_buffer_of(runtime, "probe_sight", o->sight, o->sight_count * sizeof *o->sight,
+                       &p->sight))
         return false;
     const struct gpu_image_desc none = probe_volume_desc("bricks", probe_grid_of_one(), 1);
     if (!runtime->options.probes) return mrt_image_of(runtime, &none, &p->bricks);

@@ -7,4 +7,4 @@ bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inp
 // One dark point to publish.
 bool mrt_probes_make_empty(struct mrt_runtime *runtime);
 // MRT_CONSTANT_SIGHT.
-uint32_t mrt_sight_voxels(const struct mrt_runtime_input *input);
+uint32_t mrt_sight_voxels(const struct mrt_operators *operators);

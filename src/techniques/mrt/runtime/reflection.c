@@ -19,7 +19,8 @@ static void fill_reflected(const struct builder *s, int block, int first_opening
                            struct matrix_f32 *out)
 {
     const struct mrt_runtime_input *input = s->input;
-    const struct mrt_basis_input *basis = &input->bases[input->basis_of_block[block]];
+    const struct mrt_operators *o = input->operators;
+    const struct mrt_block_basis *basis = &o->bases[o->basis_of_block[block]];
     const int first = mrt_first_texel(input->atlas, block);
     const struct mrt_block *of = &input->map->blocks[block];
     size_t row = 0;
@@ -30,11 +31,11 @@ static void fill_reflected(const struct builder *s, int block, int first_opening
                 input->images->geometry[first + (int)row].reflectance.raw[colour];
             float *to = out->at + row * out->stride;
             const float *u_b = basis->u[0].at + row * basis->u[0].stride;
-            for (int k = 0; k < input->k_b; k++) *to++ = reflectance * u_b[k];
+            for (int k = 0; k < o->k_b; k++) *to++ = reflectance * u_b[k];
             for (int i = first_opening; to < out->at + row * out->stride + out->columns; i++) {
-                const struct matrix_f32 *u_r = input->responses[input->openings[i].response].u;
+                const struct matrix_f32 *u_r = o->responses[o->openings[i].response].u;
                 const float *from = u_r->at + ((size_t)f * s->face + t) * u_r->stride;
-                for (int k = 0; k < input->k_r; k++) *to++ = reflectance * from[k];
+                for (int k = 0; k < o->k_r; k++) *to++ = reflectance * from[k];
             }
         }
     }
@@ -44,9 +45,10 @@ static void fill_reflected(const struct builder *s, int block, int first_opening
 static void place_columns(const struct builder *s, int block, int colour,
                           const struct matrix_f32 *product)
 {
-    const size_t quads_b = 4 * mrt_quads(s->input->k_b), quads_r = 4 * mrt_quads(s->input->k_r);
-    const size_t k_b = (size_t)s->input->k_b, k_r = (size_t)s->input->k_r;
-    const size_t scale = (size_t)s->input->basis_of_block[block] * k_b;
+    const struct mrt_operators *o = s->input->operators;
+    const size_t quads_b = 4 * mrt_quads(o->k_b), quads_r = 4 * mrt_quads(o->k_r);
+    const size_t k_b = (size_t)o->k_b, k_r = (size_t)o->k_r;
+    const size_t scale = (size_t)o->basis_of_block[block] * k_b;
     for (size_t m = 0; m < product->columns; m++) {
         const bool own = m < k_b;
         const size_t entered = own ? 0 : m - k_b;
@@ -60,8 +62,9 @@ static void place_columns(const struct builder *s, int block, int colour,
 
 static bool add_block(struct builder *s, int block, int first_opening, int openings)
 {
-    const struct matrix_f32 *t_db = &s->input->bases[s->input->basis_of_block[block]].t_db;
-    const size_t columns = (size_t)(s->input->k_b + openings * s->input->k_r);
+    const struct mrt_operators *o = s->input->operators;
+    const struct matrix_f32 *t_db = &o->bases[o->basis_of_block[block]].t_db;
+    const size_t columns = (size_t)(o->k_b + openings * o->k_r);
     struct matrix_f32 light = { 0 }, product = { 0 };
     bool ok = t_db->columns == 0 || (matrix_f32_init(s->host, &light, t_db->columns, columns) &&
                                      matrix_f32_init(s->host, &product, t_db->rows, columns));
@@ -73,23 +76,24 @@ static bool add_block(struct builder *s, int block, int first_opening, int openi
     }
     matrix_f32_finish(s->host, &light);
     matrix_f32_finish(s->host, &product);
-    s->out += 3 * 4 * mrt_quads(s->input->k_b) *
-              (4 * mrt_quads(s->input->k_b) + (size_t)openings * 4 * mrt_quads(s->input->k_r));
+    s->out += 3 * 4 * mrt_quads(o->k_b) *
+              (4 * mrt_quads(o->k_b) + (size_t)openings * 4 * mrt_quads(o->k_r));
     return ok;
 }
 
 bool mrt_reflection_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
                            const struct mrt_scales *scales)
 {
-    const size_t rows = 4 * mrt_quads(input->k_b);
+    const struct mrt_operators *o = input->operators;
+    const size_t rows = 4 * mrt_quads(o->k_b);
     const size_t columns =
-        (size_t)input->map->count * rows + (size_t)input->opening_count * 4 * mrt_quads(input->k_r);
+        (size_t)input->map->count * rows + (size_t)o->opening_count * 4 * mrt_quads(o->k_r);
     float *all = host_alloc(runtime->host, columns, 3 * rows * sizeof *all);
     struct builder s = { runtime->host, input, scales, runtime->level.texels_of_tile, all };
     bool ok = all;
     for (int b = 0, opening = 0; ok && b < input->map->count; b++) {
         const int first = opening;
-        while (opening < input->opening_count && input->openings[opening].block == b) opening++;
+        while (opening < o->opening_count && o->openings[opening].block == b) opening++;
         ok = add_block(&s, b, first, opening - first);
     }
     ok = ok && mrt_buffer_of(runtime, "reflection", all, columns * 3 * rows * sizeof *all,

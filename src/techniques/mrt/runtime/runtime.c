@@ -14,18 +14,16 @@
 
 enum { VEC3_BYTES = 12, VECTOR_VALUES = 4 };
 
-static bool make_buffers(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+static bool make_buffers(struct mrt_runtime *runtime, const struct mrt_operators *o)
 {
     struct mrt_runtime_buffers *b = &runtime->buffers;
     const size_t light = (size_t)runtime->level.texels * VEC3_BYTES;
-    const size_t quad = 3 * 4 * sizeof(float);
+    const size_t quad = 3 * 4 * sizeof(float), all_b = runtime->block_count * mrt_quads(o->k_b);
     return mrt_buffer_of(runtime, "area_light", NULL, light, &b->area_light) &&
            mrt_buffer_of(runtime, "direct", NULL, light, &b->direct) &&
-           mrt_buffer_of(runtime, "b_direct", NULL,
-                         runtime->block_count * mrt_quads(input->k_b) * quad, &b->b_direct) &&
-           mrt_buffer_of(runtime, "b", NULL, runtime->block_count * mrt_quads(input->k_b) * quad,
-                         &b->b) &&
-           mrt_buffer_of(runtime, "r", NULL, runtime->opening_count * mrt_quads(input->k_r) * quad,
+           mrt_buffer_of(runtime, "b_direct", NULL, all_b * quad, &b->b_direct) &&
+           mrt_buffer_of(runtime, "b", NULL, all_b * quad, &b->b) &&
+           mrt_buffer_of(runtime, "r", NULL, runtime->opening_count * mrt_quads(o->k_r) * quad,
                          &b->r) &&
            mrt_buffer_of(runtime, "irradiance", NULL, light, &b->irradiance) &&
            (!runtime->options.vector ||
@@ -68,14 +66,14 @@ static void fill_constants(struct mrt_runtime *runtime, const struct mrt_runtime
 {
     const uint32_t values[] = {
         [MRT_CONSTANT_HALF] = runtime->options.half,
-        [MRT_CONSTANT_QUADS_B] = mrt_quads(input->k_b),
-        [MRT_CONSTANT_QUADS_R] = mrt_quads(input->k_r),
+        [MRT_CONSTANT_QUADS_B] = mrt_quads(input->operators->k_b),
+        [MRT_CONSTANT_QUADS_R] = mrt_quads(input->operators->k_r),
         [MRT_CONSTANT_VALUES] = 1,
         [MRT_CONSTANT_PROBES] = runtime->options.clutter,
         [MRT_CONSTANT_AFFINE] = is_affine(input->map),
         [MRT_CONSTANT_TUBES] = mrt_block_is_tube(&input->map->blocks[0]),
-        [MRT_CONSTANT_CLUTTER] = input->clutter != NULL,
-        [MRT_CONSTANT_SIGHT] = mrt_sight_voxels(input),
+        [MRT_CONSTANT_CLUTTER] = input->operators->clutter_count > 0,
+        [MRT_CONSTANT_SIGHT] = mrt_sight_voxels(input->operators),
         [MRT_CONSTANT_OUTDOORS] = input->images->outdoors.probes != NULL,
     };
     struct gpu_constant *constants = runtime->objects.constants;
@@ -134,8 +132,8 @@ static bool make_all(struct mrt_runtime *out, const struct mrt_runtime_input *in
     fill_constants(out, input);
     return mrt_tables_upload(out, input) && mrt_lookup_grid_upload(out, input->map) &&
            mrt_probes_upload(out, input) && mrt_outdoors_upload(out, input) &&
-           mrt_operators_upload(out, input) && make_buffers(out, input) && make_images(out) &&
-           make_pipelines(out) && mrt_clutter_upload(out, input);
+           mrt_operators_upload(out, input) && make_buffers(out, input->operators) &&
+           make_images(out) && make_pipelines(out) && mrt_clutter_upload(out, input);
 }
 
 bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gpu,

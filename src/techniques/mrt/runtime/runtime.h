@@ -5,9 +5,22 @@
 #include "frame/frame.h"
 
 #include "techniques/common/light_map/surface.h"
+#include "techniques/mrt/clutter/clutter_light.h"
+#include "techniques/mrt/level/operators.h"
+#include "techniques/mrt/level/published.h"
 #include "techniques/mrt/mrt_shared.h"
 
-#include "techniques/mrt/runtime/input.h"
+// A level: its blocks, its light map, its geometry image and its operators.
+struct mrt_runtime_input {
+    const struct mrt_block_map *map;
+    const struct mrt_atlas *atlas;
+    const struct mrt_scene_images *images;
+    const struct mrt_operators *operators;
+    const struct mrt_published *published; // NULL: none
+    // Clutter of the openings that are clutter; NULL where there are none.
+    const struct mrt_clutter *clutter;
+    const struct mrt_clutter_texel *clutter_texels; // those of clutter->texels, in their order
+};
 
 struct mrt_runtime_options {
     bool half;    // operators are half floats, else floats
@@ -41,7 +54,7 @@ struct mrt_runtime_probes {
     gpu_buffer tiles, openings, u_b, u_r;  // as those of texels
     gpu_buffer sources, turns, area_light; // tables of bricks.comp
     gpu_buffer radiosity;                  // vec3 per texel, of a solver on the host
-    gpu_buffer sight;                      // mrt_runtime_input.sight
+    gpu_buffer sight;                      // mrt_operators.sight
     gpu_buffer light;                      // vec3 [block][probe][9], in the frame of the cell
     gpu_image bricks;
     gpu_pipeline fill;

@@ -42,10 +42,10 @@ static void fill_texels(const struct mrt_runtime_input *input, void *items)
 }
 
 // First row of a basis in the operators.
-static uint32_t basis_row(const struct mrt_runtime_input *input, int basis)
+static uint32_t basis_row(const struct mrt_operators *operators, int block)
 {
     size_t row = 0;
-    for (int i = 0; i < basis; i++) row += input->bases[i].u[0].rows;
+    for (int i = 0; i < operators->basis_of_block[block]; i++) row += operators->bases[i].u[0].rows;
     return (uint32_t)row;
 }
 
@@ -68,7 +68,7 @@ static void fill_tiles(const struct mrt_runtime_input *input, void *items)
         tiles[i] = (struct mrt_gpu_tile){
             .block = (uint32_t)tile->block,
             .first_texel = (uint32_t)tile->first_texel,
-            .basis_row = basis_row(input, input->basis_of_block[tile->block]) + before,
+            .basis_row = basis_row(input->operators, tile->block) + before,
             .response_row = (uint32_t)tile->face * texels_of_tile(input),
             .x = tile->x,
             .y = tile->y,
@@ -87,13 +87,10 @@ static void fill_inverse(const struct mrt_block *from, struct mrt_gpu_block *to)
             vec3_of(inverse.col[0].raw[a], inverse.col[1].raw[a], inverse.col[2].raw[a]);
 }
 
-uint32_t mrt_used_quads(const struct mrt_runtime_input *input, int opening)
+uint32_t mrt_used_quads(const struct mrt_operators *operators, const struct mrt_opening *opening)
 {
-    uint32_t faces = 0;
-    if (input->openings[opening].face >= 0) return mrt_quads(input->k_r);
-    for (int i = 0; i < input->clutter->face_count; i++)
-        faces += input->clutter->faces[i].opening == opening;
-    return faces > 0 ? (faces + 3) / 4 : 1;
+    if (opening->face >= 0) return mrt_quads(operators->k_r);
+    return opening->face_count > 0 ? mrt_quads(opening->face_count) : 1;
 }
 
 static bool sends(const struct matrix_f32 *of_c, size_t face)
@@ -103,32 +100,37 @@ static bool sends(const struct matrix_f32 *of_c, size_t face)
     return false;
 }
 
-uint32_t mrt_senders(const struct mrt_runtime_input *input, int opening, struct mrt_sender *out)
+uint32_t mrt_senders(const struct mrt_opening *opening, struct mrt_sender *out)
 {
     uint32_t count = 0;
-    for (int i = 0; input->clutter && i < input->clutter->pair_count; i++) {
-        const struct mrt_face_pair_input *pair = &input->clutter->pairs[i];
-        for (size_t f = 0; pair->opening == opening && f < pair->of_c.rows; f++) {
-            if (!sends(&pair->of_c, f)) continue;
+    for (int i = 0; i < opening->pair_count; i++) {
+        const struct matrix_f32 *of_c = &opening->pairs[i].of_c;
+        for (size_t f = 0; f < of_c->rows; f++) {
+            if (!sends(of_c, f)) continue;
             if (out)
-                out[count] = (struct mrt_sender){ pair->source, (int)f,
-                                                  pair->of_c.at + f * pair->of_c.stride };
+                out[count] = (struct mrt_sender){ opening->pairs[i].source, (int)f,
+                                                  of_c->at + f * of_c->stride };
             count++;
         }
     }
     return count;
 }
 
-// Clutter is the last opening of its block.
-static uint32_t columns_of(const struct mrt_runtime_input *input, int first_opening, int end)
+struct mrt_sender *mrt_all_senders(struct host *host, const struct mrt_operators *operators,
+                                   uint32_t *count)
 {
-    uint32_t quads = mrt_quads(input->k_b);
-    for (int i = first_opening; i < end; i++) quads += mrt_used_quads(input, i);
-    return 4 * quads;
+    *count = 0;
+    for (int i = 0; i < operators->opening_count; i++)
+        *count += mrt_senders(&operators->openings[i], NULL);
+    struct mrt_sender *out = host_alloc(host, *count, sizeof *out), *next = out;
+    for (int i = 0; out && i < operators->opening_count; i++)
+        next += mrt_senders(&operators->openings[i], next);
+    return out;
 }
 
 static void fill_blocks(const struct mrt_runtime_input *input, void *items)
 {
+    const struct mrt_operators *o = input->operators;
     struct mrt_gpu_block *blocks = items;
     int opening = 0;
     for (int b = 0; b < input->map->count; b++) {
@@ -142,40 +144,45 @@ static void fill_blocks(const struct mrt_runtime_input *input, void *items)
         to->bend = mrt_block_is_tube(from) ? (int32_t)mrt_block_bend(from) : -1;
         to->first_texel = (uint32_t)mrt_first_texel(input->atlas, b);
         to->texels = (uint32_t)mrt_block_walls(from) * texels_of_tile(input);
-        to->basis_row = basis_row(input, input->basis_of_block[b]);
+        to->basis_row = basis_row(input->operators, b);
         to->first_opening = (uint32_t)opening;
-        while (opening < input->opening_count && input->openings[opening].block == b) opening++;
+        to->columns = 4 * mrt_quads(o->k_b);
+        for (; opening < o->opening_count && o->openings[opening].block == b; opening++)
+            to->columns += 4 * mrt_used_quads(o, &o->openings[opening]);
         to->openings = (uint32_t)opening - to->first_opening;
-        to->columns = columns_of(input, (int)to->first_opening, opening);
     }
 }
 
 static void fill_openings(const struct mrt_runtime_input *input, void *items)
 {
+    const struct mrt_operators *o = input->operators;
     struct mrt_gpu_opening *openings = items;
-    int pair = 0, clutter = 0;
-    uint32_t sender = 0;
-    for (int i = 0; i < input->opening_count; i++) {
-        size_t response = 0;
-        for (int k = 0; k < input->openings[i].response; k++)
-            response += input->responses[k].u[0].rows;
-        openings[i] = (struct mrt_gpu_opening){ .response = (uint32_t)response,
-                                                .first_pair = (uint32_t)pair,
-                                                .quads = mrt_used_quads(input, i),
-                                                .clutter = -1 };
-        if (input->openings[i].face < 0) openings[i].clutter = clutter++;
-        while (pair < input->pair_count && input->pairs[pair].opening == i) pair++;
-        openings[i].pairs = (uint32_t)pair - openings[i].first_pair;
-        openings[i].first_sender = sender;
-        openings[i].senders = mrt_senders(input, i, NULL);
-        sender += openings[i].senders;
+    uint32_t pair = 0, sender = 0;
+    int clutter = 0;
+    for (int i = 0; i < o->opening_count; i++) {
+        const struct mrt_opening *from = &o->openings[i];
+        struct mrt_gpu_opening *to = &openings[i];
+        *to = (struct mrt_gpu_opening){ .first_pair = pair,
+                                        .quads = mrt_used_quads(o, from),
+                                        .clutter = from->face < 0 ? clutter++ : -1,
+                                        .first_sender = sender,
+                                        .senders = mrt_senders(from, NULL) };
+        for (int k = 0; k < from->response; k++)
+            to->response += (uint32_t)o->responses[k].u[0].rows;
+        for (int k = 0; k < from->pair_count; k++) to->pairs += from->pairs[k].of_b.rows > 0;
+        pair += to->pairs;
+        sender += to->senders;
     }
 }
 
 static void fill_sources(const struct mrt_runtime_input *input, void *items)
 {
-    uint32_t *sources = items;
-    for (int i = 0; i < input->pair_count; i++) sources[i] = (uint32_t)input->pairs[i].source;
+    uint32_t *source = items;
+    for (int i = 0; i < input->operators->opening_count; i++) {
+        const struct mrt_opening *opening = &input->operators->openings[i];
+        for (int k = 0; k < opening->pair_count; k++)
+            if (opening->pairs[k].of_b.rows > 0) *source++ = (uint32_t)opening->pairs[k].source;
+    }
 }
 
 static void fill_borders(const struct mrt_runtime_input *input, void *items)
@@ -207,19 +214,20 @@ bool mrt_tables_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inp
 {
     struct mrt_runtime_buffers *b = &runtime->buffers;
     const struct mrt_atlas *atlas = input->atlas;
+    const size_t openings = (size_t)input->operators->opening_count;
     runtime->level = level_of(input);
     runtime->block_count = (uint32_t)input->map->count;
-    runtime->opening_count = (uint32_t)input->opening_count;
+    runtime->opening_count = (uint32_t)openings;
     return mrt_table_upload(runtime, input, "texels", (size_t)atlas->texels,
                             sizeof(struct mrt_texel), fill_texels, &b->texels) &&
            mrt_table_upload(runtime, input, "tiles", (size_t)atlas->tile_count,
                             sizeof(struct mrt_gpu_tile), fill_tiles, &b->tiles) &&
            mrt_table_upload(runtime, input, "blocks", (size_t)input->map->count,
                             sizeof(struct mrt_gpu_block), fill_blocks, &b->blocks) &&
-           mrt_table_upload(runtime, input, "openings", (size_t)input->opening_count,
-                            sizeof(struct mrt_gpu_opening), fill_openings, &b->openings) &&
-           mrt_table_upload(runtime, input, "sources", (size_t)input->pair_count, sizeof(uint32_t),
-                            fill_sources, &b->sources) &&
+           mrt_table_upload(runtime, input, "openings", openings, sizeof(struct mrt_gpu_opening),
+                            fill_openings, &b->openings) &&
+           mrt_table_upload(runtime, input, "sources", mrt_pair_count(input->operators),
+                            sizeof(uint32_t), fill_sources, &b->sources) &&
            mrt_table_upload(runtime, input, "borders", (size_t)atlas->border_count,
                             sizeof(struct mrt_gpu_border), fill_borders, &b->borders);
 }

@@ -7,45 +7,45 @@
 
 #include "technique_shaders.h"
 
-static uint32_t slots_of(const struct mrt_runtime_input *input)
+static uint32_t slots_of(const struct mrt_operators *o)
 {
-    return 4 * mrt_quads(input->k_r);
+    return 4 * mrt_quads(o->k_r);
 }
 
 // ---- tables
 
 static void fill_reflectance(const struct mrt_runtime_input *input, void *items)
 {
-    float *reflectance = items;
-    const uint32_t slots = slots_of(input);
-    for (int i = 0; i < input->clutter->face_count; i++) {
-        const struct mrt_clutter_face_input *face = &input->clutter->faces[i];
-        const uint32_t clutter = mrt_clutter_of_opening(input->clutter, face->opening);
-        for (uint32_t c = 0; c < 3; c++)
-            reflectance[(3 * clutter + c) * slots + (uint32_t)face->slot] =
-                face->reflectance.raw[c];
+    const struct mrt_operators *o = input->operators;
+    const uint32_t slots = slots_of(o);
+    float *reflectance = items; // of the clutter
+    for (int i = 0; i < o->opening_count; i++) {
+        const struct mrt_opening *opening = &o->openings[i];
+        for (int f = 0; f < opening->face_count; f++)
+            for (uint32_t c = 0; c < 3; c++)
+                reflectance[c * slots + (uint32_t)opening->faces[f].slot] =
+                    opening->faces[f].reflectance.raw[c];
+        if (opening->face < 0) reflectance += 3 * slots;
     }
 }
 
-static uint32_t clutter_of_block(const struct mrt_runtime_input *input, int block)
+// Which of the openings that are clutter.
+static uint32_t clutter_of_block(const struct mrt_operators *o, int block)
 {
-    uint32_t i = 0;
-    while (input->openings[input->clutter->openings[i]].block != block) i++;
-    return i;
+    uint32_t clutter = 0;
+    for (int i = 0; o->openings[i].block != block; i++) clutter += o->openings[i].face < 0;
+    return clutter;
 }
 
-static bool upload_senders(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+static bool upload_senders(struct mrt_runtime *runtime, const struct mrt_operators *o)
 {
     uint32_t count = 0;
-    const uint32_t slots = slots_of(input);
-    for (int i = 0; i < input->opening_count; i++) count += mrt_senders(input, i, NULL);
-    struct mrt_sender *senders = host_alloc(runtime->host, count, sizeof *senders);
+    const uint32_t slots = slots_of(o);
+    struct mrt_sender *senders = mrt_all_senders(runtime->host, o, &count);
     uint32_t *at = host_alloc(runtime->host, count, sizeof *at);
     bool ok = senders && at;
-    for (int i = 0, next = 0; ok && i < input->opening_count; i++)
-        next += (int)mrt_senders(input, i, senders + next);
     for (uint32_t i = 0; ok && i < count; i++)
-        at[i] = clutter_of_block(input, senders[i].block) * 3 * slots + (uint32_t)senders[i].slot;
+        at[i] = clutter_of_block(o, senders[i].block) * 3 * slots + (uint32_t)senders[i].slot;
     ok = ok && mrt_buffer_of(runtime, "clutter_senders", at, count * sizeof *at,
                              &runtime->clutter.senders);
     host_free(runtime->host, senders);
@@ -56,14 +56,14 @@ static bool upload_senders(struct mrt_runtime *runtime, const struct mrt_runtime
 bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_clutter *c = &runtime->clutter;
-    if (!input->clutter) return true;
-    const size_t openings = (size_t)input->clutter->opening_count;
-    const size_t coefficients = 3 * slots_of(input) * sizeof(float);
+    const size_t openings = (size_t)input->operators->clutter_count;
+    const size_t coefficients = 3 * slots_of(input->operators) * sizeof(float);
+    if (openings == 0) return true;
     c->opening_count = (uint32_t)openings;
     return mrt_clutter_direct_upload(runtime, input) &&
            mrt_table_upload(runtime, input, "clutter_reflectance", openings, coefficients,
                             fill_reflectance, &c->reflectance) &&
-           upload_senders(runtime, input) &&
+           upload_senders(runtime, input->operators) &&
            mrt_table_upload(runtime, input, "clutter_reflected", openings, coefficients, NULL,
                             &c->reflected[0]) &&
            mrt_table_upload(runtime, input, "clutter_reflected", openings, coefficients, NULL,

@@ -3,11 +3,9 @@
 
 #include "techniques/mrt/runtime/runtime.h"
 
-// Without clutter of the input nothing is created.
+// Without openings that are clutter nothing is created.
 bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
 // ---- direct.c: direct light of its faces
-// Which of the openings that are clutter.
-uint32_t mrt_clutter_of_opening(const struct mrt_clutter_input *clutter, int opening);
 bool mrt_clutter_direct_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
 // ---- map.c: its light map
 bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);

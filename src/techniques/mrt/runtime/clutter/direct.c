@@ -10,20 +10,13 @@
 #include <math.h>
 #include <string.h>
 
-uint32_t mrt_clutter_of_opening(const struct mrt_clutter_input *clutter, int opening)
-{
-    uint32_t i = 0;
-    while (clutter->openings[i] != opening) i++;
-    return i;
-}
-
 // ---- tables
 
 static void fill_texels(const struct mrt_runtime_input *input, void *items)
 {
     struct mrt_texel *texels = items;
-    for (int i = 0; i < input->clutter->texel_count; i++) {
-        const struct mrt_clutter_texel *from = &input->clutter->texels[i];
+    for (uint32_t i = 0; i < input->clutter->charts.side_texel_count; i++) {
+        const struct mrt_clutter_texel *from = &input->clutter_texels[i];
         texels[i] = (struct mrt_texel){ .position = from->at.position,
                                         .area_m2 = from->area_m2,
                                         .normal = from->at.normal,
@@ -34,49 +27,52 @@ static void fill_texels(const struct mrt_runtime_input *input, void *items)
     }
 }
 
-// Samples of a face are in one workgroup.
-struct packer {
-    uint32_t group, used;
+// Faces one after the other. Samples of a face are in one workgroup.
+struct face_place {
+    const struct mrt_operators *of;
+    int opening, in_opening; // of the face
+    uint32_t face, clutter;  // which of all, which of the openings that are clutter
+    const struct mrt_opening_face *from;
+    uint32_t group, first_sample, samples, used;
 };
 
-static uint32_t samples_of(const struct mrt_clutter_face_input *face)
+static bool next_face(struct face_place *at)
 {
-    return face->texel_count < MRT_FACE_SAMPLES ? (uint32_t)face->texel_count : MRT_FACE_SAMPLES;
-}
-
-static uint32_t pack(struct packer *packer, const struct mrt_clutter_face_input *face)
-{
-    const uint32_t samples = samples_of(face);
-    if (packer->used + samples > MRT_LOCAL) *packer = (struct packer){ packer->group + 1, 0 };
-    packer->used += samples;
-    return packer->used - samples;
-}
-
-static uint32_t groups_of(const struct mrt_clutter_input *clutter)
-{
-    struct packer packer = { 0 };
-    for (int i = 0; i < clutter->face_count; i++) pack(&packer, &clutter->faces[i]);
-    return clutter->face_count > 0 ? packer.group + 1 : 0;
+    const struct mrt_operators *o = at->of;
+    at->face += at->from != NULL;
+    at->in_opening += at->from != NULL;
+    for (; at->opening < o->opening_count; at->opening++, at->in_opening = 0) {
+        const struct mrt_opening *opening = &o->openings[at->opening];
+        if (at->in_opening < opening->face_count) break;
+        at->clutter += opening->face < 0;
+    }
+    if (at->opening == o->opening_count) return false;
+    at->from = &o->openings[at->opening].faces[at->in_opening];
+    at->samples = at->from->texel_count < MRT_FACE_SAMPLES ? (uint32_t)at->from->texel_count
+                                                           : MRT_FACE_SAMPLES;
+    if (at->used + at->samples > MRT_LOCAL) {
+        at->group++;
+        at->used = 0;
+    }
+    at->first_sample = at->used;
+    at->used += at->samples;
+    return true;
 }
 
 static void fill_groups(const struct mrt_runtime_input *input, void *items)
 {
     struct mrt_gpu_clutter_group *groups = items;
-    struct packer packer = { 0 };
-    for (int i = 0; i < input->clutter->face_count; i++) {
-        pack(&packer, &input->clutter->faces[i]);
-        if (groups[packer.group].faces++ == 0) groups[packer.group].first_face = (uint32_t)i;
-    }
+    for (struct face_place at = { .of = input->operators }; next_face(&at);)
+        if (groups[at.group].faces++ == 0) groups[at.group].first_face = at.face;
 }
 
 // Radiosity of a face by area lights: means over the area of its texels.
 static void add_area_light(const struct mrt_runtime_input *input,
-                           const struct mrt_clutter_face_input *from,
-                           struct mrt_gpu_clutter_face *to)
+                           const struct mrt_opening_face *from, struct mrt_gpu_clutter_face *to)
 {
     float area = 0.0f;
     for (int t = from->first_texel; t < from->first_texel + from->texel_count; t++) {
-        const struct mrt_clutter_texel *texel = &input->clutter->texels[t];
+        const struct mrt_clutter_texel *texel = &input->clutter_texels[t];
         const vec3s reflected = glms_vec3_scale(texel->at.reflectance, texel->area_m2);
         to->emitted = glms_vec3_add(to->emitted, glms_vec3_mul(reflected, texel->emitted));
         to->sky = glms_vec3_muladds(reflected, texel->sky, to->sky);
@@ -89,21 +85,17 @@ static void add_area_light(const struct mrt_runtime_input *input,
 static void fill_faces(const struct mrt_runtime_input *input, void *items)
 {
     struct mrt_gpu_clutter_face *faces = items;
-    struct packer packer = { 0 };
-    for (int i = 0; i < input->clutter->face_count; i++) {
-        const struct mrt_clutter_face_input *from = &input->clutter->faces[i];
-        faces[i] = (struct mrt_gpu_clutter_face){
-            .clutter = mrt_clutter_of_opening(input->clutter, from->opening),
-            .slot = (uint32_t)from->slot,
-            .first_sample = pack(&packer, from),
-            .samples = samples_of(from),
-        };
-        add_area_light(input, from, &faces[i]);
+    for (struct face_place at = { .of = input->operators }; next_face(&at);) {
+        faces[at.face] = (struct mrt_gpu_clutter_face){ .clutter = at.clutter,
+                                                        .slot = (uint32_t)at.from->slot,
+                                                        .first_sample = at.first_sample,
+                                                        .samples = at.samples };
+        add_area_light(input, at.from, &faces[at.face]);
     }
 }
 
 // One texel of each of equal stretches of a face, at places that no width of a chart repeats.
-static uint32_t texel_of(const struct mrt_clutter_face_input *face, uint32_t sample)
+static uint32_t texel_of(const struct mrt_opening_face *face, uint32_t sample)
 {
     static const double GOLDEN = 0.6180339887498949;
     const double turns = GOLDEN * sample;
@@ -114,38 +106,37 @@ static uint32_t texel_of(const struct mrt_clutter_face_input *face, uint32_t sam
 
 static void fill_samples(const struct mrt_runtime_input *input, void *items)
 {
-    struct packer packer = { 0 };
-    for (int i = 0; i < input->clutter->face_count; i++) {
-        const struct mrt_clutter_face_input *face = &input->clutter->faces[i];
-        const uint32_t first = pack(&packer, face);
+    for (struct face_place at = { .of = input->operators }; next_face(&at);) {
         struct mrt_gpu_clutter_sample *samples = items;
         float area = 0.0f;
-        samples += packer.group * MRT_LOCAL + first;
-        for (uint32_t s = 0; s < samples_of(face); s++) {
-            samples[s].texel = texel_of(face, s);
-            samples[s].share = input->clutter->texels[samples[s].texel].area_m2;
+        samples += at.group * MRT_LOCAL + at.first_sample;
+        for (uint32_t s = 0; s < at.samples; s++) {
+            samples[s].texel = texel_of(at.from, s);
+            samples[s].share = input->clutter_texels[samples[s].texel].area_m2;
             area += samples[s].share;
         }
-        for (uint32_t s = 0; s < samples_of(face); s++) samples[s].share /= area;
+        for (uint32_t s = 0; s < at.samples; s++) samples[s].share /= area;
     }
 }
 
 bool mrt_clutter_direct_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_clutter *c = &runtime->clutter;
-    const size_t coefficients = 12 * (size_t)mrt_quads(input->k_r) * sizeof(float);
-    c->group_count = groups_of(input->clutter);
-    return mrt_table_upload(runtime, input, "clutter_texels", (size_t)input->clutter->texel_count,
-                            sizeof(struct mrt_texel), fill_texels, &c->texels) &&
+    const size_t coefficients = 12 * (size_t)mrt_quads(input->operators->k_r) * sizeof(float);
+    struct face_place end = { .of = input->operators };
+    while (next_face(&end)) c->group_count = end.group + 1;
+    return mrt_table_upload(runtime, input, "clutter_texels",
+                            input->clutter->charts.side_texel_count, sizeof(struct mrt_texel),
+                            fill_texels, &c->texels) &&
            mrt_table_upload(runtime, input, "clutter_groups", c->group_count,
                             sizeof(struct mrt_gpu_clutter_group), fill_groups, &c->groups) &&
-           mrt_table_upload(runtime, input, "clutter_faces", (size_t)input->clutter->face_count,
+           mrt_table_upload(runtime, input, "clutter_faces", end.face,
                             sizeof(struct mrt_gpu_clutter_face), fill_faces, &c->faces) &&
            mrt_table_upload(runtime, input, "clutter_samples", c->group_count,
                             MRT_LOCAL * sizeof(struct mrt_gpu_clutter_sample), fill_samples,
                             &c->samples) &&
-           mrt_table_upload(runtime, input, "clutter_direct", (size_t)input->clutter->opening_count,
-                            coefficients, NULL, &c->direct) &&
+           mrt_table_upload(runtime, input, "clutter_direct", c->opening_count, coefficients, NULL,
+                            &c->direct) &&
            mrt_pipeline_of(runtime, "clutter_direct", &shader_mrt_runtime_clutter_direct_comp,
                            1u << MRT_CONSTANT_QUADS_R, &c->light);
 }

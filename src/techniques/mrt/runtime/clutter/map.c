@@ -14,23 +14,23 @@ enum { VALUES = MRT_VECTOR_COEFFICIENTS, VEC3_BYTES = 12 };
 
 // ---- tables
 
-static size_t tiles_of(const struct mrt_clutter_atlas_input *atlas)
+static size_t tiles_of(const struct mrt_operators *o)
 {
     size_t tiles = 0;
-    for (int i = 0; i < atlas->count; i++)
-        tiles += mrt_clutter_map_tiles((size_t)atlas->rows[i].texel_count);
+    for (int i = 0; i < o->row_count; i++)
+        tiles += mrt_clutter_map_tiles((size_t)o->rows[i].texel_count);
     return tiles;
 }
 
 static void fill_tiles(const struct mrt_runtime_input *input, void *items)
 {
-    const struct mrt_clutter_atlas_input *atlas = &input->clutter->atlas;
+    const struct mrt_operators *o = input->operators;
     struct mrt_gpu_tile *tile = items;
     uint32_t first = 0;
-    for (int i = 0; i < atlas->count; i++) {
-        const size_t tiles = mrt_clutter_map_tiles((size_t)atlas->rows[i].texel_count);
+    for (int i = 0; i < o->row_count; i++) {
+        const size_t tiles = mrt_clutter_map_tiles((size_t)o->rows[i].texel_count);
         for (uint32_t k = 0; k < tiles; k++)
-            *tile++ = (struct mrt_gpu_tile){ .block = (uint32_t)atlas->rows[i].block,
+            *tile++ = (struct mrt_gpu_tile){ .block = (uint32_t)o->rows[i].block,
                                              .first_texel = first + k * MRT_LOCAL,
                                              .basis_row = first + k * MRT_LOCAL,
                                              .response_row = k * MRT_LOCAL };
@@ -51,25 +51,24 @@ static uint32_t quads_of(const struct matrix_f32 *u_r)
 // Openings of blocks without clutter stay empty: no tile reads them.
 static void fill_openings(const struct mrt_runtime_input *input, void *items)
 {
-    const struct mrt_clutter_atlas_input *atlas = &input->clutter->atlas;
+    const struct mrt_operators *o = input->operators;
     struct mrt_gpu_opening *openings = items;
     uint32_t row = 0;
-    for (int i = 0, rows = 0, first = 0; i < input->opening_count; i++) {
-        while (rows < atlas->count && atlas->rows[rows].block < input->openings[i].block) rows++;
-        if (rows == atlas->count || atlas->rows[rows].block != input->openings[i].block) continue;
-        if (input->openings[first].block != input->openings[i].block) first = i;
+    for (int i = 0; i < o->opening_count; i++) {
+        const struct mrt_clutter_rows *rows = mrt_rows_of(o, o->openings[i].block);
+        if (!rows) continue;
         openings[i].response = row;
-        openings[i].quads = quads_of(&atlas->rows[rows].u_r[i - first]);
-        row += (uint32_t)mrt_clutter_map_tiles((size_t)atlas->rows[rows].texel_count) * MRT_LOCAL;
+        openings[i].quads = quads_of(&o->openings[i].at_clutter);
+        row += (uint32_t)mrt_clutter_map_tiles((size_t)rows->texel_count) * MRT_LOCAL;
     }
 }
 
 // Index of the light of a texel of clutter.
-static uint32_t light_of(const struct mrt_clutter_atlas_input *atlas, uint32_t texel)
+static uint32_t light_of(const struct mrt_operators *o, uint32_t texel)
 {
     uint32_t first = 0;
-    for (int k = 0; k < atlas->count; k++) {
-        const struct mrt_clutter_rows_input *rows = &atlas->rows[k];
+    for (int k = 0; k < o->row_count; k++) {
+        const struct mrt_clutter_rows *rows = &o->rows[k];
         const uint32_t local = texel - (uint32_t)rows->first_texel;
         if (texel >= (uint32_t)rows->first_texel && local < (uint32_t)rows->texel_count)
             return first + local;
@@ -79,14 +78,14 @@ static uint32_t light_of(const struct mrt_clutter_atlas_input *atlas, uint32_t t
 }
 
 // Places with light. `out` may be NULL.
-static uint32_t list_places(const struct mrt_clutter_atlas_input *atlas,
+static uint32_t list_places(const struct mrt_runtime_input *input,
                             struct mrt_gpu_clutter_place *out)
 {
     uint32_t count = 0;
-    const struct charts *charts = &atlas->clutter->charts;
+    const struct charts *charts = &input->clutter->charts;
     for (size_t i = 0; i < charts_place_count(charts); i++) {
-        const uint32_t texel = atlas->source[i];
-        const uint32_t light = texel == CHART_NONE ? CHART_NONE : light_of(atlas, texel);
+        const uint32_t texel = input->operators->map_source[i];
+        const uint32_t light = texel == CHART_NONE ? CHART_NONE : light_of(input->operators, texel);
         if (light == CHART_NONE) continue;
         if (out)
             out[count] =
@@ -98,7 +97,7 @@ static uint32_t list_places(const struct mrt_clutter_atlas_input *atlas,
 
 static void fill_places(const struct mrt_runtime_input *input, void *items)
 {
-    list_places(&input->clutter->atlas, items);
+    list_places(input, items);
 }
 
 static size_t triangles_of(const struct mrt_clutter *clutter)
@@ -108,34 +107,34 @@ static size_t triangles_of(const struct mrt_clutter *clutter)
 
 static void fill_triangles(const struct mrt_runtime_input *input, void *items)
 {
-    const struct mrt_clutter *clutter = input->clutter->atlas.clutter;
+    const struct mrt_clutter *clutter = input->clutter;
     light_map_fill_triangles(&clutter->charts, clutter->scene_chart_triangle, triangles_of(clutter),
                              items);
 }
 
 bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
-    const struct mrt_clutter_atlas_input *from = &input->clutter->atlas;
+    const struct mrt_clutter *clutter = input->clutter;
     struct mrt_runtime_clutter_map *map = &runtime->clutter.map;
-    if (from->count == 0) return true;
+    if (input->operators->row_count == 0) return true;
     const struct gpu_image_desc image =
-        light_map_image(&from->clutter->charts, "clutter_map", LIGHT_MAP_LAYERS);
-    const size_t tiles = tiles_of(from),
-                 instances = (size_t)from->clutter->walls.scene.instance_count;
+        light_map_image(&clutter->charts, "clutter_map", LIGHT_MAP_LAYERS);
+    const size_t tiles = tiles_of(input->operators),
+                 instances = (size_t)clutter->walls.scene.instance_count;
     runtime->objects.constants[MRT_CONSTANT_ROW_BACKS] =
-        (struct gpu_constant){ LIGHT_MAP_HAS_BACKS, charts_sides(&from->clutter->charts) == 2 };
+        (struct gpu_constant){ LIGHT_MAP_HAS_BACKS, charts_sides(&clutter->charts) == 2 };
     map->tile_count = (uint32_t)tiles;
     map->surfaces.count = (uint32_t)instances;
-    map->fill_push.places = list_places(from, NULL);
+    map->fill_push.places = list_places(input, NULL);
     return mrt_table_upload(runtime, input, "clutter_tiles", tiles, sizeof(struct mrt_gpu_tile),
                             fill_tiles, &map->tiles) &&
-           mrt_table_upload(runtime, input, "clutter_map_openings", (size_t)input->opening_count,
+           mrt_table_upload(runtime, input, "clutter_map_openings", runtime->opening_count,
                             sizeof(struct mrt_gpu_opening), fill_openings, &map->openings) &&
            mrt_table_upload(runtime, input, "clutter_places", map->fill_push.places,
                             sizeof(struct mrt_gpu_clutter_place), fill_places, &map->places) &&
-           mrt_buffer_of(runtime, "clutter_first_triangles", from->clutter->scene_triangle_0,
+           mrt_buffer_of(runtime, "clutter_first_triangles", clutter->scene_triangle_0,
                          (instances + 1) * sizeof(uint32_t), &map->surfaces.first) &&
-           mrt_table_upload(runtime, input, "clutter_triangles", triangles_of(from->clutter),
+           mrt_table_upload(runtime, input, "clutter_triangles", triangles_of(clutter),
                             sizeof(struct light_map_triangle), fill_triangles,
                             &map->surfaces.triangles) &&
            mrt_buffer_of(runtime, "clutter_light", NULL, tiles * MRT_LOCAL * VALUES * VEC3_BYTES,
