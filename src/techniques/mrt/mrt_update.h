@@ -9,7 +9,7 @@
 
 #include "techniques/common/light_map/moves.h"
 #include "techniques/mrt/clutter/delta_cache.h"
-#include "techniques/mrt/runtime/objects.h"
+#include "techniques/mrt/runtime/upload.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

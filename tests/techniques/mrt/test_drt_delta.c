@@ -8,8 +8,7 @@
 
 #include "techniques/mrt/dictionary/cube_operators.h"
 #include "techniques/mrt/dictionary/gather.h"
-#include "techniques/mrt/clutter/cell_ray.h"
-#include "techniques/mrt/clutter/clutter_transfer.h"
+#include "techniques/mrt/clutter/delta.h"
 #include "techniques/mrt/clutter/delta_cache.h"
 
 #include <math.h>

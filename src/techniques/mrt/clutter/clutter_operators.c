@@ -1,7 +1,7 @@
 // Bases, responses, openings and pairs of blocks with clutter.
 #include "techniques/mrt/clutter/clutter_operators.h"
 
-#include "techniques/mrt/clutter/probe_sight.h"
+#include "techniques/mrt/clutter/delta.h"
 
 #include <string.h>
 

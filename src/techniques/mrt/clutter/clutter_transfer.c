@@ -1,7 +1,5 @@
 // Rays from the texels of clutter through the cell of their block.
-#include "techniques/mrt/clutter/clutter_transfer.h"
-
-#include "techniques/mrt/clutter/cell_ray.h"
+#include "techniques/mrt/clutter/delta.h"
 
 #include "core/parallel.h"
 #include "core/sh.h"

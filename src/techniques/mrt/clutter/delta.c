@@ -1,5 +1,5 @@
 // Rays of delta operators.
-#include "techniques/mrt/clutter/probe_sight.h"
+#include "techniques/mrt/clutter/delta.h"
 
 #include "core/parallel.h"
 

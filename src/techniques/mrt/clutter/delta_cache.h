@@ -4,9 +4,7 @@
 
 #include "core/hash.h"
 
-#include "techniques/mrt/clutter/clutter_transfer.h"
-#include "techniques/mrt/clutter/delta_entry.h"
-#include "techniques/mrt/clutter/delta_gather.h"
+#include "techniques/mrt/clutter/delta.h"
 
 struct mrt_kept {
     bool valid;

@@ -1,7 +1,5 @@
 // Rays from walls through an opening.
-#include "techniques/mrt/clutter/delta_entry.h"
-
-#include "techniques/mrt/clutter/cell_ray.h"
+#include "techniques/mrt/clutter/delta.h"
 
 #include "core/parallel.h"
 

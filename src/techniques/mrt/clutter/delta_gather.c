@@ -1,7 +1,5 @@
 // Cosine-distributed rays from the texels of a face through the cells of the blocks.
-#include "techniques/mrt/clutter/delta_gather.h"
-
-#include "techniques/mrt/clutter/cell_ray.h"
+#include "techniques/mrt/clutter/delta.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"

@@ -1,7 +1,5 @@
 // A grid over all blocks; each cell lists the blocks whose bounds, with a margin, touch it.
-#include "tables.h"
-
-#include "techniques/mrt/runtime/objects.h"
+#include "techniques/mrt/runtime/upload.h"
 
 #include <math.h>
 

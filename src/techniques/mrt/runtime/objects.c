@@ -1,4 +1,4 @@
-#include "techniques/mrt/runtime/objects.h"
+#include "techniques/mrt/runtime/upload.h"
 
 #include <assert.h>
 #include <string.h>

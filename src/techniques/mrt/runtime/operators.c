@@ -3,13 +3,10 @@
 // Half floats lose precision below 6·10⁻⁵. Each b-coefficient is therefore scaled by a power of
 // two, so that its row of T_d→b and its column of U_b have about the same largest element; T_b→r
 // undoes it. Powers of two change no bit of the result beyond that.
-#include "operators.h"
+#include "techniques/mrt/runtime/upload.h"
 
 #include "core/half.h"
 #include "techniques/mrt/dictionary/rays.h"
-#include "techniques/mrt/runtime/objects.h"
-#include "techniques/mrt/runtime/reflection.h"
-#include "techniques/mrt/runtime/tables.h"
 
 #include <math.h>
 

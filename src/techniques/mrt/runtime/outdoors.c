@@ -1,8 +1,7 @@
 // Table, image and pass of the grid of outdoor probes.
-#include "outdoors.h"
+#include "techniques/mrt/runtime/upload.h"
 
 #include "techniques/common/probes/volume.h"
-#include "techniques/mrt/runtime/objects.h"
 
 #include "technique_shaders.h"
 

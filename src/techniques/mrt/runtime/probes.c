@@ -2,15 +2,12 @@
 //
 // U_bvol b and U_r r are computed by the pass for texels: a block's probes are as a tile of 9 p³
 // texels without irradiance by normal.
-#include "probes.h"
+#include "techniques/mrt/runtime/upload.h"
 
 #include "core/sh.h"
 
 #include "techniques/common/probes/volume.h"
-#include "techniques/mrt/clutter/probe_sight.h"
-#include "techniques/mrt/runtime/objects.h"
-#include "techniques/mrt/runtime/operators.h"
-#include "techniques/mrt/runtime/tables.h"
+#include "techniques/mrt/clutter/delta.h"
 
 #include "technique_shaders.h"
 

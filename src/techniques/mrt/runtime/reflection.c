@@ -1,10 +1,6 @@
 // The operator of one bounce within the reduced spaces, for bounce.comp. Floats: a few kilobytes
 // per block, which all bounces share.
-#include "reflection.h"
-
-#include "techniques/mrt/runtime/objects.h"
-#include "techniques/mrt/runtime/operators.h"
-#include "techniques/mrt/runtime/tables.h"
+#include "techniques/mrt/runtime/upload.h"
 
 struct builder {
     struct host *host;

@@ -2,13 +2,8 @@
 #include "runtime.h"
 
 #include "techniques/common/probes/volume.h"
-#include "techniques/mrt/clutter/probe_sight.h"
-#include "techniques/mrt/runtime/clutter/clutter.h"
-#include "techniques/mrt/runtime/objects.h"
-#include "techniques/mrt/runtime/operators.h"
-#include "techniques/mrt/runtime/outdoors.h"
-#include "techniques/mrt/runtime/probes.h"
-#include "techniques/mrt/runtime/tables.h"
+#include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/runtime/upload.h"
 
 #include "technique_shaders.h"
 

@@ -114,6 +114,28 @@ struct mrt_runtime {
     struct gpu_objects objects; // all of these
 };
 
+// Bindings that passes share: tables, operators and coefficients of a level. A pass adds its own.
+#define MRT_BINDINGS(runtime, cmd)                                                                 \
+    gpu_transient(cmd, "mrt_level", &(runtime)->level, sizeof(runtime)->level),                    \
+        { .name = "mrt_tiles", .buffer = (runtime)->buffers.tiles },                               \
+        { .name = "mrt_blocks", .buffer = (runtime)->buffers.blocks },                             \
+        { .name = "mrt_cells", .buffer = (runtime)->buffers.cells },                               \
+        { .name = "mrt_candidates", .buffer = (runtime)->buffers.candidates },                     \
+        { .name = "mrt_openings", .buffer = (runtime)->buffers.openings },                         \
+        { .name = "mrt_sources", .buffer = (runtime)->buffers.sources },                           \
+        { .name = "mrt_borders", .buffer = (runtime)->buffers.borders },                           \
+        { .name = "mrt_t_db", .buffer = (runtime)->buffers.t_db },                                 \
+        { .name = "mrt_t_br", .buffer = (runtime)->buffers.t_br },                                 \
+        { .name = "mrt_reflection", .buffer = (runtime)->buffers.reflection },                     \
+        { .name = "mrt_b_direct", .buffer = (runtime)->buffers.b_direct },                         \
+        { .name = "mrt_b", .buffer = (runtime)->buffers.b },                                       \
+        { .name = "mrt_r", .buffer = (runtime)->buffers.r },                                       \
+        { .name = "mrt_area_light", .buffer = (runtime)->buffers.area_light },                     \
+        { .name = "bricks", .image = (runtime)->probes.bricks, .sampler = (runtime)->linear },     \
+    {                                                                                              \
+        .name = "mrt_probe_sight", .buffer = (runtime)->probes.sight                               \
+    }
+
 // The input may end with the call, but for map and atlas.
 bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
                       const struct mrt_runtime_input *input,

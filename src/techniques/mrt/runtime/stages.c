@@ -1,12 +1,7 @@
 // The passes of a frame.
 #include "runtime.h"
 
-#include "techniques/mrt/runtime/clutter/clutter.h"
-
-static struct gpu_binding level_binding(const struct mrt_runtime *runtime, struct gpu_cmd *cmd)
-{
-    return gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level);
-}
+#include "techniques/mrt/runtime/upload.h"
 
 void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                        const struct frame_view *view, bool emitters)
@@ -16,9 +11,8 @@ void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     runtime->level.emitters = emitters ? 1.0f : 0.0f;
     gpu_scope_begin(cmd, "direct");
     gpu_dispatch(cmd, runtime->pipelines.direct,
-                 GPU_BIND(FRAME_LIGHT_BINDINGS(view), level_binding(runtime, cmd),
+                 GPU_BIND(FRAME_LIGHT_BINDINGS(view), MRT_BINDINGS(runtime, cmd),
                           { .name = "mrt_texels", .buffer = b->texels },
-                          { .name = "mrt_area_light", .buffer = b->area_light },
                           { .name = "mrt_direct", .buffer = b->direct }),
                  NULL, 0, gpu_groups(runtime->level.texels, MRT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
@@ -27,43 +21,25 @@ void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 
 static void record_project(struct mrt_runtime *runtime, struct gpu_cmd *cmd, gpu_buffer light)
 {
-    const struct mrt_runtime_buffers *b = &runtime->buffers;
     gpu_dispatch(cmd, runtime->pipelines.project,
-                 GPU_BIND(level_binding(runtime, cmd),
-                          { .name = "mrt_blocks", .buffer = b->blocks },
-                          { .name = "mrt_direct", .buffer = light },
-                          { .name = "mrt_t_db", .buffer = b->t_db },
-                          { .name = "mrt_b_direct", .buffer = b->b_direct }),
+                 GPU_BIND(MRT_BINDINGS(runtime, cmd), { .name = "mrt_direct", .buffer = light }),
                  NULL, 0, runtime->block_count, 1, 1);
 }
 
 static void record_reflect(struct mrt_runtime *runtime, struct gpu_cmd *cmd, float feedback)
 {
-    const struct mrt_runtime_buffers *b = &runtime->buffers;
     runtime->level.feedback = feedback;
-    gpu_dispatch(cmd, runtime->pipelines.bounce,
-                 GPU_BIND(level_binding(runtime, cmd),
-                          { .name = "mrt_blocks", .buffer = b->blocks },
-                          { .name = "mrt_reflection", .buffer = b->reflection },
-                          { .name = "mrt_b_direct", .buffer = b->b_direct },
-                          { .name = "mrt_r", .buffer = b->r }, { .name = "mrt_b", .buffer = b->b }),
-                 NULL, 0, runtime->block_count, 1, 1);
+    gpu_dispatch(cmd, runtime->pipelines.bounce, GPU_BIND(MRT_BINDINGS(runtime, cmd)), NULL, 0,
+                 runtime->block_count, 1, 1);
 }
 
 static void record_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
-    const struct mrt_runtime_buffers *b = &runtime->buffers;
-    if (runtime->clutter.opening_count > 0) {
+    if (runtime->clutter.opening_count > 0)
         mrt_record_clutter_couple(runtime, cmd);
-        return;
-    }
-    gpu_dispatch(cmd, runtime->pipelines.couple,
-                 GPU_BIND(level_binding(runtime, cmd),
-                          { .name = "mrt_openings", .buffer = b->openings },
-                          { .name = "mrt_sources", .buffer = b->sources },
-                          { .name = "mrt_t_br", .buffer = b->t_br },
-                          { .name = "mrt_b", .buffer = b->b }, { .name = "mrt_r", .buffer = b->r }),
-                 NULL, 0, runtime->opening_count, 1, 1);
+    else
+        gpu_dispatch(cmd, runtime->pipelines.couple, GPU_BIND(MRT_BINDINGS(runtime, cmd)), NULL, 0,
+                     runtime->opening_count, 1, 1);
 }
 
 static void record_reconstruct(struct mrt_runtime *runtime, struct gpu_cmd *cmd, bool vector)
@@ -111,9 +87,7 @@ static void record_fill(struct mrt_runtime *runtime, struct gpu_cmd *cmd, bool v
     const struct mrt_level_params *level = &runtime->level;
     gpu_dispatch(
         cmd, vector ? p->fill_vector : p->fill,
-        GPU_BIND(level_binding(runtime, cmd), { .name = "mrt_tiles", .buffer = b->tiles },
-                 { .name = "mrt_borders", .buffer = b->borders },
-                 { .name = "mrt_area_light", .buffer = b->area_light },
+        GPU_BIND(MRT_BINDINGS(runtime, cmd),
                  { .name = "mrt_irradiance", .buffer = vector ? b->vector : b->irradiance },
                  { .name = "light_map", .image = vector ? b->vector_map : b->light_map }),
         NULL, 0, gpu_groups(level->texels + level->borders, MRT_LOCAL), 1, 1);
@@ -147,27 +121,20 @@ static void record_bricks(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     const struct mrt_runtime_probes *p = &runtime->probes;
     const uint32_t texels = (uint32_t)mrt_brick_texels((int)runtime->level.probes);
     gpu_dispatch(cmd, p->fill,
-                 GPU_BIND(level_binding(runtime, cmd), view->constants_binding,
+                 GPU_BIND(MRT_BINDINGS(runtime, cmd), view->constants_binding,
                           { .name = "mrt_brick_sources", .buffer = p->sources },
                           { .name = "mrt_probe_light", .buffer = p->light },
                           { .name = "mrt_probe_area_light", .buffer = p->area_light },
-                          { .name = "mrt_probe_turns", .buffer = p->turns },
-                          { .name = "bricks", .image = p->bricks }),
+                          { .name = "mrt_probe_turns", .buffer = p->turns }),
                  NULL, 0, gpu_groups(texels, MRT_LOCAL), runtime->block_count, 1);
 }
 
 static void record_volume(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
-    const struct mrt_runtime_buffers *b = &runtime->buffers;
     const struct mrt_runtime_probes *p = &runtime->probes;
     const uint32_t count = probe_grid_count(p->grid);
     gpu_dispatch(cmd, p->publish,
-                 GPU_BIND(level_binding(runtime, cmd),
-                          { .name = "mrt_blocks", .buffer = b->blocks },
-                          { .name = "mrt_cells", .buffer = b->cells },
-                          { .name = "mrt_candidates", .buffer = b->candidates },
-                          { .name = "bricks", .image = p->bricks, .sampler = runtime->linear },
-                          { .name = "mrt_probe_sight", .buffer = p->sight },
+                 GPU_BIND(MRT_BINDINGS(runtime, cmd),
                           { .name = "mrt_probe_places", .buffer = p->places },
                           { .name = "volume", .image = p->volume }),
                  &p->grid, sizeof p->grid, gpu_groups(count, MRT_LOCAL), 1, 1);
@@ -192,7 +159,7 @@ void mrt_record_outdoors(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     if (count == 0) return;
     gpu_scope_begin(cmd, "outdoors");
     gpu_dispatch(cmd, runtime->outdoors.fill,
-                 GPU_BIND(level_binding(runtime, cmd), view->constants_binding,
+                 GPU_BIND(MRT_BINDINGS(runtime, cmd), view->constants_binding,
                           { .name = "mrt_outdoor_probes", .buffer = runtime->outdoors.probes },
                           { .name = "outdoors", .image = runtime->outdoors.image }),
                  NULL, 0, gpu_groups(count, MRT_LOCAL), 1, 1);
@@ -210,15 +177,9 @@ void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     gpu_dispatch(
         cmd, runtime->pipelines.apply,
         GPU_BIND(
-            level_binding(runtime, cmd), view->constants_binding,
-            { .name = "mrt_tiles", .buffer = b->tiles },
-            { .name = "mrt_blocks", .buffer = b->blocks },
-            { .name = "mrt_cells", .buffer = b->cells },
-            { .name = "mrt_candidates", .buffer = b->candidates },
+            MRT_BINDINGS(runtime, cmd), view->constants_binding,
             { .name = "light_map", .image = b->light_map, .sampler = runtime->linear },
             { .name = "vector_map", .image = b->vector_map, .sampler = runtime->linear },
-            { .name = "bricks", .image = runtime->probes.bricks, .sampler = runtime->linear },
-            { .name = "mrt_probe_sight", .buffer = runtime->probes.sight },
             { .name = "outdoors", .image = runtime->outdoors.image, .sampler = runtime->linear },
             { .name = "depth", .image = view->layers[FRAME_DEPTH] },
             { .name = "normal", .image = view->layers[FRAME_NORMAL] },
@@ -231,16 +192,11 @@ void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 void mrt_record_debug(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                       const struct frame_view *view, uint32_t debug_view, gpu_image out)
 {
-    const struct mrt_runtime_buffers *b = &runtime->buffers;
     const struct mrt_view_push push = { debug_view };
     gpu_scope_begin(cmd, "debug");
     gpu_dispatch(cmd, runtime->pipelines.debug,
-                 GPU_BIND(level_binding(runtime, cmd), view->constants_binding,
-                          { .name = "mrt_tiles", .buffer = b->tiles },
-                          { .name = "mrt_blocks", .buffer = b->blocks },
-                          { .name = "mrt_cells", .buffer = b->cells },
-                          { .name = "mrt_candidates", .buffer = b->candidates },
-                          { .name = "mrt_direct", .buffer = b->direct },
+                 GPU_BIND(MRT_BINDINGS(runtime, cmd), view->constants_binding,
+                          { .name = "mrt_direct", .buffer = runtime->buffers.direct },
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                           { .name = "scene", .image = view->layers[FRAME_DIRECT] },

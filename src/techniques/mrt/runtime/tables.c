@@ -1,8 +1,5 @@
 // Tables of texels, tiles, blocks, openings and borders.
-#include "tables.h"
-
-#include "techniques/mrt/runtime/objects.h"
-#include "techniques/mrt/runtime/operators.h"
+#include "techniques/mrt/runtime/upload.h"
 
 #include <string.h>
 
@@ -100,7 +97,8 @@ static bool sends(const struct matrix_f32 *of_c, size_t face)
     return false;
 }
 
-uint32_t mrt_senders(const struct mrt_opening *opening, struct mrt_sender *out)
+// Writes them to `out` unless that is NULL; returns their number.
+static uint32_t senders_of(const struct mrt_opening *opening, struct mrt_sender *out)
 {
     uint32_t count = 0;
     for (int i = 0; i < opening->pair_count; i++) {
@@ -121,10 +119,10 @@ struct mrt_sender *mrt_all_senders(struct host *host, const struct mrt_operators
 {
     *count = 0;
     for (int i = 0; i < operators->opening_count; i++)
-        *count += mrt_senders(&operators->openings[i], NULL);
+        *count += senders_of(&operators->openings[i], NULL);
     struct mrt_sender *out = host_alloc(host, *count, sizeof *out), *next = out;
     for (int i = 0; out && i < operators->opening_count; i++)
-        next += mrt_senders(&operators->openings[i], next);
+        next += senders_of(&operators->openings[i], next);
     return out;
 }
 
@@ -166,7 +164,7 @@ static void fill_openings(const struct mrt_runtime_input *input, void *items)
                                         .quads = mrt_used_quads(o, from),
                                         .clutter = from->face < 0 ? clutter++ : -1,
                                         .first_sender = sender,
-                                        .senders = mrt_senders(from, NULL) };
+                                        .senders = senders_of(from, NULL) };
         for (int k = 0; k < from->response; k++)
             to->response += (uint32_t)o->responses[k].u[0].rows;
         for (int k = 0; k < from->pair_count; k++) to->pairs += from->pairs[k].of_b.rows > 0;

@@ -1,9 +1,5 @@
 // Tables and passes of clutter.
-#include "techniques/mrt/runtime/clutter/clutter.h"
-
-#include "techniques/mrt/runtime/objects.h"
-#include "techniques/mrt/runtime/operators.h"
-#include "techniques/mrt/runtime/tables.h"
+#include "techniques/mrt/runtime/upload.h"
 
 #include "technique_shaders.h"
 
@@ -79,16 +75,11 @@ bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_in
 
 void mrt_record_clutter_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
-    const struct mrt_runtime_buffers *b = &runtime->buffers;
     struct mrt_runtime_clutter *c = &runtime->clutter;
     const gpu_buffer before = c->reflected[c->newest];
     c->newest = 1 - c->newest;
     gpu_dispatch(cmd, c->couple,
-                 GPU_BIND(gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level),
-                          { .name = "mrt_openings", .buffer = b->openings },
-                          { .name = "mrt_sources", .buffer = b->sources },
-                          { .name = "mrt_t_br", .buffer = b->t_br },
-                          { .name = "mrt_b", .buffer = b->b }, { .name = "mrt_r", .buffer = b->r },
+                 GPU_BIND(MRT_BINDINGS(runtime, cmd),
                           { .name = "mrt_clutter_direct", .buffer = c->direct },
                           { .name = "mrt_clutter_reflectance", .buffer = c->reflectance },
                           { .name = "mrt_clutter_coupling", .buffer = c->coupling },

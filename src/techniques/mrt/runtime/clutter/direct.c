@@ -1,9 +1,5 @@
 // Radiosity of direct light of the faces of clutter: tables and pass.
-#include "techniques/mrt/runtime/clutter/clutter.h"
-
-#include "techniques/mrt/runtime/objects.h"
-#include "techniques/mrt/runtime/operators.h"
-#include "techniques/mrt/runtime/tables.h"
+#include "techniques/mrt/runtime/upload.h"
 
 #include "technique_shaders.h"
 
@@ -159,8 +155,7 @@ void mrt_record_clutter_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     if (c->opening_count == 0) return;
     gpu_scope_begin(cmd, "clutter");
     gpu_dispatch(cmd, c->light,
-                 GPU_BIND(FRAME_LIGHT_BINDINGS(view),
-                          gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level),
+                 GPU_BIND(FRAME_LIGHT_BINDINGS(view), MRT_BINDINGS(runtime, cmd),
                           { .name = "mrt_texels", .buffer = c->texels },
                           { .name = "mrt_clutter_groups", .buffer = c->groups },
                           { .name = "mrt_clutter_faces", .buffer = c->faces },

@@ -1,10 +1,6 @@
 // The light map of clutter: tables and passes. Its texels are to reconstruct.comp as those of walls
 // by normal, in tiles of MRT_LOCAL.
-#include "techniques/mrt/runtime/clutter/clutter.h"
-
-#include "techniques/mrt/runtime/objects.h"
-#include "techniques/mrt/runtime/operators.h"
-#include "techniques/mrt/runtime/tables.h"
+#include "techniques/mrt/runtime/upload.h"
 
 #include "techniques/mrt/dictionary/rays.h"
 
