@@ -3,27 +3,27 @@
 
 #include <math.h>
 
-bool mrt_cell_ray_enter(const struct mrt_block_map *map, int block, vec3s from, vec3s way,
-                        struct mrt_cell_ray *ray)
+bool mrt_cell_of_point(const struct mrt_block_map *map, int block, vec3s world, vec3s *cell)
 {
-    const vec3s *corner = map->blocks[block].corner;
-    ray->block = block;
-    if (!mrt_warp_inverse(corner, from, &ray->position)) return false;
-    ray->position = glms_vec3_maxv(glms_vec3_minv(ray->position, vec3_of(0.5f, 0.5f, 0.5f)),
-                                   vec3_of(-0.5f, -0.5f, -0.5f));
-    const mat3s cell_from_world = glms_mat3_inv(mrt_warp_jacobian(corner, ray->position));
-    ray->direction = vec3_unit(glms_mat3_mulv(cell_from_world, way));
-    return glms_vec3_norm2(ray->direction) > 0.0f;
+    if (!mrt_warp_inverse(map->blocks[block].corner, world, cell)) return false;
+    *cell = glms_vec3_maxv(glms_vec3_minv(*cell, vec3_of(0.5f, 0.5f, 0.5f)),
+                           vec3_of(-0.5f, -0.5f, -0.5f));
+    return true;
 }
 
-vec3s mrt_cell_ray_end(const struct mrt_block_map *map, int resolution,
-                       const struct mrt_cell_ray *ray, struct mrt_hit *hit)
+bool mrt_cell_ray(const struct mrt_clutter_rays *rays, int block, vec3s from, vec3s way,
+                  struct mrt_hit *hit, vec3s *end)
 {
-    const struct mrt_block *block = &map->blocks[ray->block];
-    const struct mrt_shape shape = mrt_block_shape(block, resolution);
-    mrt_shape_trace(&shape, ray->position, ray->direction, hit);
-    return mrt_warp_point(block->corner,
-                          glms_vec3_muladds(ray->direction, hit->distance, ray->position));
+    const struct mrt_block *of = &rays->map->blocks[block];
+    const struct mrt_shape shape = mrt_block_shape(of, rays->resolution);
+    vec3s position;
+    if (!mrt_cell_of_point(rays->map, block, from, &position)) return false;
+    const mat3s cell_from_world = glms_mat3_inv(mrt_warp_jacobian(of->corner, position));
+    const vec3s direction = vec3_unit(glms_mat3_mulv(cell_from_world, way));
+    if (!(glms_vec3_norm2(direction) > 0.0f)) return false;
+    mrt_shape_trace(&shape, position, direction, hit);
+    *end = mrt_warp_point(of->corner, glms_vec3_muladds(direction, hit->distance, position));
+    return true;
 }
 
 mat3s mrt_frame_of_normal(vec3s normal)

@@ -55,7 +55,7 @@ struct change {
     const struct builder *s;
     const struct mrt_delta *delta;
     enum mrt_measure measure;
-    const float *kept;       // of the opening
+    int face;                // of the opening
     struct matrix_f32 *rows; // of the basis or of the response
 };
 
@@ -93,7 +93,7 @@ static void keep_share(void *user, const struct grid_rows *grid)
     for (size_t i = 0; i < grid->count; i++)
         for (size_t c = 0; c < at->rows->columns; c++)
             at->rows->at[(grid->closed + i) * at->rows->stride + c] *=
-                at->kept[(grid->own + i) / values];
+                at->delta->kept[(grid->own + i) / values][at->face];
     inpaint(at, grid, grid->closed);
 }
 
@@ -114,8 +114,7 @@ static void change_light(const struct builder *s, int block, const struct mrt_de
                          struct matrix_f32 light[MRT_MEASURES])
 {
     for (int m = 0; m < MRT_MEASURES; m++) {
-        struct change at = { s, &delta->of[m], (enum mrt_measure)m,
-                             face < 0 ? NULL : delta->of[m].kept[face], &light[m] };
+        struct change at = { s, &delta->of[m], (enum mrt_measure)m, face, &light[m] };
         if (light[m].rows > 0 && at.delta->inside) for_grids(s, block, at.measure, visit, &at);
     }
 }

@@ -77,14 +77,13 @@ static void follow(struct texel_job *t, int r)
     const vec3s local = t->job->rays.direction[r], way = glms_mat3_mulv(t->frame, local);
     const float cosine = 2.0f * local.z / (float)t->job->rays.count; // of uniform rays
     float weight[VALUES];
-    struct mrt_cell_ray ray;
     struct mrt_hit wall;
     struct trace_hit hit;
     for (int q = 0; q < VALUES; q++) weight[q] = t->job->rays.weight[r * VALUES + q];
     set_at_pole(weight, cosine);
     turn(t->frame, weight);
-    if (!mrt_cell_ray_enter(input->map, t->job->out->block, t->from, way, &ray)) return;
-    const vec3s end = mrt_cell_ray_end(input->map, input->resolution, &ray, &wall);
+    vec3s end;
+    if (!mrt_cell_ray(input, t->job->out->block, t->from, way, &wall, &end)) return;
     const bool blocked =
         trace_closest(input->objects, t->from, way, glms_vec3_distance(t->from, end), &hit);
     if (wall.opening >= 0) {
@@ -119,7 +118,7 @@ static void trace_texel(void *user, size_t i)
     for (int r = 0; r < job->rays.count; r++) follow(&t, r);
     job->out->inside[i] = is_inside(t.backs, job->rays.count);
     for (int f = 0; f < CUBE_FACES; f++)
-        job->out->kept[f][i] = t.all[f] > 0.0f ? t.kept[f] / t.all[f] : 0.0f;
+        job->out->kept[i][f] = t.all[f] > 0.0f ? t.kept[f] / t.all[f] : 0.0f;
 }
 
 bool mrt_clutter_transfer_init(struct mrt_clutter_transfer *out, struct host *host,
@@ -139,15 +138,12 @@ bool mrt_clutter_transfer_init(struct mrt_clutter_transfer *out, struct host *ho
             first->first_texel;
     }
     out->inside = host_alloc(host, out->texel_count, sizeof *out->inside);
-    bool ok = out->inside;
-    for (int f = 0; f < CUBE_FACES; f++) {
-        out->kept[f] = host_alloc(host, out->texel_count, sizeof **out->kept);
-        ok = ok && out->kept[f];
-    }
-    ok = ok &&
-         matrix_f32_init(host, &out->b, out->texel_count * VALUES, rays->l_imp[block]->columns) &&
-         matrix_f32_init(host, &out->c, out->texel_count * VALUES, (size_t)faces) &&
-         mrt_rays_init(host, MRT_VECTOR, rays->rays, &job.rays);
+    out->kept = host_alloc(host, out->texel_count, sizeof *out->kept);
+    bool ok =
+        out->inside && out->kept &&
+        matrix_f32_init(host, &out->b, out->texel_count * VALUES, rays->l_imp[block]->columns) &&
+        matrix_f32_init(host, &out->c, out->texel_count * VALUES, (size_t)faces) &&
+        mrt_rays_init(host, MRT_VECTOR, rays->rays, &job.rays);
     if (ok) parallel_for(out->texel_count, 4, trace_texel, &job);
     ok = ok && !mrt_is_stopped(rays->stop);
     mrt_rays_finish(host, &job.rays);
@@ -160,7 +156,7 @@ void mrt_clutter_transfer_finish(struct mrt_clutter_transfer *transfer)
     if (!transfer->host) return;
     matrix_f32_finish(transfer->host, &transfer->b);
     matrix_f32_finish(transfer->host, &transfer->c);
-    for (int f = 0; f < CUBE_FACES; f++) host_free(transfer->host, transfer->kept[f]);
+    host_free(transfer->host, transfer->kept);
     host_free(transfer->host, transfer->inside);
     *transfer = (struct mrt_clutter_transfer){ 0 };
 }
@@ -196,8 +192,7 @@ struct response_job {
     const struct mrt_clutter_rays *input;
     const struct mrt_clutter_transfer *transfer;
     const struct matrix_f32 *probes;
-    const float *kept;
-    int p;
+    int face, p;
     mat3s world_from_cell;
     struct matrix_f32 *out;
 };
@@ -232,18 +227,19 @@ static void respond(void *user, size_t i)
     const mat3s local_from_cell = glms_mat3_mul(glms_mat3_transpose(frame), job->world_from_cell);
     int index[CORNERS];
     float weight[CORNERS];
-    struct mrt_cell_ray at;
-    if (!mrt_cell_ray_enter(job->input->map, job->transfer->block,
-                            chart_texel_of(charts, texel)->position, frame.col[2], &at))
+    vec3s cell;
+    if (!mrt_cell_of_point(job->input->map, job->transfer->block,
+                           chart_texel_of(charts, texel)->position, &cell))
         return;
-    probes_around(job->p, at.position, index, weight);
+    probes_around(job->p, cell, index, weight);
     for (size_t m = 0; m < job->out->columns; m++) {
         float sh[MRT_PROBE_COEFFICIENTS], rotated[MRT_PROBE_COEFFICIENTS], value[VALUES];
         interpolate(job, index, weight, m, sh);
         sh_rotate(3, local_from_cell, sh, rotated);
         fit(rotated, frame, value);
         for (size_t q = 0; q < VALUES; q++)
-            job->out->at[(i * VALUES + q) * job->out->stride + m] = job->kept[i] * value[q];
+            job->out->at[(i * VALUES + q) * job->out->stride + m] =
+                job->transfer->kept[i][job->face] * value[q];
     }
 }
 
@@ -255,7 +251,7 @@ bool mrt_clutter_transfer_response(const struct mrt_clutter_transfer *transfer, 
         .input = rays,
         .transfer = transfer,
         .probes = probes,
-        .kept = transfer->kept[face],
+        .face = face,
         .p = rays->probes,
         .world_from_cell = mrt_block_rotation(&rays->map->blocks[transfer->block]),
         .out = out,

@@ -82,7 +82,7 @@ static void trace_point(void *user, size_t i)
     job->out->inside[i] = is_inside(count.backs, job->rays.count);
     job->out->closed[i] = count.rays == job->rays.count;
     for (int f = 0; f < CUBE_FACES; f++)
-        job->out->kept[f][i] = passing.all[f] > 0.0f ? passing.kept[f] / passing.all[f]
+        job->out->kept[i][f] = passing.all[f] > 0.0f ? passing.kept[f] / passing.all[f]
                                : job->out->closed[i] ? 0.0f
                                                      : 1.0f;
 }
@@ -103,11 +103,8 @@ static bool trace_measure(struct mrt_delta_block *out, const struct mrt_clutter_
     job.touched = host_alloc(host, points, sizeof *job.touched);
     delta->inside = host_alloc(host, points, sizeof *delta->inside);
     delta->closed = host_alloc(host, points, sizeof *delta->closed);
-    for (int f = 0; f < CUBE_FACES; f++) {
-        delta->kept[f] = host_alloc(host, points, sizeof **delta->kept);
-        ok = ok && delta->kept[f];
-    }
-    ok = ok && job.touched && delta->inside && delta->closed &&
+    delta->kept = host_alloc(host, points, sizeof *delta->kept);
+    ok = ok && delta->kept && job.touched && delta->inside && delta->closed &&
          matrix_f32_init(host, &delta->b, rows, rays->l_imp[cell->index]->columns) &&
          matrix_f32_init(host, &delta->c, rows, (size_t)out->face_count);
     if (ok) parallel_for(points, 4, trace_point, &job);
@@ -158,7 +155,7 @@ void mrt_delta_block_finish(struct mrt_delta_block *delta)
         matrix_f32_finish(delta->host, &delta->of[m].c);
         host_free(delta->host, delta->of[m].inside);
         host_free(delta->host, delta->of[m].closed);
-        for (int f = 0; f < CUBE_FACES; f++) host_free(delta->host, delta->of[m].kept[f]);
+        host_free(delta->host, delta->of[m].kept);
     }
     if (delta->host) host_free(delta->host, delta->sight);
     *delta = (struct mrt_delta_block){ 0 };

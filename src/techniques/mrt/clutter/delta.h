@@ -24,11 +24,11 @@
 
 // Changes of the operators by clutter, at the points of a block: texels of its walls, or probes.
 struct mrt_delta {
-    struct matrix_f32 b;     // points · values × k_b: ΔU_b ≤ 0 for light ≥ 0
-    struct matrix_f32 c;     // points · values × faces of the block: ΔU_c
-    float *kept[CUBE_FACES]; // of each point, by opening: the share of rays that pass
-    bool *closed;            // all rays are blocked: no light of walls and openings arrives
-    bool *inside;            // most rays meet backs of clutter: the point is inside an object
+    struct matrix_f32 b;       // points · values × k_b: ΔU_b ≤ 0 for light ≥ 0
+    struct matrix_f32 c;       // points · values × faces of the block: ΔU_c
+    float (*kept)[CUBE_FACES]; // of each point, by opening: the share of rays that pass
+    bool *closed;              // all rays are blocked: no light of walls and openings arrives
+    bool *inside;              // most rays meet backs of clutter: the point is inside an object
 };
 
 struct mrt_delta_block {
@@ -73,18 +73,13 @@ void mrt_inpaint(struct matrix_f32 *rows, int edge, int layers, int values, cons
 //
 // Rays in the world, followed through the cells of blocks.
 
-struct mrt_cell_ray {
-    int block;
-    vec3s position, direction; // in the cell
-};
-
-// The ray in the cell of a block, from the nearest point of the cell. False where the warp has no
+// The point of the cell of a block that is nearest to one of the world. False where the warp has no
 // inverse there.
-bool mrt_cell_ray_enter(const struct mrt_block_map *map, int block, vec3s from, vec3s way,
-                        struct mrt_cell_ray *ray);
-// The wall or opening where it ends in the cell, and the point in the world.
-vec3s mrt_cell_ray_end(const struct mrt_block_map *map, int resolution,
-                       const struct mrt_cell_ray *ray, struct mrt_hit *hit);
+bool mrt_cell_of_point(const struct mrt_block_map *map, int block, vec3s world, vec3s *cell);
+// The wall or opening where a ray of the world ends in the cell of a block, and the point in the
+// world. False where the warp has no inverse.
+bool mrt_cell_ray(const struct mrt_clutter_rays *rays, int block, vec3s from, vec3s way,
+                  struct mrt_hit *hit, vec3s *end);
 
 // The frame whose third axis is the normal.
 mat3s mrt_frame_of_normal(vec3s normal);
@@ -180,10 +175,10 @@ struct mrt_clutter_transfer {
     int block;
     uint32_t first_texel; // in clutter->texels
     size_t texel_count;
-    struct matrix_f32 b;     // texels · 4 × k_b
-    struct matrix_f32 c;     // texels · 4 × faces of the block
-    float *kept[CUBE_FACES]; // of each texel, by opening
-    bool *inside;            // of each texel: it is inside another object
+    struct matrix_f32 b;       // texels · 4 × k_b
+    struct matrix_f32 c;       // texels · 4 × faces of the block
+    float (*kept)[CUBE_FACES]; // of each texel, by opening
+    bool *inside;              // of each texel: it is inside another object
 };
 
 // A block without faces has no texels. mrt_clutter_transfer_finish accepts zero.

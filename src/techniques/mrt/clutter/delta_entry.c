@@ -60,10 +60,9 @@ static void follow(const struct job *job, size_t point, vec3s from, vec3s way, i
     const struct mrt_block_map *map = job->input->map;
     bool hidden = false;
     for (int passed = 0; passed <= job->input->depth; passed++) {
-        struct mrt_cell_ray ray;
         struct mrt_hit wall;
-        if (block < 0 || !mrt_cell_ray_enter(map, block, from, way, &ray)) return;
-        const vec3s end = mrt_cell_ray_end(map, job->input->resolution, &ray, &wall);
+        vec3s end;
+        if (block < 0 || !mrt_cell_ray(job->input, block, from, way, &wall, &end)) return;
         const int source = source_of(job->opening, block);
         hidden = hidden || meets_face(job, block, from, end, point);
         if (wall.opening < 0) {

@@ -39,19 +39,19 @@ struct ray_end {
     struct mrt_hit hit;
 };
 
-static struct ray_end end_of(const struct job *job, struct mrt_cell_ray ray, vec3s from, vec3s way)
+static struct ray_end end_of(const struct job *job, int block, vec3s from, vec3s way)
 {
-    const struct mrt_block_map *map = job->input->map;
     struct ray_end out = { .block = -1, .distance = INFINITY };
-    for (int passed = 0; passed <= job->input->depth; passed++) {
-        const vec3s end = mrt_cell_ray_end(map, job->input->resolution, &ray, &out.hit);
+    vec3s at = from, end;
+    for (int passed = 0; passed <= job->input->depth && block >= 0; passed++) {
+        if (!mrt_cell_ray(job->input, block, at, way, &out.hit, &end)) break;
         if (out.hit.opening < 0) {
-            out.block = ray.block;
+            out.block = block;
             out.distance = glms_vec3_distance(from, end);
             break;
         }
-        const int next = map->blocks[ray.block].neighbor[out.hit.opening].block;
-        if (next < 0 || !mrt_cell_ray_enter(map, next, end, way, &ray)) break;
+        block = job->input->map->blocks[block].neighbor[out.hit.opening].block;
+        at = end;
     }
     return out;
 }
@@ -80,10 +80,7 @@ static void trace_texel(const struct job *job, size_t face, uint32_t of_face, in
         const vec2s u = sobol_2d((uint32_t)r, seed);
         const vec3s way = glms_mat3_mulv(frame, sample_hemisphere_cosine(u));
         struct trace_hit hit;
-        struct mrt_cell_ray ray;
-        struct ray_end end = { .block = -1, .distance = INFINITY };
-        if (mrt_cell_ray_enter(job->input->map, of->block, from, way, &ray))
-            end = end_of(job, ray, from, way);
+        const struct ray_end end = end_of(job, of->block, from, way);
         if (trace_closest(job->input->objects, from, way, end.distance, &hit))
             add_face(job, face, weight, &hit);
         else if (end.block >= 0)
