@@ -75,7 +75,7 @@ struct mrt_gpu_probe {
     float sky[9];
 };
 
-// The same at a point of the outdoor grid, premultiplied by `open` (level/outdoors.h).
+// The same at a point of the outdoor grid, premultiplied by `open` (level/area_light.h).
 struct mrt_gpu_outdoor_probe {
     AG_STRUCT(mrt_gpu_probe) light;
     float open;
@@ -148,7 +148,7 @@ struct mrt_view_push {
     uint32_t view; // MRT_VIEW_…
 };
 
-// A voxel of a block (clutter/probe_sight.h): bits of probes, openness in 1/255, whether some of it
+// A voxel of a block (clutter/delta.h): bits of probes, openness in 1/255, whether some of it
 // is in a solid.
 #define MRT_SIGHT_PROBES 0xffu
 #define MRT_SIGHT_OPEN   8

@@ -31,7 +31,7 @@ struct mrt_options {
 struct mrt_parts {
     struct host *host;
     struct mrt_clutter clutter; // drt; until the operators are made, as its texels
-    struct mrt_clutter_texel *clutter_texels;
+    struct mrt_geometry_texel *clutter_texels;
     struct mrt_scene_images images;
     struct hash128 walls; // of the surfaces that images.geometry was traced from
     bool *has_walls;      // [instance_count]: of instances, surfaces that are no clutter

@@ -11,8 +11,6 @@ static void make_geometry(struct mrt_runtime_fixture *f, vec3s reflectance)
 {
     int n = f->atlas.resolution;
     f->images.geometry = calloc((size_t)f->atlas.texels, sizeof *f->images.geometry);
-    f->images.emitted = calloc((size_t)f->atlas.texels, sizeof *f->images.emitted);
-    f->images.sky = calloc((size_t)f->atlas.texels, sizeof *f->images.sky);
     for (int i = 0; i < f->atlas.texels; i++) {
         const struct mrt_tile *tile = &f->atlas.tiles[i / (n * n)];
         float s = ((float)(i % n) + 0.5f) / (float)n, t = ((float)(i / n % n) + 0.5f) / (float)n;
@@ -23,6 +21,8 @@ static void make_geometry(struct mrt_runtime_fixture *f, vec3s reflectance)
             .normal = glms_vec3_negate(mrt_warp_face_normal(corner, tile->face, wall)),
             .reflectance = reflectance,
             .found = true,
+            .area_m2 =
+                mrt_wall_area(&f->map.blocks[tile->block], tile->face, s, t) / (float)(n * n),
         };
     }
 }
@@ -98,8 +98,6 @@ void mrt_runtime_fixture_finish(struct mrt_runtime_fixture *f)
     mrt_atlas_finish(&f->atlas);
     mrt_block_map_finish(&f->map);
     free(f->images.geometry);
-    free(f->images.emitted);
-    free(f->images.sky);
 }
 
 static void randomize(struct matrix_f32 *m, struct rng *rng, float scale, float least)

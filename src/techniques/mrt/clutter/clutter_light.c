@@ -16,35 +16,22 @@ static struct mrt_geometry_texel look_at(const struct trace_scene *objects,
         .reflectance = vec3_xyz(texel_reflectance(objects, &clutter->charts, texel, NULL)),
         .emission = surface.emission,
         .found = true,
+        .area_m2 = t->area_m2,
     };
 }
 
-static bool look(struct mrt_scene_images *images, const struct mrt_clutter *clutter)
-{
-    struct trace_scene *objects = trace_scene_create(images->host, &clutter->objects.pose);
-    if (!objects) return false;
-    for (uint32_t i = 0; i < clutter->charts.side_texel_count; i++)
-        images->geometry[i] = look_at(objects, clutter, clutter->texels[i]);
-    trace_scene_destroy(objects);
-    return true;
-}
-
-struct mrt_clutter_texel *mrt_clutter_light_create(struct host *host, const struct scene_pose *pose,
-                                                   const struct mrt_clutter *clutter)
+struct mrt_geometry_texel *mrt_clutter_light_create(struct host *host,
+                                                    const struct scene_pose *pose,
+                                                    const struct mrt_clutter *clutter)
 {
     const size_t count = clutter->charts.side_texel_count;
-    struct mrt_scene_images images = { .host = host };
-    struct mrt_clutter_texel *out = host_alloc(host, count, sizeof *out);
+    struct mrt_geometry_texel *out = host_alloc(host, count, sizeof *out);
+    struct trace_scene *objects = trace_scene_create(host, &clutter->objects.pose);
     struct trace_scene *scene = trace_scene_create(host, pose);
-    images.geometry = host_alloc(host, count, sizeof *images.geometry);
-    const bool ok = out && scene && images.geometry && look(&images, clutter) &&
-                    mrt_area_light_texels(&images, pose, scene, count);
-    for (size_t i = 0; ok && i < count; i++)
-        out[i] = (struct mrt_clutter_texel){
-            images.geometry[i], chart_texel_of(&clutter->charts, clutter->texels[i])->area_m2,
-            images.emitted[i], images.sky[i]
-        };
-    mrt_scene_images_finish(&images);
+    const bool ok = out && objects && scene;
+    for (size_t i = 0; ok && i < count; i++) out[i] = look_at(objects, clutter, clutter->texels[i]);
+    if (ok) mrt_area_light_texels(scene, out, count);
+    trace_scene_destroy(objects);
     trace_scene_destroy(scene);
     if (ok) return out;
     host_free(host, out);

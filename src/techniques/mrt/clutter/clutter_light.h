@@ -4,14 +4,8 @@
 #include "techniques/mrt/clutter/clutter.h"
 #include "techniques/mrt/level/area_light.h"
 
-struct mrt_clutter_texel {
-    struct mrt_geometry_texel at;
-    float area_m2; // of the surface
-    vec3s emitted; // as in struct mrt_scene_images
-    float sky;
-};
-
 // One for each of clutter->texels, in their order. The caller frees it with host_free; NULL without
 // memory.
-struct mrt_clutter_texel *mrt_clutter_light_create(struct host *host, const struct scene_pose *pose,
-                                                   const struct mrt_clutter *clutter);
+struct mrt_geometry_texel *mrt_clutter_light_create(struct host *host,
+                                                    const struct scene_pose *pose,
+                                                    const struct mrt_clutter *clutter);

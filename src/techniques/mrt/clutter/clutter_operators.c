@@ -8,7 +8,7 @@
 struct builder {
     struct mrt_operators *to;
     const struct mrt_level *level;
-    const struct mrt_clutter_texel *texels;
+    const struct mrt_geometry_texel *texels;
     const struct mrt_clutter_changes *changes;
     struct mrt_clutter_rays rays; // of the next two
     struct trace_scene *objects;
@@ -246,8 +246,8 @@ static void fill_face(const struct builder *s, const struct mrt_clutter_face *fr
                                      .first_texel = (int)from->first_texel,
                                      .texel_count = (int)from->texel_count };
     for (int t = to->first_texel; t < to->first_texel + to->texel_count; t++) {
-        const struct mrt_clutter_texel *texel = &s->texels[t];
-        to->reflectance = glms_vec3_muladds(texel->at.reflectance, texel->area_m2, to->reflectance);
+        const struct mrt_geometry_texel *texel = &s->texels[t];
+        to->reflectance = glms_vec3_muladds(texel->reflectance, texel->area_m2, to->reflectance);
         area += texel->area_m2;
     }
     to->reflectance = glms_vec3_divs(to->reflectance, area);
@@ -396,7 +396,7 @@ static bool start(struct builder *s)
 
 bool mrt_operators_add_clutter(struct mrt_operators *operators, const struct mrt_level *level,
                                const struct mrt_clutter *clutter,
-                               const struct mrt_clutter_texel *texels,
+                               const struct mrt_geometry_texel *texels,
                                struct mrt_delta_cache *cache,
                                const struct mrt_clutter_changes *changes)
 {

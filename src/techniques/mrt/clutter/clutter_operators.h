@@ -22,7 +22,7 @@ struct mrt_clutter_changes {
 // order. The cache must outlive the call only.
 bool mrt_operators_add_clutter(struct mrt_operators *operators, const struct mrt_level *level,
                                const struct mrt_clutter *clutter,
-                               const struct mrt_clutter_texel *texels,
+                               const struct mrt_geometry_texel *texels,
                                struct mrt_delta_cache *cache,
                                const struct mrt_clutter_changes *changes);
 

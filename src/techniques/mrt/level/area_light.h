@@ -2,15 +2,49 @@
 // for which the frame has no shadow maps. Traced once, with the geometry image.
 #pragma once
 
+#include "techniques/common/probes/grid.h"
 #include "techniques/mrt/level/geometry.h"
-#include "techniques/mrt/level/outdoors.h"
 #include "techniques/mrt/level/probes.h"
+#include "trace/texels/light.h"
+
+// ---- area_light_points.c: by uniform rays and samples of the emitters
+
+struct mrt_area_light_points {
+    size_t count;
+    const vec3s *position;              // world
+    struct mrt_area_light_probe *light; // result, 0 before
+    bool *solid;                        // result: inside a solid
+};
+
+// rays: a power of two. false: out of memory.
+bool mrt_area_light_points(struct host *host, const struct trace_scene *scene, int rays,
+                           const struct mrt_area_light_points *points);
+
+// ---- area_light_outdoors.c: probes outside of all blocks, on a grid over the scene, for surfaces
+// that belong to no room
+
+// Values are premultiplied by `open`.
+struct mrt_outdoor_probe {
+    struct mrt_area_light_probe light;
+    // 0: in a block, in a solid or without a view of the sky; 1: outdoors.
+    float open;
+};
+
+struct mrt_outdoors {
+    struct host *host;
+    struct frame_probes grid;
+    struct mrt_outdoor_probe *probes; // [z][y][x]; NULL: all places are enclosed
+};
+
+bool mrt_outdoors_init(struct host *host, const struct mrt_block_map *map, struct box3 bounds,
+                       const struct trace_scene *scene, struct mrt_outdoors *out);
+void mrt_outdoors_finish(struct mrt_outdoors *outdoors); // accepts zero
+
+// ---- area_light.c
 
 struct mrt_scene_images {
     struct host *host;
-    struct mrt_geometry_texel *geometry;     // [texels]
-    vec3s *emitted;                          // [texels] irradiance of emissive surfaces, lux
-    float *sky;                              // [texels] irradiance of a sky of radiance 1/π
+    struct mrt_geometry_texel *geometry;     // [texels], with light
     struct mrt_area_light_probe *area_light; // [blocks · p³]
     struct mrt_outdoors outdoors;
 };
@@ -21,7 +55,7 @@ bool mrt_scene_images_init(struct host *host, const struct scene_pose *pose,
                            const struct scene_pose *walls, const struct mrt_block_map *map,
                            const struct mrt_atlas *atlas, int probes,
                            const struct mrt_geometry_texel *kept, struct mrt_scene_images *out);
-// Light at texels whose geometry is set, without probes.
-bool mrt_area_light_texels(struct mrt_scene_images *images, const struct scene_pose *pose,
-                           const struct trace_scene *scene, size_t texels);
+// Light at texels. Returns whether there are emitters or sky.
+bool mrt_area_light_texels(const struct trace_scene *scene, struct mrt_geometry_texel *texels,
+                           size_t count);
 void mrt_scene_images_finish(struct mrt_scene_images *images); // accepts zero

@@ -1,7 +1,5 @@
 // Probes outside of all blocks.
-#include "outdoors.h"
-
-#include "techniques/mrt/level/area_light_points.h"
+#include "techniques/mrt/level/area_light.h"
 
 #include <math.h>
 

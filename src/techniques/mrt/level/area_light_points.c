@@ -1,5 +1,5 @@
 // Light of emitters and the sky at points.
-#include "area_light_points.h"
+#include "techniques/mrt/level/area_light.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"

@@ -1,5 +1,5 @@
 // Light of emitters and the sky at the probes of blocks.
-#include "techniques/mrt/level/area_light_points.h"
+#include "techniques/mrt/level/area_light.h"
 
 #include <math.h>
 

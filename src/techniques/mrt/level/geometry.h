@@ -12,9 +12,12 @@ struct mrt_geometry_texel {
     vec3s reflectance; // for light that bounces (trace_reflectance); 0 where there is no surface
     vec3s emission;    // towards the middle of the block, cd/m²
     bool found;        // false: no surface, the wall of the block stands for it
+    float area_m2;     // of the wall, or of the surface of clutter
+    vec3s emitted;     // irradiance of emissive surfaces, lux (area_light.h)
+    float sky;         // irradiance of a sky of radiance 1/π
 };
 
-// One for each texel of the level. The caller frees it with host_free.
+// One for each texel of the level, without light. The caller frees it with host_free.
 struct mrt_geometry_texel *mrt_geometry_create(struct host *host, const struct mrt_block_map *map,
                                                const struct mrt_atlas *atlas,
                                                const struct trace_scene *scene);

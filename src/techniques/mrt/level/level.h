@@ -4,9 +4,10 @@
 
 #include "techniques/mrt/dictionary/dictionary.h"
 #include "techniques/mrt/level/atlas.h"
-#include "techniques/mrt/level/kernels.h"
 #include "techniques/mrt/level/retrace.h"
 #include "techniques/mrt/level/wall.h"
+
+enum { MRT_LANES = 8 }; // of the solver
 
 struct mrt_level_options {
     int max_depth; // openings that light passes at most; 0: none

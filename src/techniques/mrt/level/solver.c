@@ -1,11 +1,69 @@
-// The solver: operators in the order that the kernels read, and the steps of a frame.
+// The solver: operators in the order that the products read, and the steps of a frame.
 #include "solver.h"
-
-#include "kernels.h"
 
 #include "core/parallel.h"
 
 #include <string.h>
+
+// ---- products of a matrix with three colours at once, eight elements at a time: vectors of the
+// compiler, which splits them into those of the processor. Lengths and strides are multiples of
+// MRT_LANES.
+
+typedef float lanes __attribute__((vector_size(4 * MRT_LANES), aligned(4), may_alias));
+
+static inline float sum_of(const lanes *v)
+{
+    // A fixed order, whatever the width of the processor's vectors.
+    return (((*v)[0] + (*v)[4]) + ((*v)[1] + (*v)[5])) +
+           (((*v)[2] + (*v)[6]) + ((*v)[3] + (*v)[7]));
+}
+
+// Two rows share the loads of the values.
+static void project_two(const float *m, const float *n, int length, const float *const values[3],
+                        float *out_m, float *out_n)
+{
+    lanes a[3] = { { 0 } }, b[3] = { { 0 } };
+    for (int i = 0; i < length; i += MRT_LANES) {
+        lanes x = *(const lanes *)(m + i), y = *(const lanes *)(n + i);
+        for (int c = 0; c < 3; c++) {
+            lanes v = *(const lanes *)(values[c] + i);
+            a[c] += x * v;
+            b[c] += y * v;
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        out_m[c] = sum_of(&a[c]);
+        out_n[c] = sum_of(&b[c]);
+    }
+}
+
+// out[r · 3 + c] = Σ_i m[r · stride + i] · values[c][i] for `rows` rows of `length` elements.
+static void project(const float *m, int stride, int rows, int length, const float *const values[3],
+                    float *out)
+{
+    for (int r = 0; r < rows; r += 2) {
+        int s = r + 1 < rows ? r + 1 : r;
+        project_two(m + (long)r * stride, m + (long)s * stride, length, values, out + 3 * r,
+                    out + 3 * s);
+    }
+}
+
+// out[c][i] += Σ_r m[r · stride + i] · values[r · 3 + c].
+static void expand(const float *m, int stride, int rows, int length, const float *values,
+                   float *const out[3])
+{
+    for (int i = 0; i < length; i += MRT_LANES) {
+        lanes sum[3];
+        for (int c = 0; c < 3; c++) sum[c] = *(const lanes *)(out[c] + i);
+        for (int r = 0; r < rows; r++) {
+            lanes x = *(const lanes *)(m + (long)r * stride + i);
+            for (int c = 0; c < 3; c++) sum[c] += x * values[3 * r + c];
+        }
+        for (int c = 0; c < 3; c++) *(lanes *)(out[c] + i) = sum[c];
+    }
+}
+
+// ---- sizes
 
 // Walls of a shape of the dictionary.
 static int walls_of(enum mrt_maze maze, int shape)
@@ -244,7 +302,7 @@ static void project_block(void *user, size_t i)
     for (int t = level->first_texel[block]; t < level->first_texel[block + 1]; t++)
         for (int c = 0; c < 3; c++) planes[c][s->cube_texel[t]] = frame->radiosity[3 * t + c];
     const float *const light[3] = { planes[0], planes[1], planes[2] };
-    mrt_kernel_project(s->t_db[cube], length, k_b, length, light, s->b + i * 3 * (size_t)k_b);
+    project(s->t_db[cube], length, k_b, length, light, s->b + i * 3 * (size_t)k_b);
 }
 
 // r = T_b→r b for one entry, interleaved.
@@ -257,8 +315,8 @@ static const float *receive(struct mrt_solver *s, int entry)
     memset(planes, 0, 3 * (size_t)stride * sizeof *planes);
     for (int l = level->first_link[entry]; l < level->first_link[entry + 1]; l++) {
         const struct mrt_link *link = &level->links[l];
-        mrt_kernel_expand(level->matrices + link->matrix, stride, k_b, stride,
-                          s->b + (size_t)link->source * 3 * (size_t)k_b, r);
+        expand(level->matrices + link->matrix, stride, k_b, stride,
+               s->b + (size_t)link->source * 3 * (size_t)k_b, r);
     }
     for (int k = 0; k < k_r; k++)
         for (int c = 0; c < 3; c++) out[3 * k + c] = r[c][k];
@@ -280,7 +338,7 @@ static void add_response(const struct mrt_solver *s, int block, int entry_face, 
         if (!mrt_block_has_wall(of, wall)) continue;
         memset(planes[0], 0, 3 * (size_t)face * sizeof *planes[0]);
         int from = s->entered_face[response][wall];
-        mrt_kernel_expand(s->u_r + (size_t)(from * k_r) * (size_t)face, face, k_r, face, r, planes);
+        expand(s->u_r + (size_t)(from * k_r) * (size_t)face, face, k_r, face, r, planes);
         const int *texel = s->entered_texel + (response * CUBE_FACES + wall) * n;
         for (int t = 0; t < n; t++)
             for (int c = 0; c < 3; c++) irradiance[3 * t + c] += planes[c][texel[t]];
@@ -299,7 +357,7 @@ static void light_block(void *user, size_t i)
     memset(planes[0], 0, 3 * (size_t)length * sizeof *planes[0]);
     const int retraced = level->retraces.of_block ? level->retraces.of_block[block] : -1;
     const float *u_b = retraced < 0 ? s->u_b[level->place[block].cube] : s->u_retraced[retraced];
-    mrt_kernel_expand(u_b, length, k_b, length, s->b + i * 3 * (size_t)k_b, planes);
+    expand(u_b, length, k_b, length, s->b + i * 3 * (size_t)k_b, planes);
     float *out = frame->irradiance + 3 * (size_t)first;
     for (int t = first; t < level->first_texel[block + 1]; t++)
         for (int c = 0; c < 3; c++) out[3 * (t - first) + c] = planes[c][s->cube_texel[t]];

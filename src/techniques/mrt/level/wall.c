@@ -50,11 +50,20 @@ vec3s mrt_block_middle(const struct mrt_block *block)
     return mrt_warp_point(block->corner, middle);
 }
 
-vec3s mrt_wall_normal(const struct mrt_block *block, int face, float s, float t)
+// The derivatives by s and t in the scene, crossed: outwards.
+static vec3s wall_cross(const struct mrt_block *block, int face, float s, float t)
 {
     const struct mrt_wall_place at = mrt_wall_place(block, face, s, t);
     mat3s j = mrt_warp_jacobian(block->corner, at.position);
-    vec3s normal =
-        vec3_unit(glms_vec3_cross(glms_mat3_mulv(j, at.by_s), glms_mat3_mulv(j, at.by_t)));
-    return glms_vec3_negate(normal);
+    return glms_vec3_cross(glms_mat3_mulv(j, at.by_s), glms_mat3_mulv(j, at.by_t));
+}
+
+float mrt_wall_area(const struct mrt_block *block, int face, float s, float t)
+{
+    return glms_vec3_norm(wall_cross(block, face, s, t));
+}
+
+vec3s mrt_wall_normal(const struct mrt_block *block, int face, float s, float t)
+{
+    return glms_vec3_negate(vec3_unit(wall_cross(block, face, s, t)));
 }

@@ -36,6 +36,8 @@ struct mrt_wall_place mrt_wall_place(const struct mrt_block *block, int face, fl
 vec3s mrt_wall_middle(const struct mrt_block *block, int face, float s, float t);
 // The middle of the way through the block, in the scene.
 vec3s mrt_block_middle(const struct mrt_block *block);
+// Area in the scene by that of [0, 1]² there.
+float mrt_wall_area(const struct mrt_block *block, int face, float s, float t);
 // Towards the inside, in the scene; unit.
 vec3s mrt_wall_normal(const struct mrt_block *block, int face, float s, float t);
 

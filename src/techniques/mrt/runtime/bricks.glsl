@@ -10,7 +10,7 @@ layout(constant_id = MRT_CONSTANT_SIGHT) const int SIGHT = 0;
 layout(set = 0, binding = MRT_BRICKS_BINDING) uniform sampler3D bricks;
 layout(set = 0, binding = MRT_SIGHT_BINDING) readonly buffer mrt_probe_sight
 {
-    uint sight_table[]; // mrt_runtime_input.sight
+    uint sight_table[]; // mrt_operators.sight
 };
 
 // In texels of the first slab. Places outside the cell are clamped to the brick's border.
@@ -23,7 +23,7 @@ vec3 brick_texel(mrt_place place)
     return vec3(brick * edge) + clamp(at, vec3(0.5), vec3(float(edge) - 0.5));
 }
 
-// Lookups of a place at the probes visible from it past clutter (clutter/probe_sight.h).
+// Lookups of a place at the probes visible from it past clutter (clutter/delta.h).
 struct mrt_visible_probes {
     vec3 texel;
     uint probes; // bits

@@ -19,7 +19,7 @@ struct mrt_runtime_input {
     const struct mrt_published *published; // NULL: none
     // Clutter of the openings that are clutter; NULL where there are none.
     const struct mrt_clutter *clutter;
-    const struct mrt_clutter_texel *clutter_texels; // those of clutter->texels, in their order
+    const struct mrt_geometry_texel *clutter_texels; // those of clutter->texels, in their order
 };
 
 struct mrt_runtime_options {

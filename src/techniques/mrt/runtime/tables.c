@@ -8,34 +8,21 @@ static uint32_t texels_of_tile(const struct mrt_runtime_input *input)
     return (uint32_t)(input->atlas->resolution * input->atlas->resolution);
 }
 
-// Area of texel `local` of a tile: the wall's derivatives along s and t at its centre.
-static float texel_area(const struct mrt_runtime_input *input, const struct mrt_tile *tile,
-                        int local)
+void mrt_fill_texels(const struct mrt_geometry_texel *from, size_t count, struct mrt_texel *out)
 {
-    int n = input->atlas->resolution;
-    float s = ((float)(local % n) + 0.5f) / (float)n, t = ((float)(local / n) + 0.5f) / (float)n;
-    const struct mrt_block *block = &input->map->blocks[tile->block];
-    const struct mrt_wall_place at = mrt_wall_place(block, tile->face, s, t);
-    mat3s j = mrt_warp_jacobian(block->corner, at.position);
-    vec3s u = glms_mat3_mulv(j, at.by_s), v = glms_mat3_mulv(j, at.by_t);
-    return glms_vec3_norm(glms_vec3_cross(u, v)) / (float)(n * n);
+    for (size_t i = 0; i < count; i++)
+        out[i] = (struct mrt_texel){ .position = from[i].position,
+                                     .area_m2 = from[i].area_m2,
+                                     .normal = from[i].normal,
+                                     .found = from[i].found,
+                                     .reflectance = from[i].reflectance,
+                                     .sky = from[i].sky,
+                                     .emitted = from[i].emitted };
 }
 
 static void fill_texels(const struct mrt_runtime_input *input, void *items)
 {
-    struct mrt_texel *texels = items;
-    const int per_tile = (int)texels_of_tile(input);
-    for (int i = 0; i < input->atlas->texels; i++) {
-        const struct mrt_geometry_texel *from = &input->images->geometry[i];
-        const struct mrt_tile *tile = &input->atlas->tiles[i / per_tile];
-        texels[i] = (struct mrt_texel){ .position = from->position,
-                                        .area_m2 = texel_area(input, tile, i % per_tile),
-                                        .normal = from->normal,
-                                        .found = from->found,
-                                        .reflectance = from->reflectance,
-                                        .sky = input->images->sky[i],
-                                        .emitted = input->images->emitted[i] };
-    }
+    mrt_fill_texels(input->images->geometry, (size_t)input->atlas->texels, items);
 }
 
 // First row of a basis in the operators.

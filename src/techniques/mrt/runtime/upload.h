@@ -57,6 +57,7 @@ enum { MRT_LOOKUP_CELLS = 32 }; // along the longest side of the level
 // Texels, tiles, blocks, openings, pairs and borders (mrt_shared.h); fills runtime->level but for
 // the lookup grid.
 bool mrt_tables_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
+void mrt_fill_texels(const struct mrt_geometry_texel *from, size_t count, struct mrt_texel *out);
 // Quads of an opening's coefficients.
 uint32_t mrt_used_quads(const struct mrt_operators *operators, const struct mrt_opening *opening);
 // A face of clutter that sends light to an opening.
@@ -77,7 +78,7 @@ bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inp
 bool mrt_probes_make_empty(struct mrt_runtime *runtime);
 // MRT_CONSTANT_SIGHT.
 uint32_t mrt_sight_voxels(const struct mrt_operators *operators);
-// The grid of outdoor probes (level/outdoors.h).
+// The grid of outdoor probes (level/area_light.h).
 bool mrt_outdoors_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
 // All operators as the shaders read them (operators.glsl): rows of four numbers at a time, half
 // floats or floats.

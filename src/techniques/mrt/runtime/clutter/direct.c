@@ -10,17 +10,7 @@
 
 static void fill_texels(const struct mrt_runtime_input *input, void *items)
 {
-    struct mrt_texel *texels = items;
-    for (uint32_t i = 0; i < input->clutter->charts.side_texel_count; i++) {
-        const struct mrt_clutter_texel *from = &input->clutter_texels[i];
-        texels[i] = (struct mrt_texel){ .position = from->at.position,
-                                        .area_m2 = from->area_m2,
-                                        .normal = from->at.normal,
-                                        .found = true,
-                                        .reflectance = from->at.reflectance,
-                                        .sky = from->sky,
-                                        .emitted = from->emitted };
-    }
+    mrt_fill_texels(input->clutter_texels, input->clutter->charts.side_texel_count, items);
 }
 
 // Faces one after the other. Samples of a face are in one workgroup.
@@ -68,8 +58,8 @@ static void add_area_light(const struct mrt_runtime_input *input,
 {
     float area = 0.0f;
     for (int t = from->first_texel; t < from->first_texel + from->texel_count; t++) {
-        const struct mrt_clutter_texel *texel = &input->clutter_texels[t];
-        const vec3s reflected = glms_vec3_scale(texel->at.reflectance, texel->area_m2);
+        const struct mrt_geometry_texel *texel = &input->clutter_texels[t];
+        const vec3s reflected = glms_vec3_scale(texel->reflectance, texel->area_m2);
         to->emitted = glms_vec3_add(to->emitted, glms_vec3_mul(reflected, texel->emitted));
         to->sky = glms_vec3_muladds(reflected, texel->sky, to->sky);
         area += texel->area_m2;
