@@ -193,7 +193,7 @@ static struct least least_of_walls(struct mrt_runtime *runtime)
 {
     const size_t texels = runtime->level.texels;
     struct least out = { 0 };
-    float *e = read_floats(runtime->gpu, runtime->buffers.irradiance, 3 * texels);
+    float *e = read_floats(runtime->gpu, mrt_buffer(runtime, "mrt_irradiance"), 3 * texels);
     for (size_t i = 0; i < texels; i++) add_value(&out, (double)e[3 * i + 1]);
     free(e);
     return out;
@@ -204,7 +204,7 @@ static struct least least_of_probes(struct mrt_runtime *runtime)
 {
     const size_t p = runtime->level.probes, probes = p * p * p;
     struct least out = { 0 };
-    float *e = read_floats(runtime->gpu, runtime->probes.light, 27 * probes);
+    float *e = read_floats(runtime->gpu, mrt_buffer(runtime, "mrt_probe_light"), 27 * probes);
     for (size_t i = 0; i < probes; i++)
         for (int d = 0; d < 27; d++) {
             const vec3s way =
@@ -228,7 +228,7 @@ static struct least least_of_clutter(const struct frame_fixture *s, struct mrt *
     struct least out = { 0 };
     CHECK(mrt_clutter_init(&clutter, test_host(), &s->pose, &mrt->map, &options));
     const size_t texels = clutter.charts.texel_count;
-    float *e = read_floats(mrt->gpu, mrt->runtime.clutter.map.light, 12 * texels);
+    float *e = read_floats(mrt->gpu, mrt_buffer(&mrt->runtime, "mrt_clutter_light"), 12 * texels);
     for (size_t i = 0; i < texels; i++) {
         float basis[4];
         double sum = 0.0;

@@ -30,7 +30,7 @@ static float *random_radiosity(const struct mrt_runtime_fixture *f, float scale)
 static void set_direct(struct mrt_runtime *runtime, const float *radiosity)
 {
     const size_t bytes = (size_t)runtime->level.texels * 3 * sizeof *radiosity;
-    CHECK(gpu_buffer_upload(runtime->gpu, runtime->buffers.direct, 0, radiosity, bytes));
+    CHECK(gpu_buffer_upload(runtime->gpu, mrt_buffer(runtime, "mrt_direct"), 0, radiosity, bytes));
 }
 
 // `bounces` of the radiosity in the buffer, and the light map.
@@ -53,7 +53,8 @@ static float *read_buffer(struct mrt_runtime *runtime, gpu_buffer buffer, size_t
 
 static float *read_irradiance(struct mrt_runtime *runtime)
 {
-    return read_buffer(runtime, runtime->buffers.irradiance, 3 * (size_t)runtime->level.texels);
+    return read_buffer(runtime, mrt_buffer(runtime, "mrt_irradiance"),
+                       3 * (size_t)runtime->level.texels);
 }
 
 static double relative_error(const float *a, const float *b, size_t count)
@@ -76,7 +77,7 @@ static void expect_matrices(struct gpu *gpu, const struct mrt_runtime_fixture *f
     set_direct(&runtime, radiosity);
     solve(&runtime, 1, false);
     float *scalar = read_irradiance(&runtime), *expected = mrt_runtime_fixture_solve(f, radiosity);
-    float *vector = read_buffer(&runtime, runtime.buffers.vector, 12 * texels);
+    float *vector = read_buffer(&runtime, mrt_buffer(&runtime, "mrt_vector"), 12 * texels);
     float *expected_vector = mrt_runtime_fixture_solve_vector(f, radiosity);
     double error = relative_error(scalar, expected, 3 * texels);
     double error_vector = relative_error(vector, expected_vector, 12 * texels);
@@ -132,7 +133,7 @@ TEST_GPU(mrt_light_map_has_the_borders_of_the_level)
     float *texels = read_irradiance(&runtime);
     float *expected = calloc(3 * pixels, sizeof *expected), *map = calloc(3 * pixels, sizeof *map);
     mrt_atlas_fill(&f.atlas, texels, 3, expected);
-    CHECK(gpu_image_download_float(gpu, runtime.buffers.light_map, 0, 0, map, 3, 3 * pixels));
+    CHECK(gpu_image_download_float(gpu, runtime.light_map, 0, 0, map, 3, 3 * pixels));
     float most = 0.0f;
     for (size_t i = 0; i < 3 * pixels; i++) most = fmaxf(most, expected[i]);
     for (size_t i = 0; i < 3 * pixels; i++) CHECK_NEAR(map[i], expected[i], 1e-3 * (double)most);

@@ -154,10 +154,9 @@ bool mrt_lookup_grid_upload(struct mrt_runtime *runtime, const struct mrt_block_
     visit_all(&grid, map, add_block, &lists);
     for (size_t i = 0; i < cells; i++)
         place_nearest_first(&grid, map, i, lists.candidates + lists.cell[i][0], lists.cell[i][1]);
-    ok = mrt_buffer_of(runtime, "cells", lists.cell, cells * sizeof *lists.cell,
-                       &runtime->buffers.cells) &&
-         mrt_buffer_of(runtime, "candidates", lists.candidates, total * sizeof *lists.candidates,
-                       &runtime->buffers.candidates);
+    ok = mrt_buffer_of(runtime, "mrt_cells", lists.cell, cells * sizeof *lists.cell) &&
+         mrt_buffer_of(runtime, "mrt_candidates", lists.candidates,
+                       total * sizeof *lists.candidates);
 done:
     host_free(runtime->host, lists.cell);
     host_free(runtime->host, lists.candidates);

@@ -44,10 +44,9 @@ static void pack_row(struct words *w, const float *from, size_t stride, const fl
         pack(w, m < count ? from[(size_t)m * stride] * (factor ? factor[m] : 1.0f) : 0.0f);
 }
 
-static bool words_upload(struct words *w, struct mrt_runtime *runtime, const char *name,
-                         gpu_buffer *out)
+static bool words_upload(struct words *w, struct mrt_runtime *runtime, const char *name)
 {
-    bool ok = mrt_buffer_of(runtime, name, w->at, w->numbers * (w->half ? 2 : 4), out);
+    bool ok = mrt_buffer_of(runtime, name, w->at, w->numbers * (w->half ? 2 : 4));
     host_free(w->host, w->at);
     return ok;
 }
@@ -108,7 +107,7 @@ static bool upload_t_db(struct mrt_runtime *runtime, const struct mrt_operators 
         for (size_t texel = 0; texel < t->columns; texel++)
             pack_row(&w, t->at + texel, t->stride, scales->of_b + i * scales->k_b, o->k_b);
     }
-    return words_upload(&w, runtime, "t_db", &runtime->buffers.t_db);
+    return words_upload(&w, runtime, "mrt_t_db");
 }
 
 static void pack_matrix(struct words *w, const struct matrix_f32 *m, const float *factor, int count)
@@ -119,22 +118,21 @@ static void pack_matrix(struct words *w, const struct matrix_f32 *m, const float
 
 // U_b and U_r of a measure.
 static bool upload_light(struct mrt_runtime *runtime, const struct mrt_operators *o,
-                         const struct mrt_scales *scales, enum mrt_measure measure, gpu_buffer *u_b,
-                         gpu_buffer *u_r)
+                         const struct mrt_scales *scales, enum mrt_measure measure)
 {
-    static const char *const names_b[] = { "u_b", "u_b_vector", "u_b_probes" };
-    static const char *const names_r[] = { "u_r", "u_r_vector", "u_r_probes" };
+    static const char *const names_b[] = { "mrt_u_b", "mrt_u_b_vector", "mrt_u_b_probes" };
+    static const char *const names_r[] = { "mrt_u_r", "mrt_u_r_vector", "mrt_u_r_probes" };
     struct words w;
     size_t rows = 0;
     if (!words_init(&w, runtime, rows_of_bases(o, measure), o->k_b)) return false;
     for (int i = 0; i < o->basis_count; i++)
         pack_matrix(&w, &o->bases[i].u[measure], scales->inverse + i * scales->k_b, o->k_b);
-    if (!words_upload(&w, runtime, names_b[measure], u_b)) return false;
+    if (!words_upload(&w, runtime, names_b[measure])) return false;
     for (int i = 0; i < o->response_count; i++) rows += o->responses[i].u[measure].rows;
     if (!words_init(&w, runtime, rows, o->k_r)) return false;
     for (int i = 0; i < o->response_count; i++)
         pack_matrix(&w, &o->responses[i].u[measure], NULL, o->k_r);
-    return words_upload(&w, runtime, names_r[measure], u_r);
+    return words_upload(&w, runtime, names_r[measure]);
 }
 
 static void pack_zeros(struct words *w, size_t count)
@@ -165,7 +163,7 @@ static bool upload_t_br(struct mrt_runtime *runtime, const struct mrt_operators 
             pack_t_br(&w, &pair->of_b,
                       scales->inverse + o->basis_of_block[pair->source] * scales->k_b);
         }
-    return words_upload(&w, runtime, "t_br", &runtime->buffers.t_br);
+    return words_upload(&w, runtime, "mrt_t_br");
 }
 
 // ---- clutter
@@ -179,7 +177,7 @@ static bool upload_coupling(struct mrt_runtime *runtime, const struct mrt_operat
     const bool ok = senders && words_init(&w, runtime, count, o->k_r);
     for (uint32_t i = 0; ok && i < count; i++) pack_row(&w, senders[i].of_c, 1, NULL, o->k_r);
     host_free(runtime->host, senders);
-    return ok && words_upload(&w, runtime, "clutter_coupling", &runtime->clutter.coupling);
+    return ok && words_upload(&w, runtime, "mrt_clutter_coupling");
 }
 
 // ---- the light map of clutter
@@ -207,7 +205,7 @@ static bool upload_clutter_u_b(struct mrt_runtime *runtime, const struct mrt_ope
     for (int i = 0; i < o->row_count; i++)
         pack_padded(&w, &o->rows[i].u_b, rows_of_map(&o->rows[i]),
                     scales->inverse + o->basis_of_block[o->rows[i].block] * scales->k_b, o->k_b);
-    return words_upload(&w, runtime, "clutter_u_b", &runtime->clutter.map.u_b);
+    return words_upload(&w, runtime, "mrt_clutter_u_b");
 }
 
 static size_t rows_of_opening(const struct mrt_operators *o, const struct mrt_opening *opening)
@@ -226,21 +224,17 @@ static bool upload_clutter_u_r(struct mrt_runtime *runtime, const struct mrt_ope
     for (int i = 0; i < o->opening_count; i++)
         pack_padded(&w, &o->openings[i].at_clutter, rows_of_opening(o, &o->openings[i]), NULL,
                     o->k_r);
-    return words_upload(&w, runtime, "clutter_u_r", &runtime->clutter.map.u_r);
+    return words_upload(&w, runtime, "mrt_clutter_u_r");
 }
 
 static bool upload_all(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
                        const struct mrt_scales *scales)
 {
-    struct mrt_runtime_buffers *b = &runtime->buffers;
     const struct mrt_operators *o = input->operators;
-    return upload_t_db(runtime, o, scales) &&
-           upload_light(runtime, o, scales, MRT_IRRADIANCE, &b->u_b, &b->u_r) &&
+    return upload_t_db(runtime, o, scales) && upload_light(runtime, o, scales, MRT_IRRADIANCE) &&
            upload_t_br(runtime, o, scales) && mrt_reflection_upload(runtime, input, scales) &&
-           (!runtime->options.vector ||
-            upload_light(runtime, o, scales, MRT_VECTOR, &b->u_b_vector, &b->u_r_vector)) &&
-           (!runtime->options.probes || upload_light(runtime, o, scales, MRT_PROBE,
-                                                     &runtime->probes.u_b, &runtime->probes.u_r)) &&
+           (!runtime->options.vector || upload_light(runtime, o, scales, MRT_VECTOR)) &&
+           (!runtime->options.probes || upload_light(runtime, o, scales, MRT_PROBE)) &&
            (o->clutter_count == 0 || upload_coupling(runtime, o)) &&
            (o->row_count == 0 ||
             (upload_clutter_u_b(runtime, o, scales) && upload_clutter_u_r(runtime, o)));

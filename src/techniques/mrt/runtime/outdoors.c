@@ -16,9 +16,8 @@ bool mrt_outdoors_upload(struct mrt_runtime *runtime, const struct mrt_runtime_i
     if (!mrt_image_of(runtime, &desc, &runtime->outdoors.image)) return false;
     if (!from->probes) return true;
     runtime->level.outdoors = grid;
-    return mrt_buffer_of(runtime, "outdoor_probes", from->probes,
-                         probe_grid_count(grid) * sizeof *from->probes,
-                         &runtime->outdoors.probes) &&
+    return mrt_buffer_of(runtime, "mrt_outdoor_probes", from->probes,
+                         probe_grid_count(grid) * sizeof *from->probes) &&
            mrt_pipeline_of(runtime, "outdoors", &shader_mrt_runtime_outdoors_comp, 0,
                            &runtime->outdoors.fill);
 }

@@ -76,21 +76,20 @@ _Static_assert(sizeof(struct mrt_area_light_probe) == sizeof(struct mrt_gpu_prob
 
 static bool upload_tables(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
-    struct mrt_runtime_probes *p = &runtime->probes;
     const size_t blocks = (size_t)input->map->count;
     const size_t probes = blocks * (size_t)mrt_probes_of_block(input->operators->probes);
     const size_t texels = blocks * (size_t)mrt_brick_texels(input->operators->probes);
-    return mrt_table_upload(runtime, input, "probe_tiles", blocks, sizeof(struct mrt_gpu_tile),
-                            fill_tiles, &p->tiles) &&
-           mrt_table_upload(runtime, input, "probe_openings",
+    return mrt_table_upload(runtime, input, "mrt_probe_tiles", blocks, sizeof(struct mrt_gpu_tile),
+                            fill_tiles) &&
+           mrt_table_upload(runtime, input, "mrt_probe_openings",
                             (size_t)input->operators->opening_count, sizeof(struct mrt_gpu_opening),
-                            fill_openings, &p->openings) &&
-           mrt_table_upload(runtime, input, "brick_sources", texels, sizeof(uint32_t), fill_sources,
-                            &p->sources) &&
-           mrt_table_upload(runtime, input, "probe_turns", blocks, VALUES * VALUES * sizeof(float),
-                            fill_turns, &p->turns) &&
-           mrt_buffer_of(runtime, "probe_area_light", input->images->area_light,
-                         probes * sizeof(struct mrt_gpu_probe), &p->area_light);
+                            fill_openings) &&
+           mrt_table_upload(runtime, input, "mrt_brick_sources", texels, sizeof(uint32_t),
+                            fill_sources) &&
+           mrt_table_upload(runtime, input, "mrt_probe_turns", blocks,
+                            VALUES * VALUES * sizeof(float), fill_turns) &&
+           mrt_buffer_of(runtime, "mrt_probe_area_light", input->images->area_light,
+                         probes * sizeof(struct mrt_gpu_probe));
 }
 
 // ---- images
@@ -125,8 +124,8 @@ static bool make_volume(struct mrt_runtime *runtime, const struct mrt_runtime_in
     const struct gpu_image_desc desc =
         probe_volume_desc("probe_volume", p->grid, FRAME_PROBE_SLABS + 1);
     return mrt_image_of(runtime, &desc, &p->volume) &&
-           mrt_buffer_of(runtime, "probe_places", input->published->place,
-                         probe_grid_count(p->grid) * sizeof(vec4s), &p->places) &&
+           mrt_buffer_of(runtime, "mrt_probe_places", input->published->place,
+                         probe_grid_count(p->grid) * sizeof(vec4s)) &&
            mrt_pipeline_of(runtime, "probe_volume", &shader_mrt_runtime_probe_volume_comp,
                            1u << MRT_CONSTANT_TUBES | 1u << MRT_CONSTANT_SIGHT, &p->publish);
 }
@@ -135,16 +134,15 @@ bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inp
 {
     struct mrt_runtime_probes *p = &runtime->probes;
     const struct mrt_operators *o = input->operators;
-    if (!mrt_buffer_of(runtime, "probe_sight", o->sight, o->sight_count * sizeof *o->sight,
-                       &p->sight))
+    if (!mrt_buffer_of(runtime, "mrt_probe_sight", o->sight, o->sight_count * sizeof *o->sight))
         return false;
     const struct gpu_image_desc none = probe_volume_desc("bricks", probe_grid_of_one(), 1);
     if (!runtime->options.probes) return mrt_image_of(runtime, &none, &p->bricks);
     const size_t rows = (size_t)input->map->count * rows_of_block(input);
     const size_t texels = (size_t)input->atlas->texels, triple = 3 * sizeof(float);
     return upload_tables(runtime, input) &&
-           mrt_buffer_of(runtime, "probe_light", NULL, rows * triple, &p->light) &&
-           mrt_buffer_of(runtime, "radiosity", NULL, texels * triple, &p->radiosity) &&
+           mrt_buffer_of(runtime, "mrt_probe_light", NULL, rows * triple) &&
+           mrt_buffer_of(runtime, "mrt_radiosity", NULL, texels * triple) &&
            make_bricks(runtime, input) && make_volume(runtime, input) &&
            mrt_pipeline_of(runtime, "bricks", &shader_mrt_runtime_bricks_comp, 0, &p->fill);
 }

@@ -1,5 +1,5 @@
 // Light of b and r at texels: of walls, of clutter, of probes.
-#include "runtime.h"
+#include "techniques/mrt/runtime/upload.h"
 
 void mrt_record_reconstruct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                             const struct mrt_reconstruct *what)
@@ -7,15 +7,13 @@ void mrt_record_reconstruct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     const struct mrt_runtime_pipelines *p = &runtime->pipelines;
     struct mrt_level_params level = runtime->level;
     level.texels_of_tile = what->texels_of_tile;
-    gpu_dispatch(cmd, what->vector ? p->reconstruct_vector : p->reconstruct,
-                 GPU_BIND(gpu_transient(cmd, "mrt_level", &level, sizeof level),
-                          { .name = "mrt_tiles", .buffer = what->tiles },
-                          { .name = "mrt_blocks", .buffer = runtime->buffers.blocks },
-                          { .name = "mrt_openings", .buffer = what->openings },
-                          { .name = "mrt_b", .buffer = runtime->buffers.b },
-                          { .name = "mrt_r", .buffer = runtime->buffers.r },
-                          { .name = "mrt_u_b", .buffer = what->u_b },
-                          { .name = "mrt_u_r", .buffer = what->u_r },
-                          { .name = "mrt_irradiance", .buffer = what->irradiance }),
-                 NULL, 0, gpu_groups(level.texels_of_tile, MRT_LOCAL), what->tile_count, 1);
+    mrt_dispatch(
+        runtime, cmd, what->vector ? p->reconstruct_vector : p->reconstruct,
+        GPU_BIND(gpu_transient(cmd, "mrt_level", &level, sizeof level),
+                 { .name = "mrt_tiles", .buffer = mrt_buffer(runtime, what->tiles) },
+                 { .name = "mrt_openings", .buffer = mrt_buffer(runtime, what->openings) },
+                 { .name = "mrt_u_b", .buffer = mrt_buffer(runtime, what->u_b) },
+                 { .name = "mrt_u_r", .buffer = mrt_buffer(runtime, what->u_r) },
+                 { .name = "mrt_irradiance", .buffer = mrt_buffer(runtime, what->irradiance) }),
+        NULL, 0, gpu_groups(level.texels_of_tile, MRT_LOCAL), what->tile_count, 1);
 }

@@ -92,8 +92,7 @@ bool mrt_reflection_upload(struct mrt_runtime *runtime, const struct mrt_runtime
         while (opening < o->opening_count && o->openings[opening].block == b) opening++;
         ok = add_block(&s, b, first, opening - first);
     }
-    ok = ok && mrt_buffer_of(runtime, "reflection", all, columns * 3 * rows * sizeof *all,
-                             &runtime->buffers.reflection);
+    ok = ok && mrt_buffer_of(runtime, "mrt_reflection", all, columns * 3 * rows * sizeof *all);
     host_free(runtime->host, all);
     return ok;
 }

@@ -11,18 +11,17 @@ enum { VEC3_BYTES = 12, VECTOR_VALUES = 4 };
 
 static bool make_buffers(struct mrt_runtime *runtime, const struct mrt_operators *o)
 {
-    struct mrt_runtime_buffers *b = &runtime->buffers;
     const size_t light = (size_t)runtime->level.texels * VEC3_BYTES;
     const size_t quad = 3 * 4 * sizeof(float), all_b = runtime->block_count * mrt_quads(o->k_b);
-    return mrt_buffer_of(runtime, "area_light", NULL, light, &b->area_light) &&
-           mrt_buffer_of(runtime, "direct", NULL, light, &b->direct) &&
-           mrt_buffer_of(runtime, "b_direct", NULL, all_b * quad, &b->b_direct) &&
-           mrt_buffer_of(runtime, "b", NULL, all_b * quad, &b->b) &&
-           mrt_buffer_of(runtime, "r", NULL, runtime->opening_count * mrt_quads(o->k_r) * quad,
-                         &b->r) &&
-           mrt_buffer_of(runtime, "irradiance", NULL, light, &b->irradiance) &&
+    return mrt_buffer_of(runtime, "mrt_area_light", NULL, light) &&
+           mrt_buffer_of(runtime, "mrt_direct", NULL, light) &&
+           mrt_buffer_of(runtime, "mrt_b_direct", NULL, all_b * quad) &&
+           mrt_buffer_of(runtime, "mrt_b", NULL, all_b * quad) &&
+           mrt_buffer_of(runtime, "mrt_r", NULL,
+                         runtime->opening_count * mrt_quads(o->k_r) * quad) &&
+           mrt_buffer_of(runtime, "mrt_irradiance", NULL, light) &&
            (!runtime->options.vector ||
-            mrt_buffer_of(runtime, "vector", NULL, VECTOR_VALUES * light, &b->vector));
+            mrt_buffer_of(runtime, "mrt_vector", NULL, VECTOR_VALUES * light));
 }
 
 static bool make_image(struct mrt_runtime *runtime, const char *name, uint32_t width,
@@ -44,9 +43,9 @@ static bool make_images(struct mrt_runtime *runtime)
     const bool vector = runtime->options.vector;
     return mrt_sampler_of(runtime, "linear", &runtime->linear) &&
            make_image(runtime, "light_map", level->map_width, level->map_height, 1,
-                      &runtime->buffers.light_map) &&
+                      &runtime->light_map) &&
            make_image(runtime, "vector_map", vector ? level->map_width : 1,
-                      vector ? level->map_height : 1, 3, &runtime->buffers.vector_map);
+                      vector ? level->map_height : 1, 3, &runtime->vector_map);
 }
 
 static bool is_affine(const struct mrt_block_map *map)

@@ -30,18 +30,6 @@ struct mrt_runtime_options {
     bool publish; // their volume
 };
 
-struct mrt_runtime_buffers {
-    gpu_buffer texels, tiles, blocks, openings, borders, sources; // tables
-    gpu_buffer cells, candidates;                                 // lookup grid of blocks
-    gpu_buffer t_db, u_b, u_r, t_br;                              // operators
-    gpu_buffer u_b_vector, u_r_vector;
-    gpu_buffer direct, area_light;   // vec3 per texel: radiosity, irradiance
-    gpu_buffer b_direct, b, r;       // coefficients
-    gpu_buffer reflection;           // of b and r into b, by the reflectance of each block
-    gpu_buffer irradiance, vector;   // vec3 per texel and value
-    gpu_image light_map, vector_map; // vector_map: 1×1 without `vector`
-};
-
 struct mrt_runtime_pipelines {
     gpu_pipeline direct, project, bounce, couple;
     gpu_pipeline reconstruct, reconstruct_vector;
@@ -51,31 +39,21 @@ struct mrt_runtime_pipelines {
 
 // Volume probes; without them `bricks` is 1×1×1.
 struct mrt_runtime_probes {
-    gpu_buffer tiles, openings, u_b, u_r;  // as those of texels
-    gpu_buffer sources, turns, area_light; // tables of bricks.comp
-    gpu_buffer radiosity;                  // vec3 per texel, of a solver on the host
-    gpu_buffer sight;                      // mrt_operators.sight
-    gpu_buffer light;                      // vec3 [block][probe][9], in the frame of the cell
     gpu_image bricks;
     gpu_pipeline fill;
     struct frame_probes grid; // published
-    gpu_buffer places;        // of the grid's probes
     gpu_image volume;
     gpu_pipeline publish;
 };
 
-// Without outdoor places `image` is 1×1×FRAME_PROBE_SLABS, and the others are empty.
+// Without outdoor places `image` is 1×1×FRAME_PROBE_SLABS, and the pipeline is none.
 struct mrt_runtime_outdoors {
-    gpu_buffer probes;
     gpu_image image;
     gpu_pipeline fill;
 };
 
 // The light map of clutter; without one tile_count is 0 and the others are empty.
 struct mrt_runtime_clutter_map {
-    gpu_buffer tiles, openings, u_b, u_r; // as those of texels
-    gpu_buffer light;                     // vec3 per texel and value
-    gpu_buffer places;                    // texels of the atlas that have light
     struct light_map_surfaces surfaces;
     gpu_image image;
     gpu_pipeline fill, apply;
@@ -86,17 +64,17 @@ struct mrt_runtime_clutter_map {
 
 // Without clutter all counts are 0 and the others are empty.
 struct mrt_runtime_clutter {
-    gpu_buffer texels, groups, faces, samples, reflectance, coupling, senders; // tables
-    // Radiosity of direct light; of what is reflected of the newest bounce, [newest], and of the
-    // one before: [clutter][colour][slot].
-    gpu_buffer direct, reflected[2];
-    int newest;
+    // Buffers of radiosity that is reflected of the newest bounce, [newest], and of the one before:
+    // [clutter][colour][slot].
+    int reflected[2], newest;
     gpu_pipeline light, couple;
     uint32_t group_count, opening_count;
     struct mrt_runtime_clutter_map map;
 };
 
 struct mrt_plan;
+
+enum { MRT_MAX_BUFFERS = 64 };
 
 struct mrt_runtime {
     struct host *host;
@@ -105,7 +83,11 @@ struct mrt_runtime {
     struct mrt_runtime_options options;
     struct mrt_level_params level;
     uint32_t block_count, opening_count;
-    struct mrt_runtime_buffers buffers;
+    // Tables, operators and light of the level, by the names of their bindings (mrt_buffer).
+    gpu_buffer buffers[MRT_MAX_BUFFERS];
+    const char *buffer_names[MRT_MAX_BUFFERS];
+    int buffer_count;
+    gpu_image light_map, vector_map; // vector_map: 1×1 without `vector`
     struct mrt_runtime_pipelines pipelines;
     struct mrt_runtime_probes probes;
     struct mrt_runtime_outdoors outdoors;
@@ -113,28 +95,6 @@ struct mrt_runtime {
     gpu_sampler linear;
     struct gpu_objects objects; // all of these
 };
-
-// Bindings that passes share: tables, operators and coefficients of a level. A pass adds its own.
-#define MRT_BINDINGS(runtime, cmd)                                                                 \
-    gpu_transient(cmd, "mrt_level", &(runtime)->level, sizeof(runtime)->level),                    \
-        { .name = "mrt_tiles", .buffer = (runtime)->buffers.tiles },                               \
-        { .name = "mrt_blocks", .buffer = (runtime)->buffers.blocks },                             \
-        { .name = "mrt_cells", .buffer = (runtime)->buffers.cells },                               \
-        { .name = "mrt_candidates", .buffer = (runtime)->buffers.candidates },                     \
-        { .name = "mrt_openings", .buffer = (runtime)->buffers.openings },                         \
-        { .name = "mrt_sources", .buffer = (runtime)->buffers.sources },                           \
-        { .name = "mrt_borders", .buffer = (runtime)->buffers.borders },                           \
-        { .name = "mrt_t_db", .buffer = (runtime)->buffers.t_db },                                 \
-        { .name = "mrt_t_br", .buffer = (runtime)->buffers.t_br },                                 \
-        { .name = "mrt_reflection", .buffer = (runtime)->buffers.reflection },                     \
-        { .name = "mrt_b_direct", .buffer = (runtime)->buffers.b_direct },                         \
-        { .name = "mrt_b", .buffer = (runtime)->buffers.b },                                       \
-        { .name = "mrt_r", .buffer = (runtime)->buffers.r },                                       \
-        { .name = "mrt_area_light", .buffer = (runtime)->buffers.area_light },                     \
-        { .name = "bricks", .image = (runtime)->probes.bricks, .sampler = (runtime)->linear },     \
-    {                                                                                              \
-        .name = "mrt_probe_sight", .buffer = (runtime)->probes.sight                               \
-    }
 
 // The input may end with the call, but for map and atlas.
 bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
@@ -148,6 +108,8 @@ bool mrt_runtime_plan(struct mrt_runtime *out, struct mrt_plan *plan,
 bool mrt_runtime_init_empty(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
                             const struct mrt_runtime_options *options);
 void mrt_runtime_finish(struct mrt_runtime *runtime); // accepts zero and half-built
+// The buffer that shaders read or write by this name; none where the level has none.
+gpu_buffer mrt_buffer(const struct mrt_runtime *runtime, const char *name);
 
 struct mrt_runtime_size {
     int resolution, k_b, k_r, probes;
@@ -167,13 +129,12 @@ void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 // indirect light, which the first one reflects too; 0: none.
 void mrt_record_bounces(struct mrt_runtime *runtime, struct gpu_cmd *cmd, int count,
                         float feedback);
-// b and r of the radiosity in `probes.radiosity`, where the host computed irradiance.
+// b and r of the radiosity in mrt_radiosity, where the host computed irradiance.
 void mrt_record_coefficients(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
-// U_b b + U_r r at the texels of some tiles. vector: by normal. Buffers by their names in
-// `buffers`.
+// U_b b + U_r r at the texels of some tiles. vector: by normal. Names of buffers.
 struct mrt_reconstruct {
     bool vector;
-    gpu_buffer tiles, openings, u_b, u_r, irradiance;
+    const char *tiles, *openings, *u_b, *u_r, *irradiance;
     uint32_t texels_of_tile, tile_count;
 };
 void mrt_record_reconstruct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,

@@ -1,35 +1,29 @@
 // The passes of a frame.
-#include "runtime.h"
-
 #include "techniques/mrt/runtime/upload.h"
 
 void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                        const struct frame_view *view, bool emitters)
 {
-    const struct mrt_runtime_buffers *b = &runtime->buffers;
     runtime->level.shadow_radius = view->shadow_radius;
     runtime->level.emitters = emitters ? 1.0f : 0.0f;
     gpu_scope_begin(cmd, "direct");
-    gpu_dispatch(cmd, runtime->pipelines.direct,
-                 GPU_BIND(FRAME_LIGHT_BINDINGS(view), MRT_BINDINGS(runtime, cmd),
-                          { .name = "mrt_texels", .buffer = b->texels },
-                          { .name = "mrt_direct", .buffer = b->direct }),
+    mrt_dispatch(runtime, cmd, runtime->pipelines.direct, GPU_BIND(FRAME_LIGHT_BINDINGS(view)),
                  NULL, 0, gpu_groups(runtime->level.texels, MRT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
     mrt_record_clutter_direct(runtime, cmd, view);
 }
 
-static void record_project(struct mrt_runtime *runtime, struct gpu_cmd *cmd, gpu_buffer light)
+static void record_project(struct mrt_runtime *runtime, struct gpu_cmd *cmd, const char *light)
 {
-    gpu_dispatch(cmd, runtime->pipelines.project,
-                 GPU_BIND(MRT_BINDINGS(runtime, cmd), { .name = "mrt_direct", .buffer = light }),
-                 NULL, 0, runtime->block_count, 1, 1);
+    mrt_dispatch(runtime, cmd, runtime->pipelines.project,
+                 GPU_BIND({ .name = "mrt_direct", .buffer = mrt_buffer(runtime, light) }), NULL, 0,
+                 runtime->block_count, 1, 1);
 }
 
 static void record_reflect(struct mrt_runtime *runtime, struct gpu_cmd *cmd, float feedback)
 {
     runtime->level.feedback = feedback;
-    gpu_dispatch(cmd, runtime->pipelines.bounce, GPU_BIND(MRT_BINDINGS(runtime, cmd)), NULL, 0,
+    mrt_dispatch(runtime, cmd, runtime->pipelines.bounce, MRT_NO_BINDINGS, NULL, 0,
                  runtime->block_count, 1, 1);
 }
 
@@ -38,24 +32,27 @@ static void record_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
     if (runtime->clutter.opening_count > 0)
         mrt_record_clutter_couple(runtime, cmd);
     else
-        gpu_dispatch(cmd, runtime->pipelines.couple, GPU_BIND(MRT_BINDINGS(runtime, cmd)), NULL, 0,
+        mrt_dispatch(runtime, cmd, runtime->pipelines.couple, MRT_NO_BINDINGS, NULL, 0,
                      runtime->opening_count, 1, 1);
 }
 
 static void record_reconstruct(struct mrt_runtime *runtime, struct gpu_cmd *cmd, bool vector)
 {
-    const struct mrt_runtime_buffers *b = &runtime->buffers;
-    mrt_record_reconstruct(runtime, cmd,
-                           &(struct mrt_reconstruct){
-                               vector, b->tiles, b->openings, vector ? b->u_b_vector : b->u_b,
-                               vector ? b->u_r_vector : b->u_r, vector ? b->vector : b->irradiance,
-                               runtime->level.texels_of_tile, runtime->level.tiles });
+    const uint32_t texels = runtime->level.texels_of_tile, tiles = runtime->level.tiles;
+    const struct mrt_reconstruct irradiance = { false,     "mrt_tiles", "mrt_openings",
+                                                "mrt_u_b", "mrt_u_r",   "mrt_irradiance",
+                                                texels,    tiles };
+    const struct mrt_reconstruct by_normal = {
+        true,         "mrt_tiles", "mrt_openings", "mrt_u_b_vector", "mrt_u_r_vector",
+        "mrt_vector", texels,      tiles
+    };
+    mrt_record_reconstruct(runtime, cmd, vector ? &by_normal : &irradiance);
 }
 
 void mrt_record_bounces(struct mrt_runtime *runtime, struct gpu_cmd *cmd, int count, float feedback)
 {
     gpu_scope_begin(cmd, "b");
-    record_project(runtime, cmd, runtime->buffers.direct);
+    record_project(runtime, cmd, "mrt_direct");
     gpu_scope_end(cmd);
     gpu_scope_begin(cmd, "bounces");
     for (int i = 0; i < count; i++) {
@@ -72,7 +69,7 @@ void mrt_record_coefficients(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
     if (!runtime->options.probes) return;
     gpu_scope_begin(cmd, "b");
-    record_project(runtime, cmd, runtime->probes.radiosity);
+    record_project(runtime, cmd, "mrt_radiosity");
     record_reflect(runtime, cmd, 0.0f);
     gpu_scope_end(cmd);
     gpu_scope_begin(cmd, "r");
@@ -82,15 +79,14 @@ void mrt_record_coefficients(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 
 static void record_fill(struct mrt_runtime *runtime, struct gpu_cmd *cmd, bool vector)
 {
-    const struct mrt_runtime_buffers *b = &runtime->buffers;
     const struct mrt_runtime_pipelines *p = &runtime->pipelines;
     const struct mrt_level_params *level = &runtime->level;
-    gpu_dispatch(
-        cmd, vector ? p->fill_vector : p->fill,
-        GPU_BIND(MRT_BINDINGS(runtime, cmd),
-                 { .name = "mrt_irradiance", .buffer = vector ? b->vector : b->irradiance },
-                 { .name = "light_map", .image = vector ? b->vector_map : b->light_map }),
-        NULL, 0, gpu_groups(level->texels + level->borders, MRT_LOCAL), 1, 1);
+    const gpu_buffer from = mrt_buffer(runtime, vector ? "mrt_vector" : "mrt_irradiance");
+    const gpu_image to = vector ? runtime->vector_map : runtime->light_map;
+    mrt_dispatch(runtime, cmd, vector ? p->fill_vector : p->fill,
+                 GPU_BIND({ .name = "mrt_irradiance", .buffer = from },
+                          { .name = "light_map", .image = to }),
+                 NULL, 0, gpu_groups(level->texels + level->borders, MRT_LOCAL), 1, 1);
 }
 
 void mrt_record_light_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
@@ -108,11 +104,11 @@ void mrt_record_light_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 // U_bvol b and U_r r, in the frames of the cells.
 static void record_probe_light(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
-    const struct mrt_runtime_probes *p = &runtime->probes;
     const uint32_t edge = runtime->level.probes, rows = MRT_PROBE_VALUES * edge * edge * edge;
     mrt_record_reconstruct(runtime, cmd,
-                           &(struct mrt_reconstruct){ false, p->tiles, p->openings, p->u_b, p->u_r,
-                                                      p->light, rows, runtime->block_count });
+                           &(struct mrt_reconstruct){
+                               false, "mrt_probe_tiles", "mrt_probe_openings", "mrt_u_b_probes",
+                               "mrt_u_r_probes", "mrt_probe_light", rows, runtime->block_count });
 }
 
 static void record_bricks(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
@@ -120,24 +116,18 @@ static void record_bricks(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 {
     const struct mrt_runtime_probes *p = &runtime->probes;
     const uint32_t texels = (uint32_t)mrt_brick_texels((int)runtime->level.probes);
-    gpu_dispatch(cmd, p->fill,
-                 GPU_BIND(MRT_BINDINGS(runtime, cmd), view->constants_binding,
-                          { .name = "mrt_brick_sources", .buffer = p->sources },
-                          { .name = "mrt_probe_light", .buffer = p->light },
-                          { .name = "mrt_probe_area_light", .buffer = p->area_light },
-                          { .name = "mrt_probe_turns", .buffer = p->turns }),
-                 NULL, 0, gpu_groups(texels, MRT_LOCAL), runtime->block_count, 1);
+    mrt_dispatch(runtime, cmd, p->fill,
+                 GPU_BIND(view->constants_binding, { .name = "bricks", .image = p->bricks }), NULL,
+                 0, gpu_groups(texels, MRT_LOCAL), runtime->block_count, 1);
 }
 
 static void record_volume(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
     const struct mrt_runtime_probes *p = &runtime->probes;
-    const uint32_t count = probe_grid_count(p->grid);
-    gpu_dispatch(cmd, p->publish,
-                 GPU_BIND(MRT_BINDINGS(runtime, cmd),
-                          { .name = "mrt_probe_places", .buffer = p->places },
+    mrt_dispatch(runtime, cmd, p->publish,
+                 GPU_BIND({ .name = "bricks", .image = p->bricks, .sampler = runtime->linear },
                           { .name = "volume", .image = p->volume }),
-                 &p->grid, sizeof p->grid, gpu_groups(count, MRT_LOCAL), 1, 1);
+                 &p->grid, sizeof p->grid, gpu_groups(probe_grid_count(p->grid), MRT_LOCAL), 1, 1);
 }
 
 void mrt_record_probes(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
@@ -158,28 +148,27 @@ void mrt_record_outdoors(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     const uint32_t count = probe_grid_count(runtime->level.outdoors);
     if (count == 0) return;
     gpu_scope_begin(cmd, "outdoors");
-    gpu_dispatch(cmd, runtime->outdoors.fill,
-                 GPU_BIND(MRT_BINDINGS(runtime, cmd), view->constants_binding,
-                          { .name = "mrt_outdoor_probes", .buffer = runtime->outdoors.probes },
-                          { .name = "outdoors", .image = runtime->outdoors.image }),
-                 NULL, 0, gpu_groups(count, MRT_LOCAL), 1, 1);
+    mrt_dispatch(
+        runtime, cmd, runtime->outdoors.fill,
+        GPU_BIND(view->constants_binding, { .name = "outdoors", .image = runtime->outdoors.image }),
+        NULL, 0, gpu_groups(count, MRT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
 }
 
 void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                       const struct frame_view *view, float gain)
 {
-    const struct mrt_runtime_buffers *b = &runtime->buffers;
     runtime->level.gain = gain;
     gpu_scope_begin(cmd, "apply");
     const bool clutter_is_lit = mrt_record_clutter_pixels(runtime, cmd, view);
     const struct mrt_apply_push push = { clutter_is_lit ? (int32_t)view->width : 0 };
-    gpu_dispatch(
-        cmd, runtime->pipelines.apply,
+    mrt_dispatch(
+        runtime, cmd, runtime->pipelines.apply,
         GPU_BIND(
-            MRT_BINDINGS(runtime, cmd), view->constants_binding,
-            { .name = "light_map", .image = b->light_map, .sampler = runtime->linear },
-            { .name = "vector_map", .image = b->vector_map, .sampler = runtime->linear },
+            view->constants_binding,
+            { .name = "light_map", .image = runtime->light_map, .sampler = runtime->linear },
+            { .name = "vector_map", .image = runtime->vector_map, .sampler = runtime->linear },
+            { .name = "bricks", .image = runtime->probes.bricks, .sampler = runtime->linear },
             { .name = "outdoors", .image = runtime->outdoors.image, .sampler = runtime->linear },
             { .name = "depth", .image = view->layers[FRAME_DEPTH] },
             { .name = "normal", .image = view->layers[FRAME_NORMAL] },
@@ -194,9 +183,8 @@ void mrt_record_debug(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 {
     const struct mrt_view_push push = { debug_view };
     gpu_scope_begin(cmd, "debug");
-    gpu_dispatch(cmd, runtime->pipelines.debug,
-                 GPU_BIND(MRT_BINDINGS(runtime, cmd), view->constants_binding,
-                          { .name = "mrt_direct", .buffer = runtime->buffers.direct },
+    mrt_dispatch(runtime, cmd, runtime->pipelines.debug,
+                 GPU_BIND(view->constants_binding,
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                           { .name = "scene", .image = view->layers[FRAME_DIRECT] },

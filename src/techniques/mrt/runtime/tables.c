@@ -197,22 +197,21 @@ static struct mrt_level_params level_of(const struct mrt_runtime_input *input)
 
 bool mrt_tables_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
-    struct mrt_runtime_buffers *b = &runtime->buffers;
     const struct mrt_atlas *atlas = input->atlas;
     const size_t openings = (size_t)input->operators->opening_count;
     runtime->level = level_of(input);
     runtime->block_count = (uint32_t)input->map->count;
     runtime->opening_count = (uint32_t)openings;
-    return mrt_table_upload(runtime, input, "texels", (size_t)atlas->texels,
-                            sizeof(struct mrt_texel), fill_texels, &b->texels) &&
-           mrt_table_upload(runtime, input, "tiles", (size_t)atlas->tile_count,
-                            sizeof(struct mrt_gpu_tile), fill_tiles, &b->tiles) &&
-           mrt_table_upload(runtime, input, "blocks", (size_t)input->map->count,
-                            sizeof(struct mrt_gpu_block), fill_blocks, &b->blocks) &&
-           mrt_table_upload(runtime, input, "openings", openings, sizeof(struct mrt_gpu_opening),
-                            fill_openings, &b->openings) &&
-           mrt_table_upload(runtime, input, "sources", mrt_pair_count(input->operators),
-                            sizeof(uint32_t), fill_sources, &b->sources) &&
-           mrt_table_upload(runtime, input, "borders", (size_t)atlas->border_count,
-                            sizeof(struct mrt_gpu_border), fill_borders, &b->borders);
+    return mrt_table_upload(runtime, input, "mrt_texels", (size_t)atlas->texels,
+                            sizeof(struct mrt_texel), fill_texels) &&
+           mrt_table_upload(runtime, input, "mrt_tiles", (size_t)atlas->tile_count,
+                            sizeof(struct mrt_gpu_tile), fill_tiles) &&
+           mrt_table_upload(runtime, input, "mrt_blocks", (size_t)input->map->count,
+                            sizeof(struct mrt_gpu_block), fill_blocks) &&
+           mrt_table_upload(runtime, input, "mrt_openings", openings,
+                            sizeof(struct mrt_gpu_opening), fill_openings) &&
+           mrt_table_upload(runtime, input, "mrt_sources", mrt_pair_count(input->operators),
+                            sizeof(uint32_t), fill_sources) &&
+           mrt_table_upload(runtime, input, "mrt_borders", (size_t)atlas->border_count,
+                            sizeof(struct mrt_gpu_border), fill_borders);
 }

@@ -6,18 +6,17 @@
 
 // ---- objects.c
 
-// `out` is a member of the run time, and the object gets a row of runtime->objects. With
-// runtime->plan it is planned: it is created with the others of the table. `desc`, `name` and
-// `shader` are constant.
+// The object gets a row of runtime->objects; `out` is a member of the run time. With runtime->plan
+// it is planned: it is created with the others of the table. `desc`, `name` and `shader` are
+// constant.
 //
-// A storage buffer with this content; zeros where data is NULL, 16 of them where bytes is 0.
-bool mrt_buffer_of(struct mrt_runtime *runtime, const char *name, const void *data, size_t bytes,
-                   gpu_buffer *out);
+// A storage buffer with this content, for bindings of this name, which begins with mrt_; zeros
+// where data is NULL, 16 of them where bytes is 0.
+bool mrt_buffer_of(struct mrt_runtime *runtime, const char *name, const void *data, size_t bytes);
 // The same of `count` items that `fill` writes; zeros where it is NULL.
 bool mrt_table_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
                       const char *name, size_t count, size_t size,
-                      void (*fill)(const struct mrt_runtime_input *input, void *items),
-                      gpu_buffer *out);
+                      void (*fill)(const struct mrt_runtime_input *input, void *items));
 bool mrt_image_of(struct mrt_runtime *runtime, const struct gpu_image_desc *desc, gpu_image *out);
 bool mrt_sampler_of(struct mrt_runtime *runtime, const char *name, gpu_sampler *out);
 // Rows of runtime->objects.constants: those of MRT_CONSTANT_…, and these.
@@ -25,6 +24,12 @@ enum { MRT_CONSTANT_ROW_VECTOR = MRT_CONSTANT_OUTDOORS + 1, MRT_CONSTANT_ROW_BAC
 // constants: bits of these rows.
 bool mrt_pipeline_of(struct mrt_runtime *runtime, const char *name, const struct gpu_shader *shader,
                      uint32_t constants, gpu_pipeline *out);
+
+// gpu_dispatch with the parameters and all buffers of the level but for names that `bindings` has.
+void mrt_dispatch(const struct mrt_runtime *runtime, struct gpu_cmd *cmd, gpu_pipeline pipeline,
+                  const struct gpu_binding *bindings, int binding_count, const void *push,
+                  size_t push_bytes, uint32_t groups_x, uint32_t groups_y, uint32_t groups_z);
+#define MRT_NO_BINDINGS NULL, 0
 
 struct mrt_plan {
     struct host *host;

@@ -42,10 +42,19 @@ static bool upload_senders(struct mrt_runtime *runtime, const struct mrt_operato
     bool ok = senders && at;
     for (uint32_t i = 0; ok && i < count; i++)
         at[i] = clutter_of_block(o, senders[i].block) * 3 * slots + (uint32_t)senders[i].slot;
-    ok = ok && mrt_buffer_of(runtime, "clutter_senders", at, count * sizeof *at,
-                             &runtime->clutter.senders);
+    ok = ok && mrt_buffer_of(runtime, "mrt_clutter_senders", at, count * sizeof *at);
     host_free(runtime->host, senders);
     host_free(runtime->host, at);
+    return ok;
+}
+
+static bool make_reflected(struct mrt_runtime *runtime, size_t bytes)
+{
+    bool ok = true;
+    for (int i = 0; ok && i < 2; i++) {
+        runtime->clutter.reflected[i] = runtime->buffer_count;
+        ok = mrt_buffer_of(runtime, "mrt_clutter_reflected", NULL, bytes);
+    }
     return ok;
 }
 
@@ -57,13 +66,10 @@ bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_in
     if (openings == 0) return true;
     c->opening_count = (uint32_t)openings;
     return mrt_clutter_direct_upload(runtime, input) &&
-           mrt_table_upload(runtime, input, "clutter_reflectance", openings, coefficients,
-                            fill_reflectance, &c->reflectance) &&
+           mrt_table_upload(runtime, input, "mrt_clutter_reflectance", openings, coefficients,
+                            fill_reflectance) &&
            upload_senders(runtime, input->operators) &&
-           mrt_table_upload(runtime, input, "clutter_reflected", openings, coefficients, NULL,
-                            &c->reflected[0]) &&
-           mrt_table_upload(runtime, input, "clutter_reflected", openings, coefficients, NULL,
-                            &c->reflected[1]) &&
+           make_reflected(runtime, openings * coefficients) &&
            mrt_pipeline_of(runtime, "clutter_couple", &shader_mrt_runtime_clutter_couple_comp,
                            1u << MRT_CONSTANT_QUADS_R | 1u << MRT_CONSTANT_QUADS_B |
                                1u << MRT_CONSTANT_HALF,
@@ -76,15 +82,11 @@ bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_in
 void mrt_record_clutter_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
     struct mrt_runtime_clutter *c = &runtime->clutter;
-    const gpu_buffer before = c->reflected[c->newest];
+    const gpu_buffer before = runtime->buffers[c->reflected[c->newest]];
     c->newest = 1 - c->newest;
-    gpu_dispatch(cmd, c->couple,
-                 GPU_BIND(MRT_BINDINGS(runtime, cmd),
-                          { .name = "mrt_clutter_direct", .buffer = c->direct },
-                          { .name = "mrt_clutter_reflectance", .buffer = c->reflectance },
-                          { .name = "mrt_clutter_coupling", .buffer = c->coupling },
-                          { .name = "mrt_clutter_senders", .buffer = c->senders },
-                          { .name = "mrt_clutter_before", .buffer = before },
-                          { .name = "mrt_clutter_reflected", .buffer = c->reflected[c->newest] }),
+    const gpu_buffer newest = runtime->buffers[c->reflected[c->newest]];
+    mrt_dispatch(runtime, cmd, c->couple,
+                 GPU_BIND({ .name = "mrt_clutter_before", .buffer = before },
+                          { .name = "mrt_clutter_reflected", .buffer = newest }),
                  NULL, 0, runtime->opening_count, 1, 1);
 }

@@ -111,18 +111,17 @@ bool mrt_clutter_direct_upload(struct mrt_runtime *runtime, const struct mrt_run
     const size_t coefficients = 12 * (size_t)mrt_quads(input->operators->k_r) * sizeof(float);
     struct face_place end = { .of = input->operators };
     while (next_face(&end)) c->group_count = end.group + 1;
-    return mrt_table_upload(runtime, input, "clutter_texels",
+    return mrt_table_upload(runtime, input, "mrt_clutter_texels",
                             input->clutter->charts.side_texel_count, sizeof(struct mrt_texel),
-                            fill_texels, &c->texels) &&
-           mrt_table_upload(runtime, input, "clutter_groups", c->group_count,
-                            sizeof(struct mrt_gpu_clutter_group), fill_groups, &c->groups) &&
-           mrt_table_upload(runtime, input, "clutter_faces", end.face,
-                            sizeof(struct mrt_gpu_clutter_face), fill_faces, &c->faces) &&
-           mrt_table_upload(runtime, input, "clutter_samples", c->group_count,
-                            MRT_LOCAL * sizeof(struct mrt_gpu_clutter_sample), fill_samples,
-                            &c->samples) &&
-           mrt_table_upload(runtime, input, "clutter_direct", c->opening_count, coefficients, NULL,
-                            &c->direct) &&
+                            fill_texels) &&
+           mrt_table_upload(runtime, input, "mrt_clutter_groups", c->group_count,
+                            sizeof(struct mrt_gpu_clutter_group), fill_groups) &&
+           mrt_table_upload(runtime, input, "mrt_clutter_faces", end.face,
+                            sizeof(struct mrt_gpu_clutter_face), fill_faces) &&
+           mrt_table_upload(runtime, input, "mrt_clutter_samples", c->group_count,
+                            MRT_LOCAL * sizeof(struct mrt_gpu_clutter_sample), fill_samples) &&
+           mrt_table_upload(runtime, input, "mrt_clutter_direct", c->opening_count, coefficients,
+                            NULL) &&
            mrt_pipeline_of(runtime, "clutter_direct", &shader_mrt_runtime_clutter_direct_comp,
                            1u << MRT_CONSTANT_QUADS_R, &c->light);
 }
@@ -144,13 +143,10 @@ void mrt_record_clutter_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     note_area_light(runtime, view);
     if (c->opening_count == 0) return;
     gpu_scope_begin(cmd, "clutter");
-    gpu_dispatch(cmd, c->light,
-                 GPU_BIND(FRAME_LIGHT_BINDINGS(view), MRT_BINDINGS(runtime, cmd),
-                          { .name = "mrt_texels", .buffer = c->texels },
-                          { .name = "mrt_clutter_groups", .buffer = c->groups },
-                          { .name = "mrt_clutter_faces", .buffer = c->faces },
-                          { .name = "mrt_clutter_samples", .buffer = c->samples },
-                          { .name = "mrt_clutter_direct", .buffer = c->direct }),
-                 NULL, 0, c->group_count, 1, 1);
+    mrt_dispatch(
+        runtime, cmd, c->light,
+        GPU_BIND(FRAME_LIGHT_BINDINGS(view),
+                 { .name = "mrt_texels", .buffer = mrt_buffer(runtime, "mrt_clutter_texels") }),
+        NULL, 0, c->group_count, 1, 1);
     gpu_scope_end(cmd);
 }

@@ -122,19 +122,18 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
     map->tile_count = (uint32_t)tiles;
     map->surfaces.count = (uint32_t)instances;
     map->fill_push.places = list_places(input, NULL);
-    return mrt_table_upload(runtime, input, "clutter_tiles", tiles, sizeof(struct mrt_gpu_tile),
-                            fill_tiles, &map->tiles) &&
-           mrt_table_upload(runtime, input, "clutter_map_openings", runtime->opening_count,
-                            sizeof(struct mrt_gpu_opening), fill_openings, &map->openings) &&
-           mrt_table_upload(runtime, input, "clutter_places", map->fill_push.places,
-                            sizeof(struct mrt_gpu_clutter_place), fill_places, &map->places) &&
-           mrt_buffer_of(runtime, "clutter_first_triangles", clutter->scene_triangle_0,
-                         (instances + 1) * sizeof(uint32_t), &map->surfaces.first) &&
-           mrt_table_upload(runtime, input, "clutter_triangles", triangles_of(clutter),
-                            sizeof(struct light_map_triangle), fill_triangles,
-                            &map->surfaces.triangles) &&
-           mrt_buffer_of(runtime, "clutter_light", NULL, tiles * MRT_LOCAL * VALUES * VEC3_BYTES,
-                         &map->light) &&
+    return mrt_table_upload(runtime, input, "mrt_clutter_tiles", tiles, sizeof(struct mrt_gpu_tile),
+                            fill_tiles) &&
+           mrt_table_upload(runtime, input, "mrt_clutter_map_openings", runtime->opening_count,
+                            sizeof(struct mrt_gpu_opening), fill_openings) &&
+           mrt_table_upload(runtime, input, "mrt_clutter_places", map->fill_push.places,
+                            sizeof(struct mrt_gpu_clutter_place), fill_places) &&
+           mrt_buffer_of(runtime, "mrt_clutter_first_triangles", clutter->scene_triangle_0,
+                         (instances + 1) * sizeof(uint32_t)) &&
+           mrt_table_upload(runtime, input, "mrt_clutter_triangles", triangles_of(clutter),
+                            sizeof(struct light_map_triangle), fill_triangles) &&
+           mrt_buffer_of(runtime, "mrt_clutter_light", NULL,
+                         tiles * MRT_LOCAL * VALUES * VEC3_BYTES) &&
            mrt_image_of(runtime, &image, &map->image) &&
            mrt_pipeline_of(runtime, "clutter_fill", &shader_mrt_runtime_clutter_fill_comp, 0,
                            &map->fill) &&
@@ -152,15 +151,15 @@ void mrt_record_clutter_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
     if (!m->is_clear) gpu_clear_image(cmd, m->image, (const float[4]){ 0.0f });
     m->is_clear = true;
     mrt_record_reconstruct(runtime, cmd,
-                           &(struct mrt_reconstruct){ true, m->tiles, m->openings, m->u_b, m->u_r,
-                                                      m->light, MRT_LOCAL, m->tile_count });
-    gpu_dispatch(cmd, m->fill,
-                 GPU_BIND({ .name = "mrt_clutter_places", .buffer = m->places },
-                          { .name = "mrt_clutter_light", .buffer = m->light },
-                          { .name = "mrt_texels", .buffer = runtime->clutter.texels },
-                          { .name = "clutter_map", .image = m->image }),
-                 &m->fill_push, sizeof m->fill_push, gpu_groups(m->fill_push.places, MRT_LOCAL), 1,
-                 1);
+                           &(struct mrt_reconstruct){ true, "mrt_clutter_tiles",
+                                                      "mrt_clutter_map_openings", "mrt_clutter_u_b",
+                                                      "mrt_clutter_u_r", "mrt_clutter_light",
+                                                      MRT_LOCAL, m->tile_count });
+    mrt_dispatch(
+        runtime, cmd, m->fill,
+        GPU_BIND({ .name = "mrt_texels", .buffer = mrt_buffer(runtime, "mrt_clutter_texels") },
+                 { .name = "clutter_map", .image = m->image }),
+        &m->fill_push, sizeof m->fill_push, gpu_groups(m->fill_push.places, MRT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
 }
 
@@ -168,12 +167,13 @@ void mrt_record_clutter_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 bool mrt_record_clutter_pixels(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                                const struct frame_view *view)
 {
-    const struct mrt_runtime_clutter_map *m = &runtime->clutter.map;
+    struct mrt_runtime_clutter_map *m = &runtime->clutter.map;
+    m->surfaces.first = mrt_buffer(runtime, "mrt_clutter_first_triangles");
+    m->surfaces.triangles = mrt_buffer(runtime, "mrt_clutter_triangles");
     const struct light_map_instances push = light_map_instances(&m->surfaces);
     if (m->tile_count == 0 || !view->layers[FRAME_ID].id) return false;
-    gpu_dispatch(cmd, m->apply,
-                 GPU_BIND(gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level),
-                          view->constants_binding, LIGHT_MAP_SURFACE_BINDINGS(&m->surfaces, cmd),
+    mrt_dispatch(runtime, cmd, m->apply,
+                 GPU_BIND(view->constants_binding, LIGHT_MAP_SURFACE_BINDINGS(&m->surfaces, cmd),
                           { .name = "clutter_map", .image = m->image, .sampler = runtime->linear },
                           { .name = "id", .image = view->layers[FRAME_ID] },
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
