@@ -9,16 +9,15 @@
 
 // ---- area_light_points.c: by uniform rays and samples of the emitters
 
-struct mrt_area_light_points {
-    size_t count;
-    const vec3s *position;              // world
-    struct mrt_area_light_probe *light; // result, 0 before
-    bool *solid;                        // result: inside a solid
+struct mrt_lit_point {
+    vec3s position;                    // world
+    struct mrt_area_light_probe light; // result, 0 before
+    bool solid;                        // result: inside a solid
 };
 
 // rays: a power of two. false: out of memory.
 bool mrt_area_light_points(struct host *host, const struct trace_scene *scene, int rays,
-                           const struct mrt_area_light_points *points);
+                           struct mrt_lit_point *points, size_t count);
 
 // ---- area_light_outdoors.c: probes outside of all blocks, on a grid over the scene, for surfaces
 // that belong to no room

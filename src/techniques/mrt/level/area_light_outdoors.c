@@ -36,88 +36,46 @@ static bool is_in_block(const struct mrt_block_map *map, vec3s point)
     return false;
 }
 
-static void premultiply(struct mrt_outdoor_probe *probe)
-{
-    for (int k = 0; k < MRT_PROBE_VALUES; k++) {
-        probe->light.emitted[k] = glms_vec3_scale(probe->light.emitted[k], probe->open);
-        probe->light.sky[k] *= probe->open;
-    }
-}
-
 // A sky of radiance 1/π gives each normal the irradiance 1, which is √4π Y₀.
 static float sky_share(const struct mrt_area_light_probe *probe)
 {
     return probe->sky[0] / sqrtf(4.0f * GLM_PIf);
 }
 
-// The points of the grid outside of all blocks.
-struct points {
-    int count;
-    int *index;
-    vec3s *position;
-    struct mrt_area_light_probe *light;
-    bool *solid;
-};
-
-static bool points_alloc(struct points *points, struct host *host, size_t count)
+// Premultiplied. Returns whether the point is outdoors.
+static bool place_point(const struct mrt_lit_point *point, struct mrt_outdoor_probe *out)
 {
-    points->index = host_alloc(host, count, sizeof *points->index);
-    points->position = host_alloc(host, count, sizeof *points->position);
-    points->light = host_alloc(host, count, sizeof *points->light);
-    points->solid = host_alloc(host, count, sizeof *points->solid);
-    return points->index && points->position && points->light && points->solid;
-}
-
-static void points_finish(struct points *points, struct host *host)
-{
-    host_free(host, points->index);
-    host_free(host, points->position);
-    host_free(host, points->light);
-    host_free(host, points->solid);
-}
-
-static void find_points(struct points *points, const struct mrt_block_map *map,
-                        struct frame_probes grid, int count)
-{
-    for (int i = 0; i < count; i++) {
-        const vec3s position = probe_grid_point(grid, (uint32_t)i);
-        if (is_in_block(map, position)) continue;
-        points->index[points->count] = i;
-        points->position[points->count++] = position;
+    out->light = point->light;
+    out->open = point->solid ? 0.0f : fminf(sky_share(&point->light) / OUTSIDE, 1.0f);
+    for (int k = 0; k < MRT_PROBE_VALUES; k++) {
+        out->light.emitted[k] = glms_vec3_scale(out->light.emitted[k], out->open);
+        out->light.sky[k] *= out->open;
     }
-}
-
-// Whether any is outdoors.
-static bool place_points(const struct points *points, struct mrt_outdoor_probe *out)
-{
-    bool any = false;
-    for (int i = 0; i < points->count; i++) {
-        struct mrt_outdoor_probe *probe = &out[points->index[i]];
-        probe->light = points->light[i];
-        probe->open = points->solid[i] ? 0.0f : fminf(sky_share(&probe->light) / OUTSIDE, 1.0f);
-        premultiply(probe);
-        any |= probe->open > 0.0f;
-    }
-    return any;
+    return out->open > 0.0f;
 }
 
 bool mrt_outdoors_init(struct host *host, const struct mrt_block_map *map, struct box3 bounds,
                        const struct trace_scene *scene, struct mrt_outdoors *out)
 {
-    struct points points = { 0 };
     *out = (struct mrt_outdoors){ .host = host, .grid = grid_of(bounds) };
     const int count = (int)probe_grid_count(out->grid);
+    struct mrt_lit_point *points = host_alloc(host, (size_t)count, sizeof *points);
+    int *probe_of = host_alloc(host, (size_t)count, sizeof *probe_of); // of each point
+    int outside = 0;
     out->probes = host_alloc(host, (size_t)count, sizeof *out->probes);
-    bool ok = out->probes && points_alloc(&points, host, (size_t)count);
-    if (ok) {
-        find_points(&points, map, out->grid, count);
-        ok = mrt_area_light_points(host, scene, RAYS,
-                                   &(struct mrt_area_light_points){ (size_t)points.count,
-                                                                    points.position, points.light,
-                                                                    points.solid });
+    bool ok = out->probes && points && probe_of, any = false;
+    for (int i = 0; ok && i < count; i++) {
+        const vec3s position = probe_grid_point(out->grid, (uint32_t)i);
+        if (is_in_block(map, position)) continue;
+        probe_of[outside] = i;
+        points[outside++].position = position;
     }
-    if (ok && !place_points(&points, out->probes)) mrt_outdoors_finish(out);
-    points_finish(&points, host);
+    ok = ok && mrt_area_light_points(host, scene, RAYS, points, (size_t)outside);
+    for (int k = 0; ok && k < outside; k++)
+        any |= place_point(&points[k], &out->probes[probe_of[k]]);
+    if (ok && !any) mrt_outdoors_finish(out);
+    host_free(host, points);
+    host_free(host, probe_of);
     return ok;
 }
 

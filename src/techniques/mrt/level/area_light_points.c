@@ -1,4 +1,4 @@
-// Light of emitters and the sky at points.
+// Light of emitters and the sky at points: any, and the probes of blocks.
 #include "techniques/mrt/level/area_light.h"
 
 #include "core/parallel.h"
@@ -13,7 +13,7 @@
 struct job {
     const struct trace_scene *scene;
     struct mrt_rays rays;
-    const struct mrt_area_light_points *points;
+    struct mrt_lit_point *points;
 };
 
 static void add(vec3s light, const float weight[MRT_PROBE_VALUES], struct mrt_area_light_probe *out)
@@ -61,22 +61,61 @@ static void sample_emitters(const struct job *job, const struct texel_receiver *
 static void gather(void *user, size_t i)
 {
     const struct job *job = user;
+    struct mrt_lit_point *point = &job->points[i];
     const struct texel_receiver at = {
-        .position = job->points->position[i],
+        .position = point->position,
         .rays = job->rays.count,
         .light_samples = texel_light_samples(job->scene, job->rays.count),
         .seed = pcg_hash((uint32_t)i) | 1u,
     };
-    job->points->solid[i] = gather_rays(job, &at, &job->points->light[i]);
-    sample_emitters(job, &at, &job->points->light[i]);
+    point->solid = gather_rays(job, &at, &point->light);
+    sample_emitters(job, &at, &point->light);
 }
 
 bool mrt_area_light_points(struct host *host, const struct trace_scene *scene, int rays,
-                           const struct mrt_area_light_points *points)
+                           struct mrt_lit_point *points, size_t count)
 {
     struct job job = { .scene = scene, .points = points };
     if (!mrt_rays_init(host, MRT_PROBE, rays, &job.rays)) return false;
-    parallel_for(points->count, 8, gather, &job);
+    parallel_for(count, 8, gather, &job);
     mrt_rays_finish(host, &job.rays);
     return true;
+}
+
+// ---- probes of blocks
+
+enum { PROBE_RAYS = 256 };
+
+// The point itself unless it is in a solid; else the nearest of its block that is not.
+static int nearest_outside(const struct mrt_lit_point *points, int per_block, int point)
+{
+    const int first = point / per_block * per_block;
+    int nearest = point;
+    float least = INFINITY;
+    for (int i = first; points[point].solid && i < first + per_block; i++) {
+        float distance = glms_vec3_distance2(points[i].position, points[point].position);
+        if (points[i].solid || !(distance < least)) continue;
+        least = distance;
+        nearest = i;
+    }
+    return nearest;
+}
+
+struct mrt_area_light_probe *mrt_area_light_probes_create(struct host *host,
+                                                          const struct mrt_block_map *map, int p,
+                                                          const struct trace_scene *scene)
+{
+    const int per_block = mrt_probes_of_block(p), count = map->count * per_block;
+    struct mrt_area_light_probe *out = host_alloc(host, (size_t)count, sizeof *out);
+    struct mrt_lit_point *points = host_alloc(host, (size_t)count, sizeof *points);
+    bool ok = out && points;
+    for (int i = 0; ok && i < count; i++)
+        points[i].position = mrt_probe_position(&map->blocks[i / per_block], p, i % per_block);
+    ok = ok && mrt_area_light_points(host, scene, PROBE_RAYS, points, (size_t)count);
+    for (int i = 0; ok && i < count; i++)
+        out[i] = points[nearest_outside(points, per_block, i)].light;
+    host_free(host, points);
+    if (ok) return out;
+    host_free(host, out);
+    return NULL;
 }

@@ -98,31 +98,24 @@ static size_t cube_stride(const struct mrt_solver *s, int cube)
     return (size_t)walls_of(s->level->maze, cube) * (size_t)s->face_texels;
 }
 
-static float *copy_t_db(const struct mrt_solver *s, int cube)
+// Modes × padded texels; the two strides of `from`.
+static float *copy_modes(const struct mrt_solver *s, int cube, const struct matrix_f32 *from,
+                         size_t by_mode, size_t by_texel)
 {
-    const struct matrix_f32 *from = &s->level->dictionary->element[cube].t_db;
-    size_t stride = cube_stride(s, cube);
-    float *out = host_alloc(s->host, stride * from->rows, sizeof *out);
-    for (size_t t = 0; out && t < from->columns; t++)
-        for (size_t r = 0; r < from->rows; r++)
-            out[r * stride + (size_t)padded(s, (int)t)] = from->at[r * from->stride + t];
-    return out;
-}
-
-static float *copy_u_b(const struct mrt_solver *s, int cube, const struct matrix_f32 *from)
-{
-    size_t stride = cube_stride(s, cube);
-    float *out = host_alloc(s->host, stride * from->columns, sizeof *out);
-    for (size_t t = 0; out && t < from->rows; t++)
-        for (size_t r = 0; r < from->columns; r++)
-            out[r * stride + (size_t)padded(s, (int)t)] = from->at[t * from->stride + r];
+    const size_t stride = cube_stride(s, cube), modes = (size_t)s->level->k_b;
+    const size_t texels = by_mode == 1 ? from->rows : from->columns;
+    float *out = host_alloc(s->host, stride * modes, sizeof *out);
+    for (size_t t = 0; out && t < texels; t++)
+        for (size_t m = 0; m < modes; m++)
+            out[m * stride + (size_t)padded(s, (int)t)] = from->at[m * by_mode + t * by_texel];
     return out;
 }
 
 static bool copy_cube(struct mrt_solver *s, int cube)
 {
-    s->t_db[cube] = copy_t_db(s, cube);
-    s->u_b[cube] = copy_u_b(s, cube, &s->level->dictionary->element[cube].u_b);
+    const struct mrt_element *from = &s->level->dictionary->element[cube];
+    s->t_db[cube] = copy_modes(s, cube, &from->t_db, from->t_db.stride, 1);
+    s->u_b[cube] = copy_modes(s, cube, &from->u_b, 1, from->u_b.stride);
     return s->t_db[cube] && s->u_b[cube];
 }
 
@@ -132,7 +125,8 @@ static bool copy_retraced(struct mrt_solver *s)
     s->u_retraced = host_alloc(s->host, (size_t)from->count, sizeof *s->u_retraced);
     bool ok = s->u_retraced != NULL;
     for (int i = 0; ok && i < from->count; i++) {
-        s->u_retraced[i] = copy_u_b(s, from->at[i].cube, &from->at[i].u_b);
+        s->u_retraced[i] =
+            copy_modes(s, from->at[i].cube, &from->at[i].u_b, 1, from->at[i].u_b.stride);
         ok = s->u_retraced[i] != NULL;
     }
     return ok;
@@ -190,34 +184,29 @@ static void map_entry(struct mrt_solver *s, const struct mrt_shape *only, int wa
     }
 }
 
-static void map_tube_entries(struct mrt_solver *s)
+// Walls of tubes, or each wall of a cube, for each face that light enters by.
+static void map_entries(struct mrt_solver *s)
 {
-    for (int kind = MRT_BLOCK_STRAIGHT; kind < MRT_BLOCK_KINDS; kind++) {
+    const bool tubes = s->level->maze == MRT_TUNNEL;
+    const int first = tubes ? MRT_BLOCK_STRAIGHT : MRT_BLOCK_CUBE;
+    for (int kind = first; kind < (tubes ? MRT_BLOCK_KINDS : MRT_BLOCK_STRAIGHT); kind++) {
         struct mrt_block block;
         mrt_block_init(&block, "", (enum mrt_block_kind)kind);
-        const struct mrt_shape tube = mrt_block_shape(&block, s->level->resolution);
-        for (int f = 0; f < CUBE_FACES; f++)
-            if (mrt_shape_is_open(&tube, f)) map_entry(s, &tube, 0, f, mrt_response_of(&block, f));
-    }
-}
-
-static void map_cube_entries(struct mrt_solver *s)
-{
-    for (int wall = 0; wall < CUBE_FACES; wall++) {
-        const struct mrt_shape only =
-            mrt_cube(s->level->resolution, CUBE_ALL_FACES & ~(1u << wall));
-        for (int entry = 0; entry < CUBE_FACES; entry++)
-            if (wall != entry) map_entry(s, &only, wall, entry, entry);
+        for (int wall = 0; wall < (tubes ? 1 : CUBE_FACES); wall++) {
+            const struct mrt_shape only =
+                tubes ? mrt_block_shape(&block, s->level->resolution)
+                      : mrt_cube(s->level->resolution, CUBE_ALL_FACES & ~(1u << wall));
+            for (int f = 0; f < CUBE_FACES; f++)
+                if (mrt_shape_is_open(&only, f))
+                    map_entry(s, &only, wall, f, mrt_response_of(&block, f));
+        }
     }
 }
 
 static void map_texels(struct mrt_solver *s)
 {
     for (int b = 0; b < s->level->map->count; b++) map_block(s, b);
-    if (s->level->maze == MRT_TUNNEL)
-        map_tube_entries(s);
-    else
-        map_cube_entries(s);
+    map_entries(s);
 }
 
 static bool allocate(struct mrt_solver *s)

@@ -38,45 +38,31 @@ static int clamp_cell(float x, int cells)
     return (int)fminf(fmaxf(floorf(x), 0.0f), (float)(cells - 1));
 }
 
-// Calls `visit` for each cell that a block touches.
-static void for_cells(const struct grid *grid, const struct mrt_block *block, uint32_t number,
-                      void (*visit)(void *user, int cell, uint32_t block), void *user)
-{
-    struct box3 box = bounds_of(block, MARGIN);
-    int low[3], high[3];
-    for (int a = 0; a < 3; a++) {
-        float origin = grid->origin.raw[a];
-        low[a] = clamp_cell((box.min.raw[a] - origin) / grid->cell, grid->cells[a]);
-        high[a] = clamp_cell((box.max.raw[a] - origin) / grid->cell, grid->cells[a]);
-    }
-    for (int z = low[2]; z <= high[2]; z++)
-        for (int y = low[1]; y <= high[1]; y++)
-            for (int x = low[0]; x <= high[0]; x++)
-                visit(user, (z * grid->cells[1] + y) * grid->cells[0] + x, number);
-}
-
 struct lists {
     uint32_t (*cell)[2]; // first candidate, count
     uint32_t *candidates;
 };
 
-static void count_block(void *user, int cell, uint32_t block)
+// Counts the blocks that touch each cell, and lists them where there are candidates.
+static void add_blocks(const struct grid *grid, const struct mrt_block_map *map,
+                       struct lists *lists)
 {
-    (void)block;
-    ((struct lists *)user)->cell[cell][1]++;
-}
-
-static void add_block(void *user, int cell, uint32_t block)
-{
-    struct lists *lists = user;
-    lists->candidates[lists->cell[cell][0] + lists->cell[cell][1]++] = block;
-}
-
-static void visit_all(const struct grid *grid, const struct mrt_block_map *map,
-                      void (*visit)(void *user, int cell, uint32_t block), struct lists *lists)
-{
-    for (int b = 0; b < map->count; b++)
-        for_cells(grid, &map->blocks[b], (uint32_t)b, visit, lists);
+    for (int b = 0; b < map->count; b++) {
+        const struct box3 box = bounds_of(&map->blocks[b], MARGIN);
+        int low[3], high[3];
+        for (int a = 0; a < 3; a++) {
+            const float origin = grid->origin.raw[a];
+            low[a] = clamp_cell((box.min.raw[a] - origin) / grid->cell, grid->cells[a]);
+            high[a] = clamp_cell((box.max.raw[a] - origin) / grid->cell, grid->cells[a]);
+        }
+        for (int z = low[2]; z <= high[2]; z++)
+            for (int y = low[1]; y <= high[1]; y++)
+                for (int x = low[0]; x <= high[0]; x++) {
+                    uint32_t *cell = lists->cell[(z * grid->cells[1] + y) * grid->cells[0] + x];
+                    if (lists->candidates) lists->candidates[cell[0] + cell[1]] = (uint32_t)b;
+                    cell[1]++;
+                }
+    }
 }
 
 // First candidates from the counts, which become 0. Returns the number of candidates.
@@ -147,11 +133,11 @@ bool mrt_lookup_grid_upload(struct mrt_runtime *runtime, const struct mrt_block_
     set_params(&runtime->level, &grid, map);
     lists.cell = host_alloc(runtime->host, cells, sizeof *lists.cell);
     if (!lists.cell) return false;
-    visit_all(&grid, map, count_block, &lists);
+    add_blocks(&grid, map, &lists);
     size_t total = place_lists(&lists, cells);
     lists.candidates = host_alloc(runtime->host, total, sizeof *lists.candidates);
     if (!lists.candidates) goto done;
-    visit_all(&grid, map, add_block, &lists);
+    add_blocks(&grid, map, &lists);
     for (size_t i = 0; i < cells; i++)
         place_nearest_first(&grid, map, i, lists.candidates + lists.cell[i][0], lists.cell[i][1]);
     ok = mrt_buffer_of(runtime, "mrt_cells", lists.cell, cells * sizeof *lists.cell) &&

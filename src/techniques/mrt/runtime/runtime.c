@@ -162,62 +162,66 @@ void mrt_runtime_finish(struct mrt_runtime *runtime)
     *runtime = (struct mrt_runtime){ 0 };
 }
 
-static uint64_t walls_of(const struct mrt_runtime_size *size)
+// ---- bytes
+
+struct sizes {
+    const struct mrt_runtime_size *of;
+    uint64_t walls, texels; // of a block
+    uint64_t k_b, k_r;      // padded
+    uint64_t probes, probe_rows;
+    uint64_t number, values; // bytes of a number of an operator; values of a texel
+};
+
+static struct sizes sizes_of(const struct mrt_runtime_size *of)
 {
-    return size->tube ? 1 : CUBE_FACES;
+    const uint64_t walls = of->tube ? 1 : CUBE_FACES;
+    const uint64_t probes = of->options.probes ? (uint64_t)mrt_probes_of_block(of->probes) : 0;
+    return (struct sizes){ .of = of,
+                           .walls = walls,
+                           .texels = walls * (uint64_t)(of->resolution * of->resolution),
+                           .k_b = 4 * mrt_quads(of->k_b),
+                           .k_r = 4 * mrt_quads(of->k_r),
+                           .probes = probes,
+                           .probe_rows = MRT_PROBE_VALUES * probes,
+                           .number = of->options.half ? 2 : 4,
+                           .values = of->options.vector ? 1 + VECTOR_VALUES : 1 };
 }
 
-static uint64_t bytes_of_probes(const struct mrt_runtime_size *size)
+static uint64_t bytes_of_probes(const struct sizes *s)
 {
-    const uint64_t probes = (uint64_t)mrt_probes_of_block(size->probes);
-    const uint64_t rows = MRT_PROBE_VALUES * probes, number = size->options.half ? 2 : 4;
-    const uint64_t texels = (uint64_t)mrt_brick_texels(size->probes);
-    const uint64_t k_b = 4 * mrt_quads(size->k_b), k_r = 4 * mrt_quads(size->k_r);
+    const uint64_t brick = (uint64_t)mrt_brick_texels(s->of->probes);
     // A grid of the block: places, slabs and depths.
     const uint64_t published =
-        size->options.publish ? (sizeof(vec4s) + PROBE_VOLUME_BYTES) * probes : 0;
-    if (!size->options.probes) return 8;
-    const uint64_t wall_texels = walls_of(size) * (uint64_t)(size->resolution * size->resolution);
-    return rows * number * (k_b + CUBE_FACES * k_r) + (rows + wall_texels) * VEC3_BYTES +
-           probes * sizeof(struct mrt_gpu_probe) +
-           texels * (sizeof(uint32_t) + 8 * FRAME_PROBE_SLABS) + published;
-}
-
-static uint64_t bytes_of_sight(const struct mrt_runtime_size *size)
-{
-    const uint64_t edge = size->options.probes ? (uint64_t)mrt_sight_edge(size->probes) : 0;
-    return (1 + edge * edge * edge) * sizeof(uint32_t);
+        s->of->options.publish ? (sizeof(vec4s) + PROBE_VOLUME_BYTES) * s->probes : 0;
+    if (!s->of->options.probes) return 8;
+    return s->probe_rows * s->number * (s->k_b + CUBE_FACES * s->k_r) +
+           (s->probe_rows + s->texels) * VEC3_BYTES + s->probes * sizeof(struct mrt_gpu_probe) +
+           brick * (sizeof(uint32_t) + 8 * FRAME_PROBE_SLABS) + published;
 }
 
 // A basis and a response of its own, one more opening, T_b→r and T_c→r.
-static uint64_t bytes_of_clutter(const struct mrt_runtime_size *size)
+static uint64_t bytes_of_clutter(const struct sizes *s)
 {
-    const uint64_t texels = walls_of(size) * (uint64_t)(size->resolution * size->resolution);
-    const uint64_t number = size->options.half ? 2 : 4;
-    const uint64_t values = size->options.vector ? 1 + VECTOR_VALUES : 1;
-    const uint64_t k_b = 4 * mrt_quads(size->k_b), k_r = 4 * mrt_quads(size->k_r);
-    const uint64_t probes =
-        size->options.probes ? MRT_PROBE_VALUES * (uint64_t)mrt_probes_of_block(size->probes) : 0;
-    if (!size->has_clutter || size->tube) return 0;
-    return number * (texels * k_b * (1 + values) + (texels * values + probes) * k_r + probes * k_b +
-                     k_b * k_r) +
-           number * k_r * k_r + sizeof(float) * (3 * k_b * k_r + 5 * 3 * k_r) +
-           bytes_of_sight(size);
+    const uint64_t edge = s->of->options.probes ? (uint64_t)mrt_sight_edge(s->of->probes) : 0;
+    const uint64_t sight = (1 + edge * edge * edge) * sizeof(uint32_t);
+    if (!s->of->has_clutter || s->of->tube) return 0;
+    return s->number * (s->texels * s->k_b * (1 + s->values) +
+                        (s->texels * s->values + s->probe_rows) * s->k_r + s->probe_rows * s->k_b +
+                        s->k_b * s->k_r + s->k_r * s->k_r) +
+           sizeof(float) * (3 * s->k_b * s->k_r + 5 * 3 * s->k_r) + sight;
 }
 
 uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
 {
-    const uint64_t n = (uint64_t)size->resolution, walls = walls_of(size), texels = walls * n * n;
-    const uint64_t number = size->options.half ? 2 : 4;
-    const uint64_t values = size->options.vector ? 1 + VECTOR_VALUES : 1;
-    const uint64_t k_b = 4 * mrt_quads(size->k_b), k_r = 4 * mrt_quads(size->k_r);
+    const struct sizes s = sizes_of(size);
+    const uint64_t n = (uint64_t)size->resolution;
     // A tile for each wall, RGBA16F; three layers of irradiance by normal.
-    const uint64_t map = walls * (n + 2) * (n + 2) * 8;
+    const uint64_t map = s.walls * (n + 2) * (n + 2) * 8;
     const uint64_t cells = MRT_LOOKUP_CELLS * MRT_LOOKUP_CELLS * MRT_LOOKUP_CELLS;
     return cells * 3 * sizeof(uint32_t) +
-           texels * (sizeof(struct mrt_texel) + (2 + values) * VEC3_BYTES) +
-           walls * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
-           texels * k_b * number * (1 + values) + 3 * k_b * k_b * sizeof(float) +
-           MRT_RESPONSES * texels * k_r * number * values + map * (size->options.vector ? 4 : 1) +
-           bytes_of_probes(size) + bytes_of_clutter(size);
+           s.texels * (sizeof(struct mrt_texel) + (2 + s.values) * VEC3_BYTES) +
+           s.walls * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
+           s.texels * s.k_b * s.number * (1 + s.values) + 3 * s.k_b * s.k_b * sizeof(float) +
+           MRT_RESPONSES * s.texels * s.k_r * s.number * s.values +
+           map * (size->options.vector ? 4 : 1) + bytes_of_probes(&s) + bytes_of_clutter(&s);
 }
