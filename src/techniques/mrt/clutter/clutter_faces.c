@@ -6,9 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+// A sort key of texels: by block, then by chart or face.
 struct texel_place {
     int block;
-    uint32_t chart, texel;
+    uint32_t group, texel;
 };
 
 // Texels of a chart in a block.
@@ -50,7 +51,7 @@ static int compare_places(const void *a, const void *b)
 {
     const struct texel_place *p = a, *q = b;
     if (p->block != q->block) return p->block < q->block ? -1 : 1;
-    if (p->chart != q->chart) return p->chart < q->chart ? -1 : 1;
+    if (p->group != q->group) return p->group < q->group ? -1 : 1;
     return p->texel < q->texel ? -1 : p->texel > q->texel;
 }
 
@@ -81,12 +82,12 @@ static void make_pieces(struct builder *s)
     struct piece *last = NULL;
     for (uint32_t i = 0; i < charts->texel_count; i++) {
         const struct texel_place *place = &s->places[i];
-        if (!last || last->block != place->block || last->chart != place->chart) {
+        if (!last || last->block != place->block || last->chart != place->group) {
             last = &s->pieces[s->piece_count++];
             *last = (struct piece){ .block = place->block,
-                                    .chart = place->chart,
+                                    .chart = place->group,
                                     .first = i,
-                                    .normal = charts->charts[place->chart].normal };
+                                    .normal = charts->charts[place->group].normal };
         }
         add_to_piece(last, &charts->texels[place->texel]);
     }
@@ -143,26 +144,13 @@ static int number_faces(const struct builder *s, int max_faces)
 
 // ---- faces
 
-// Sort key of mrt_clutter.texels: backs of a block follow all its faces.
-struct texel_order {
-    int block, face;
-    uint32_t texel;
-};
-
-static int compare_order(const void *a, const void *b)
-{
-    const struct texel_order *p = a, *q = b;
-    if (p->block != q->block) return p->block < q->block ? -1 : 1;
-    if (p->face != q->face) return p->face < q->face ? -1 : 1;
-    return p->texel < q->texel ? -1 : p->texel > q->texel;
-}
-
+// Backs of a block follow all its faces.
 static bool fill_faces(const struct builder *s)
 {
     struct mrt_clutter *clutter = s->clutter;
     const struct charts *charts = &clutter->charts;
     const uint32_t count = charts->side_texel_count;
-    struct texel_order *order = host_alloc(clutter->host, count, sizeof *order);
+    struct texel_place *order = host_alloc(clutter->host, count, sizeof *order);
     if (!order) return false;
     for (uint32_t i = 0; i < s->piece_count; i++) {
         const struct piece *piece = &s->pieces[i];
@@ -172,14 +160,14 @@ static bool fill_faces(const struct builder *s)
     }
     for (uint32_t t = 0; t < count; t++) {
         const int face = clutter->face_of_texel[chart_front(charts, t)];
-        order[t] = (struct texel_order){ clutter->faces[face].block,
-                                         chart_is_back(charts, t) ? clutter->face_count : face, t };
+        order[t] = (struct texel_place){ clutter->faces[face].block, (uint32_t)face, t };
+        if (chart_is_back(charts, t)) order[t].group = (uint32_t)clutter->face_count;
     }
-    qsort(order, count, sizeof *order, compare_order);
+    qsort(order, count, sizeof *order, compare_places);
     for (uint32_t i = 0; i < count; i++) {
         clutter->texels[i] = order[i].texel;
-        if (order[i].face == clutter->face_count) continue;
-        struct mrt_clutter_face *face = &clutter->faces[order[i].face];
+        if (order[i].group == (uint32_t)clutter->face_count) continue;
+        struct mrt_clutter_face *face = &clutter->faces[order[i].group];
         if (face->texel_count++ == 0) face->first_texel = i;
     }
     host_free(clutter->host, order);

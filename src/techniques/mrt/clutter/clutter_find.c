@@ -11,23 +11,11 @@
 static const float WALL_DISTANCE[2] = { 0.1f, 0.15f };
 static const float WALL_COSINE[2] = { 0.35f, 0.65f };
 
-static float smoothstep(const float edge[2], float x)
-{
-    const float t = fminf(fmaxf((x - edge[0]) / (edge[1] - edge[0]), 0.0f), 1.0f);
-    return t * t * (3.0f - 2.0f * t);
-}
-
-static bool is_in_box(struct box3 box, vec3s p)
-{
-    for (int a = 0; a < 3; a++)
-        if (!(p.raw[a] >= box.min.raw[a] && p.raw[a] <= box.max.raw[a])) return false;
-    return true;
-}
-
 int mrt_block_of_point(const struct mrt_block_map *map, vec3s world, vec3s *cell)
 {
     for (int b = 0; b < map->count; b++) {
-        if (!is_in_box(mrt_warp_bounds(map->blocks[b].corner), world)) continue;
+        if (!box3_intersects(mrt_warp_bounds(map->blocks[b].corner), (struct box3){ world, world }))
+            continue;
         if (!mrt_warp_inverse(map->blocks[b].corner, world, cell)) continue;
         if (glms_vec3_max(glms_vec3_abs(*cell)) <= 0.5f) return b;
     }
@@ -44,8 +32,8 @@ static float share_of_walls(const struct mrt_block *block, vec3s cell, vec3s nor
         if (mrt_block_is_open(block, f)) continue;
         const float side = f & 1 ? 1.0f : -1.0f;
         const float distance = 0.5f - side * cell.raw[f / 2];
-        const float share = smoothstep(WALL_COSINE, -side * n.raw[f / 2]) *
-                            (1.0f - smoothstep(WALL_DISTANCE, distance));
+        const float share = glm_smoothstep(WALL_COSINE[0], WALL_COSINE[1], -side * n.raw[f / 2]) *
+                            (1.0f - glm_smoothstep(WALL_DISTANCE[0], WALL_DISTANCE[1], distance));
         most = fmaxf(most, share);
     }
     return most;
