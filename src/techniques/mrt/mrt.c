@@ -70,11 +70,6 @@ static bool drt_check(const struct technique_create *how)
     return check("drt", how);
 }
 
-static bool mrt_resolve(struct host *host, const struct scene_pose *pose, void *options)
-{
-    return mrt_resolve_maze(host, pose, options);
-}
-
 static char *mrt_block_map(struct host *host, const struct scene_pose *pose, const void *options)
 {
     const struct technique_create how = { .host = host, .options = options };
@@ -317,7 +312,7 @@ enum { MRT_CAN = CAN_MOVE_LIGHTS | NEEDS_BAKE | PUBLISHES_PROBES | GATHERS_EMISS
     .name = of_name, .title = of_title, .paper = of_paper, .role = ROLE_SOURCE,                    \
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_LIGHT_EVOLVES, .bake_version = 5,                     \
     .options = OPTION_TABLE(struct mrt_options, rows, NULL), .presets = presets,                   \
-    .debug_views = debug_views, .state_size = sizeof(struct mrt), .resolve = mrt_resolve,          \
+    .debug_views = debug_views, .state_size = sizeof(struct mrt), .resolve = mrt_resolve_maze,     \
     .read_block_map = mrt_read_block_map, .bake = mrt_bake, .bake_report = mrt_bake_report,        \
     .load = mrt_load, .set_options = mrt_set_options, .invalidate = mrt_invalidate,                \
     .update = mrt_update, .record = mrt_record, .debug_view = mrt_debug_view,                      \

@@ -62,8 +62,9 @@ static enum mrt_maze maze_of(const struct mrt_block_map *map)
     return mrt_block_map_is_plane(map) ? MRT_MAZE_2D : MRT_MAZE_3D;
 }
 
-bool mrt_resolve_maze(struct host *host, const struct scene_pose *pose, struct mrt_options *options)
+bool mrt_resolve_maze(struct host *host, const struct scene_pose *pose, void *user)
 {
+    struct mrt_options *options = user;
     struct mrt_block_map map = { 0 };
     if (options->maze != MRT_MAZE_AUTO) return true;
     const bool ok = !pose || choose_map(host, pose, options, &map);

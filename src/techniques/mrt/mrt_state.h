@@ -3,7 +3,7 @@
 
 #include "techniques/mrt/dictionary/dictionary.h"
 #include "techniques/common/kept.h"
-#include "techniques/mrt/clutter/clutter_light.h"
+#include "techniques/mrt/clutter/clutter.h"
 #include "techniques/mrt/clutter/delta_cache.h"
 #include "techniques/mrt/level/solver.h"
 #include "techniques/mrt/mrt_host_solver.h"
@@ -61,9 +61,8 @@ struct mrt {
 
 // ---- mrt_level.c
 
-// Replaces maze=auto by the dictionary that the blocks of the scene need.
-bool mrt_resolve_maze(struct host *host, const struct scene_pose *pose,
-                      struct mrt_options *options);
+// Replaces maze=auto by the dictionary that the blocks of the scene need. options: mrt_options.
+bool mrt_resolve_maze(struct host *host, const struct scene_pose *pose, void *options);
 // The blocks that these options choose for the scene, delta: for drt, as JSON, owned by the caller;
 // NULL: host_fail has the reason.
 char *mrt_map_json(struct host *host, const struct mrt_options *options, bool delta,

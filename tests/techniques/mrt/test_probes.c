@@ -11,7 +11,7 @@
 #include "techniques/mrt/dictionary/interface.h"
 #include "techniques/mrt/dictionary/prior.h"
 #include "techniques/mrt/level/probes.h"
-#include "techniques/mrt/level/rotated.h"
+#include "techniques/mrt/level/operators.h"
 
 #include <math.h>
 #include <stdlib.h>

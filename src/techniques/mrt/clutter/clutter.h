@@ -12,6 +12,7 @@
 #include "trace/trace.h"
 
 #include "techniques/mrt/level/block_map.h"
+#include "techniques/mrt/level/geometry.h"
 
 // A scene with some of the triangles of another. Vertices, materials and nodes are shared.
 struct mrt_part {
@@ -90,3 +91,12 @@ int mrt_face_at(const struct mrt_clutter *clutter, const struct trace_hit *hit);
 int mrt_face_of_chart(const struct mrt_clutter *clutter, int block, uint32_t chart);
 bool mrt_make_clutter_faces(struct mrt_clutter *clutter, const struct mrt_block_map *map,
                             int max_faces);
+
+// ---- clutter_light.c
+
+// Points of clutter where a frame computes direct light, and their light of emitters and the sky:
+// one for each of clutter->texels, in their order. The caller frees it with host_free; NULL without
+// memory.
+struct mrt_geometry_texel *mrt_clutter_light_create(struct host *host,
+                                                    const struct scene_pose *pose,
+                                                    const struct mrt_clutter *clutter);

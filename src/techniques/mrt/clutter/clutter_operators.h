@@ -6,7 +6,7 @@
 // all visible blocks, and the run time adds direct light and reflectance.
 #pragma once
 
-#include "techniques/mrt/clutter/clutter_light.h"
+#include "techniques/mrt/clutter/clutter.h"
 #include "techniques/mrt/clutter/delta_cache.h"
 #include "techniques/mrt/level/operators.h"
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "techniques/mrt/level/level.h"
-#include "techniques/mrt/level/rotated.h"
 
 // Operators of blocks with the same openings. n texels of mrt_block_shape(resolution).
 struct mrt_block_basis {
@@ -85,3 +84,26 @@ void mrt_operators_finish(struct mrt_operators *operators);
 size_t mrt_pair_count(const struct mrt_operators *operators);
 // Rows of the light map of clutter in a block; NULL: none.
 const struct mrt_clutter_rows *mrt_rows_of(const struct mrt_operators *operators, int block);
+
+// ---- rotated.c: operators of the dictionary's shapes in the frames of blocks
+
+// Texels and probes of `from`, rotated by to_from, are those of `to`.
+struct mrt_rotation {
+    struct mrt_shape from, to;
+    mat3s to_from;
+};
+
+// Rows of light for each quantity of a measure.
+static inline int mrt_values_of(enum mrt_measure measure)
+{
+    static const int values[MRT_MEASURES] = { 1, MRT_VECTOR_COEFFICIENTS, MRT_PROBE_COEFFICIENTS };
+    return values[measure];
+}
+
+// Rows of light at the texels, or at p³ probes. Openings of `from` stay 0.
+bool mrt_rotate_light(struct host *host, const struct mrt_rotation *turn, int p,
+                      enum mrt_measure measure, const struct matrix_f32 *from,
+                      struct matrix_f32 *out);
+// Columns of the texels.
+bool mrt_rotate_columns(struct host *host, const struct mrt_rotation *turn,
+                        const struct matrix_f32 *from, struct matrix_f32 *out);

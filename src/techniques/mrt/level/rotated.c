@@ -1,5 +1,5 @@
 // Texels, tangent frames and probes in the frames of blocks.
-#include "rotated.h"
+#include "operators.h"
 
 #include "core/sh.h"
 
