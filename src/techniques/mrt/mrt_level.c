@@ -1,7 +1,7 @@
 // From a scene and a dictionary to the level that the run time lights.
 #include "techniques/mrt/mrt_state.h"
 
-#include "techniques/mrt/clutter/clutter_operators.h"
+#include "techniques/mrt/objects/clutter_operators.h"
 #include "techniques/mrt/level/make_map.h"
 
 // ---- the map

@@ -148,7 +148,7 @@ struct mrt_view_push {
     uint32_t view; // MRT_VIEW_…
 };
 
-// A voxel of a block (clutter/delta.h): bits of probes, openness in 1/255, whether some of it
+// A voxel of a block (objects/delta.h): bits of probes, openness in 1/255, whether some of it
 // is in a solid.
 #define MRT_SIGHT_PROBES 0xffu
 #define MRT_SIGHT_OPEN   8

@@ -3,8 +3,8 @@
 
 #include "techniques/mrt/dictionary/dictionary.h"
 #include "techniques/common/kept.h"
-#include "techniques/mrt/clutter/clutter.h"
-#include "techniques/mrt/clutter/delta_cache.h"
+#include "techniques/mrt/objects/clutter.h"
+#include "techniques/mrt/objects/delta_cache.h"
 #include "techniques/mrt/level/solver.h"
 #include "techniques/mrt/mrt_host_solver.h"
 #include "techniques/mrt/mrt_update.h"

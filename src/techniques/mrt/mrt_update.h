@@ -8,7 +8,7 @@
 #include "scene/snapshot.h"
 
 #include "techniques/common/light_map/moves.h"
-#include "techniques/mrt/clutter/delta_cache.h"
+#include "techniques/mrt/objects/delta_cache.h"
 #include "techniques/mrt/runtime/upload.h"
 
 #include <pthread.h>

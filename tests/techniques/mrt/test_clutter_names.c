@@ -1,7 +1,7 @@
 // Clutter that a block map or a scene names.
 #include "framework/test.h"
 
-#include "techniques/mrt/clutter/clutter.h"
+#include "techniques/mrt/objects/clutter.h"
 
 #include <string.h>
 

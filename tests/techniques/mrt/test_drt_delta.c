@@ -8,8 +8,8 @@
 
 #include "techniques/mrt/dictionary/cube_operators.h"
 #include "techniques/mrt/dictionary/gather.h"
-#include "techniques/mrt/clutter/delta.h"
-#include "techniques/mrt/clutter/delta_cache.h"
+#include "techniques/mrt/objects/delta.h"
+#include "techniques/mrt/objects/delta_cache.h"
 
 #include <math.h>
 #include <string.h>

@@ -7,7 +7,7 @@
 #include "techniques/mrt/level/block.h"
 
 // A node whose meshes, with those of its descendants, are clutter, or walls, whatever is found
-// (clutter/clutter.h).
+// (objects/clutter.h).
 enum { MRT_MAX_NAMED = 1024 }; // of each kind
 struct mrt_named_part {
     char *node;

@@ -1,5 +1,5 @@
 // Operators of a level: those of the dictionary in the frames of the blocks, with what objects
-// inside blocks change and add (clutter/clutter_operators.h). The struct owns all of its matrices;
+// inside blocks change and add (objects/clutter_operators.h). The struct owns all of its matrices;
 // the run time uploads them (runtime/upload.h).
 #pragma once
 
@@ -47,7 +47,7 @@ struct mrt_opening {
     struct matrix_f32 at_clutter; // rows of the block's mrt_clutter_rows × k_r
 };
 
-// Light of a block at the texels of its clutter, four values each (clutter/delta.h).
+// Light of a block at the texels of its clutter, four values each (objects/delta.h).
 struct mrt_clutter_rows {
     int block, first_texel, texel_count; // in mrt_clutter.texels
     struct matrix_f32 u_b;               // texel_count · 4 × k_b
@@ -66,7 +66,7 @@ struct mrt_operators {
     int opening_count;
     // Parts of clutter.
     int clutter_count; // openings that are clutter
-    // By block: the start of its voxels (clutter/delta.h), 0: all of its probes are visible;
+    // By block: the start of its voxels (objects/delta.h), 0: all of its probes are visible;
     // then the voxels. NULL: none has any.
     uint32_t *sight;
     size_t sight_count;

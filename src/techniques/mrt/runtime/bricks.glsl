@@ -23,7 +23,7 @@ vec3 brick_texel(mrt_place place)
     return vec3(brick * edge) + clamp(at, vec3(0.5), vec3(float(edge) - 0.5));
 }
 
-// Lookups of a place at the probes visible from it past clutter (clutter/delta.h).
+// Lookups of a place at the probes visible from it past clutter (objects/delta.h).
 struct mrt_visible_probes {
     vec3 texel;
     uint probes; // bits

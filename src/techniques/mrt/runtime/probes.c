@@ -7,7 +7,7 @@
 #include "core/sh.h"
 
 #include "techniques/common/probes/volume.h"
-#include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/objects/delta.h"
 
 #include "technique_shaders.h"
 

@@ -2,7 +2,7 @@
 #include "runtime.h"
 
 #include "techniques/common/probes/volume.h"
-#include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/objects/delta.h"
 #include "techniques/mrt/runtime/upload.h"
 
 #include "technique_shaders.h"

@@ -5,7 +5,7 @@
 #include "frame/frame.h"
 
 #include "techniques/common/light_map/surface.h"
-#include "techniques/mrt/clutter/clutter.h"
+#include "techniques/mrt/objects/clutter.h"
 #include "techniques/mrt/level/area_light.h"
 #include "techniques/mrt/level/operators.h"
 #include "techniques/mrt/level/published.h"

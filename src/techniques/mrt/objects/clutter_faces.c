@@ -1,6 +1,6 @@
 // Parts of charts in blocks, merged into faces. The largest parts of a block begin a face; each
 // other one joins the face whose place and normal are nearest to its own.
-#include "techniques/mrt/clutter/clutter.h"
+#include "techniques/mrt/objects/clutter.h"
 
 #include <math.h>
 #include <stdlib.h>

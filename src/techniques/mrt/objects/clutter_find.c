@@ -1,5 +1,5 @@
 // Which parts of a scene are clutter.
-#include "techniques/mrt/clutter/clutter.h"
+#include "techniques/mrt/objects/clutter.h"
 
 #include "scene/mesh_parts.h"
 

@@ -1,4 +1,4 @@
-// Operators of blocks with clutter (clutter/delta.h).
+// Operators of blocks with clutter (objects/delta.h).
 //
 // Clutter changes the operators, not the passes. Blocks that it touches have bases U_b + ΔU_b and
 // responses of their openings of their own. The faces of a block's clutter are one more opening of
@@ -6,8 +6,8 @@
 // all visible blocks, and the run time adds direct light and reflectance.
 #pragma once
 
-#include "techniques/mrt/clutter/clutter.h"
-#include "techniques/mrt/clutter/delta_cache.h"
+#include "techniques/mrt/objects/clutter.h"
+#include "techniques/mrt/objects/delta_cache.h"
 #include "techniques/mrt/level/operators.h"
 
 struct mrt_clutter_changes {

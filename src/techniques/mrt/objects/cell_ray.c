@@ -1,5 +1,5 @@
 // Rays in the cells of blocks, and clutter on them.
-#include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/objects/delta.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 // Clutter's texels as a geometry image.
-#include "techniques/mrt/clutter/clutter.h"
+#include "techniques/mrt/objects/clutter.h"
 
 #include "techniques/mrt/level/area_light.h"
 #include "trace/texels/texels.h"

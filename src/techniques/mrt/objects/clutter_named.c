@@ -1,5 +1,5 @@
 // Which nodes of a scene are named as clutter or as walls.
-#include "techniques/mrt/clutter/clutter.h"
+#include "techniques/mrt/objects/clutter.h"
 
 #include "core/option.h"
 

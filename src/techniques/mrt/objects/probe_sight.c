@@ -1,5 +1,5 @@
 // Rays from voxels to the probes around them.
-#include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/objects/delta.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"

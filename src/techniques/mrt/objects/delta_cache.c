@@ -1,4 +1,4 @@
-#include "techniques/mrt/clutter/delta_cache.h"
+#include "techniques/mrt/objects/delta_cache.h"
 
 #include "core/hash.h"
 

@@ -1,5 +1,5 @@
 // Rays of delta operators.
-#include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/objects/delta.h"
 
 #include "core/parallel.h"
 

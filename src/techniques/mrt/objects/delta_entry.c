@@ -1,5 +1,5 @@
 // Rays from walls through an opening.
-#include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/objects/delta.h"
 
 #include "core/parallel.h"
 

@@ -1,6 +1,6 @@
 // Walls between two blocks that only clutter makes, such as an arcade with drapes. A map found in
 // the free space has them; they are opened, since the clutter itself occludes.
-#include "techniques/mrt/clutter/clutter.h"
+#include "techniques/mrt/objects/clutter.h"
 
 #include "techniques/mrt/level/wall.h"
 

@@ -1,5 +1,5 @@
 // Cosine-distributed rays from the texels of a face through the cells of the blocks.
-#include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/objects/delta.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"

@@ -1,7 +1,7 @@
 // Bases, responses, openings and pairs of blocks with clutter.
-#include "techniques/mrt/clutter/clutter_operators.h"
+#include "techniques/mrt/objects/clutter_operators.h"
 
-#include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/objects/delta.h"
 
 #include <string.h>
 

@@ -16,7 +16,7 @@
 #include "trace/trace.h"
 
 #include "techniques/mrt/dictionary/rays.h"
-#include "techniques/mrt/clutter/clutter.h"
+#include "techniques/mrt/objects/clutter.h"
 #include "techniques/mrt/level/block_map.h"
 #include "techniques/mrt/level/wall.h"
 

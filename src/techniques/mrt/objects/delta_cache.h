@@ -4,7 +4,7 @@
 
 #include "core/hash.h"
 
-#include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/objects/delta.h"
 
 struct mrt_kept {
     bool valid;

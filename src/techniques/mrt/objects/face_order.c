@@ -1,5 +1,5 @@
 // The order of the coefficients of faces.
-#include "techniques/mrt/clutter/clutter_operators.h"
+#include "techniques/mrt/objects/clutter_operators.h"
 
 enum use { NOTHING, WALLS, CLUTTER };
 

@@ -1,5 +1,5 @@
 // Rays from the texels of clutter through the cell of their block.
-#include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/objects/delta.h"
 
 #include "core/parallel.h"
 #include "core/sh.h"

@@ -1,5 +1,5 @@
 // Splits a pose in two, for rays that meet walls alone or clutter alone.
-#include "techniques/mrt/clutter/clutter.h"
+#include "techniques/mrt/objects/clutter.h"
 
 #include <math.h>
 #include <string.h>

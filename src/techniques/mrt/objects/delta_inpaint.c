@@ -1,6 +1,6 @@
 // Rows of points inside objects are the mean of the nearest points on their grid that are valid:
 // those on the smallest square, or cube, around a point that has one.
-#include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/objects/delta.h"
 
 #include <stdlib.h>
 #include <string.h>
