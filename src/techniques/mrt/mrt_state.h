@@ -8,7 +8,7 @@
 #include "techniques/mrt/level/solver.h"
 #include "techniques/mrt/mrt_host_solver.h"
 #include "techniques/mrt/mrt_update.h"
-#include "techniques/mrt/runtime/runtime.h"
+#include "techniques/mrt/gpu/runtime.h"
 #include "techniques/technique.h"
 
 enum mrt_map_choice { MRT_MAP_SCENE, MRT_MAP_AUTO, MRT_MAP_SINGLE };

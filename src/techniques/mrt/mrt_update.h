@@ -1,7 +1,7 @@
 // Operators of clutter that moved, made by another thread while frames use the old ones.
 //
 // The thread works on a copy of the scene (scene/snapshot.h) and without the GPU: it plans a run
-// time (runtime/upload.h), whose content frames copy in parts. The frame with the last part takes
+// time (gpu/upload.h), whose content frames copy in parts. The frame with the last part takes
 // the new run time, whole. Changes meanwhile wait for the next turn: the newest pose counts.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 #include "techniques/common/light_map/moves.h"
 #include "techniques/mrt/objects/delta_cache.h"
-#include "techniques/mrt/runtime/upload.h"
+#include "techniques/mrt/gpu/upload.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "framework/gpu_test.h"
-#include "techniques/mrt/runtime/runtime.h"
+#include "techniques/mrt/gpu/runtime.h"
 
 struct mrt_runtime_fixture {
     struct mrt_block_map map;

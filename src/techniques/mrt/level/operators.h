@@ -1,6 +1,6 @@
 // Operators of a level: those of the dictionary in the frames of the blocks, with what objects
 // inside blocks change and add (objects/clutter_operators.h). The struct owns all of its matrices;
-// the run time uploads them (runtime/upload.h).
+// the run time uploads them (gpu/upload.h).
 #pragma once
 
 #include "techniques/mrt/level/level.h"

@@ -1,0 +1,98 @@
+// Lookups in the bricks of probes. Needs locate.glsl, core/sh.glsl, frame/probes.glsl,
+// MRT_BRICKS_BINDING and MRT_SIGHT_BINDING.
+#ifndef AG_MRT_BRICKS_GLSL
+#define AG_MRT_BRICKS_GLSL
+
+#include "techniques/mrt/gpu/tube.glsl"
+
+layout(constant_id = MRT_CONSTANT_SIGHT) const int SIGHT = 0;
+
+layout(set = 0, binding = MRT_BRICKS_BINDING) uniform sampler3D bricks;
+layout(set = 0, binding = MRT_SIGHT_BINDING) readonly buffer mrt_probe_sight
+{
+    uint sight_table[]; // mrt_operators.sight
+};
+
+// In texels of the first slab. Places outside the cell are clamped to the brick's border.
+vec3 brick_texel(mrt_place place)
+{
+    int edge = int(level.probes) + 2, block = place.block;
+    vec3 unit = TUBES ? tube_unit(block, place.cell) : place.cell + 0.5;
+    vec3 at = unit * float(level.probes) + 1.0;
+    ivec3 brick = ivec3(block % int(level.brick_columns), block / int(level.brick_columns), 0);
+    return vec3(brick * edge) + clamp(at, vec3(0.5), vec3(float(edge) - 0.5));
+}
+
+// Lookups of a place at the probes visible from it past clutter (objects/delta.h).
+struct mrt_visible_probes {
+    vec3 texel;
+    uint probes; // bits
+    int lookups; // 1: between all probes, or 8: at each of them
+    float scale; // of their light
+};
+
+uint sight_at(uint first, vec3 at)
+{
+    ivec3 v = clamp(ivec3(floor(at)), ivec3(0), ivec3(SIGHT - 1));
+    return sight_table[first + uint((v.z * SIGHT + v.y) * SIGHT + v.x)];
+}
+
+// The voxel one step from a surface along its normal, in the cell, is entirely on its side, but may
+// be in another object. The surface's own voxel, which its wall may cross, then counts, too.
+uint sight_of(mrt_place place, vec3 normal)
+{
+    uint first = sight_table[place.block];
+    if (first == 0u) return MRT_SIGHT_PROBES;
+    vec3 at = (place.cell + 0.5) * float(SIGHT);
+    if (normal == vec3(0.0)) return sight_at(first, at);
+    uint sight = sight_at(first, at + normal / largest_of(normal));
+    if ((sight & MRT_SIGHT_SOLID) == 0u) return sight;
+    uint own = sight_at(first, at);
+    return (sight & own & MRT_SIGHT_PROBES) != 0u ? sight & own : own;
+}
+
+float share_of_probe(mrt_visible_probes visible, int c)
+{
+    vec3 t = fract(visible.texel - 0.5), w = mix(1.0 - t, t, vec3(c & 1, c >> 1 & 1, c >> 2 & 1));
+    return float(visible.probes >> uint(c) & 1u) * w.x * w.y * w.z;
+}
+
+// normal: in the cell, 0 of a point in space.
+mrt_visible_probes visible_probes_at(mrt_place place, vec3 normal)
+{
+    mrt_visible_probes visible = mrt_visible_probes(brick_texel(place), MRT_SIGHT_PROBES, 1, 1.0);
+    if (SIGHT == 0) return visible;
+    uint sight = sight_of(place, normal);
+    visible.probes = sight & MRT_SIGHT_PROBES;
+    float sum = 0.0;
+    for (int c = 0; c < 8; c++) sum += share_of_probe(visible, c);
+    bool none = visible.probes == 0u, some = sum > 0.0 && visible.probes != MRT_SIGHT_PROBES;
+    visible.lookups = some ? 8 : 1;
+    visible.scale = some ? 1.0 / sum : none ? float(sight >> MRT_SIGHT_OPEN & 255u) / 255.0 : 1.0;
+    return visible;
+}
+
+// Lookup i, and its weight. A loop of as many lookups costs software drivers less than branches.
+vec3 lookup_of(mrt_visible_probes visible, int i, out float weight)
+{
+    bool all = visible.lookups == 1;
+    weight = visible.scale * (all ? 1.0 : share_of_probe(visible, i));
+    return all ? visible.texel
+               : floor(visible.texel - 0.5) + vec3(i & 1, i >> 1 & 1, i >> 2 & 1) + 0.5;
+}
+
+vec3 bricks_irradiance(mrt_place place, vec3 normal)
+{
+    int slab = int(level.probes) + 2;
+    if (SIGHT == 0) return probes_irradiance_at(bricks, slab, brick_texel(place), normal);
+    mrt_visible_probes visible = visible_probes_at(place, normal_in_cell(place, normal));
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < visible.lookups; i++) {
+        float weight;
+        vec3 texel = lookup_of(visible, i, weight);
+        sum += weight * probes_irradiance_at(bricks, slab, texel, normal);
+    }
+    return sum;
+}
+
+#endif

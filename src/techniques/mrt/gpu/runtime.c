@@ -1,0 +1,227 @@
+// Buffers, images and pipelines of a level.
+#include "runtime.h"
+
+#include "techniques/common/probes/volume.h"
+#include "techniques/mrt/objects/delta.h"
+#include "techniques/mrt/gpu/upload.h"
+
+#include "technique_shaders.h"
+
+enum { VEC3_BYTES = 12, VECTOR_VALUES = 4 };
+
+static bool make_buffers(struct mrt_runtime *runtime, const struct mrt_operators *o)
+{
+    const size_t light = (size_t)runtime->level.texels * VEC3_BYTES;
+    const size_t quad = 3 * 4 * sizeof(float), all_b = runtime->block_count * mrt_quads(o->k_b);
+    return mrt_buffer_of(runtime, "mrt_area_light", NULL, light) &&
+           mrt_buffer_of(runtime, "mrt_direct", NULL, light) &&
+           mrt_buffer_of(runtime, "mrt_b_direct", NULL, all_b * quad) &&
+           mrt_buffer_of(runtime, "mrt_b", NULL, all_b * quad) &&
+           mrt_buffer_of(runtime, "mrt_r", NULL,
+                         runtime->opening_count * mrt_quads(o->k_r) * quad) &&
+           mrt_buffer_of(runtime, "mrt_irradiance", NULL, light) &&
+           (!runtime->options.vector ||
+            mrt_buffer_of(runtime, "mrt_vector", NULL, VECTOR_VALUES * light));
+}
+
+static bool make_image(struct mrt_runtime *runtime, const char *name, uint32_t width,
+                       uint32_t height, uint32_t layers, gpu_image *out)
+{
+    const struct gpu_image_desc desc = { .name = name,
+                                         .dimension = GPU_2D_ARRAY,
+                                         .format = GPU_RGBA16F,
+                                         .width = width,
+                                         .height = height,
+                                         .depth = layers,
+                                         .usage = GPU_SAMPLED | GPU_STORAGE };
+    return mrt_image_of(runtime, &desc, out);
+}
+
+static bool make_images(struct mrt_runtime *runtime)
+{
+    const struct mrt_level_params *level = &runtime->level;
+    const bool vector = runtime->options.vector;
+    return mrt_sampler_of(runtime, "linear", &runtime->linear) &&
+           make_image(runtime, "light_map", level->map_width, level->map_height, 1,
+                      &runtime->light_map) &&
+           make_image(runtime, "vector_map", vector ? level->map_width : 1,
+                      vector ? level->map_height : 1, 3, &runtime->vector_map);
+}
+
+static bool is_affine(const struct mrt_block_map *map)
+{
+    for (int b = 0; b < map->count; b++)
+        if (!mrt_warp_is_affine(map->blocks[b].corner)) return false;
+    return true;
+}
+
+// VECTOR is another value of VALUES.
+static void fill_constants(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+{
+    const uint32_t values[] = {
+        [MRT_CONSTANT_HALF] = runtime->options.half,
+        [MRT_CONSTANT_QUADS_B] = mrt_quads(input->operators->k_b),
+        [MRT_CONSTANT_QUADS_R] = mrt_quads(input->operators->k_r),
+        [MRT_CONSTANT_VALUES] = 1,
+        [MRT_CONSTANT_PROBES] = runtime->options.clutter,
+        [MRT_CONSTANT_AFFINE] = is_affine(input->map),
+        [MRT_CONSTANT_TUBES] = mrt_block_is_tube(&input->map->blocks[0]),
+        [MRT_CONSTANT_CLUTTER] = input->operators->clutter_count > 0,
+        [MRT_CONSTANT_SIGHT] = mrt_sight_voxels(input->operators),
+        [MRT_CONSTANT_OUTDOORS] = input->images->outdoors.probes != NULL,
+    };
+    struct gpu_constant *constants = runtime->objects.constants;
+    for (uint32_t i = 0; i < MRT_CONSTANT_ROW_VECTOR; i++)
+        constants[i] = (struct gpu_constant){ i, values[i] };
+    constants[MRT_CONSTANT_ROW_VECTOR] =
+        (struct gpu_constant){ MRT_CONSTANT_VALUES, VECTOR_VALUES };
+}
+
+enum {
+    HALF = 1 << MRT_CONSTANT_HALF,
+    QUADS_B = 1 << MRT_CONSTANT_QUADS_B,
+    QUADS_R = 1 << MRT_CONSTANT_QUADS_R,
+    VALUES = 1 << MRT_CONSTANT_VALUES,
+    PROBES = 1 << MRT_CONSTANT_PROBES,
+    AFFINE = 1 << MRT_CONSTANT_AFFINE,
+    TUBES = 1 << MRT_CONSTANT_TUBES,
+    CLUTTER = 1 << MRT_CONSTANT_CLUTTER,
+    SIGHT = 1 << MRT_CONSTANT_SIGHT,
+    OUTDOORS = 1 << MRT_CONSTANT_OUTDOORS,
+    VECTOR = 1 << MRT_CONSTANT_ROW_VECTOR,
+    ALL = HALF | QUADS_B | QUADS_R | CLUTTER,
+};
+
+static bool make_pipelines(struct mrt_runtime *runtime)
+{
+    struct mrt_runtime_pipelines *p = &runtime->pipelines;
+    const bool vector = runtime->options.vector;
+    const struct {
+        gpu_pipeline *out;
+        const char *name;
+        const struct gpu_shader *shader;
+        uint32_t constants;
+    } all[] = {
+        { &p->direct, "direct", &shader_mrt_gpu_direct_comp, 0 },
+        { &p->project, "project", &shader_mrt_gpu_project_comp, HALF | QUADS_B },
+        { &p->bounce, "bounce", &shader_mrt_gpu_bounce_comp, QUADS_B | QUADS_R },
+        { &p->couple, "couple", &shader_mrt_gpu_couple_comp, HALF | QUADS_B | QUADS_R },
+        { &p->reconstruct, "reconstruct", &shader_mrt_gpu_reconstruct_comp, ALL | VALUES },
+        { &p->fill, "fill", &shader_mrt_gpu_fill_comp, VALUES },
+        { &p->apply, "apply", &shader_mrt_gpu_apply_comp,
+          (vector ? VECTOR : VALUES) | PROBES | AFFINE | TUBES | SIGHT | OUTDOORS },
+        { &p->debug, "debug", &shader_mrt_gpu_debug_comp, AFFINE | TUBES },
+        { &p->reconstruct_vector, "reconstruct_vector",
+          vector ? &shader_mrt_gpu_reconstruct_comp : NULL, ALL | VECTOR },
+        { &p->fill_vector, "fill_vector", vector ? &shader_mrt_gpu_fill_comp : NULL, VECTOR },
+    };
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        if (!mrt_pipeline_of(runtime, all[i].name, all[i].shader, all[i].constants, all[i].out))
+            return false;
+    return true;
+}
+
+static bool make_all(struct mrt_runtime *out, const struct mrt_runtime_input *input)
+{
+    fill_constants(out, input);
+    return mrt_tables_upload(out, input) && mrt_lookup_grid_upload(out, input->map) &&
+           mrt_probes_upload(out, input) && mrt_outdoors_upload(out, input) &&
+           mrt_operators_upload(out, input) && make_buffers(out, input->operators) &&
+           make_images(out) && make_pipelines(out) && mrt_clutter_upload(out, input);
+}
+
+bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
+                      const struct mrt_runtime_input *input,
+                      const struct mrt_runtime_options *options)
+{
+    *out = (struct mrt_runtime){ .host = host, .gpu = gpu, .options = *options };
+    return make_all(out, input);
+}
+
+bool mrt_runtime_plan(struct mrt_runtime *out, struct mrt_plan *plan,
+                      const struct mrt_runtime_input *input,
+                      const struct mrt_runtime_options *options)
+{
+    *out = (struct mrt_runtime){ .host = plan->host, .plan = plan, .options = *options };
+    const bool ok = make_all(out, input);
+    out->plan = NULL;
+    return ok;
+}
+
+bool mrt_runtime_init_empty(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
+                            const struct mrt_runtime_options *options)
+{
+    *out = (struct mrt_runtime){ .host = host, .gpu = gpu, .options = *options };
+    return mrt_probes_make_empty(out);
+}
+
+void mrt_runtime_finish(struct mrt_runtime *runtime)
+{
+    if (!runtime->gpu) return;
+    gpu_objects_destroy(runtime->gpu, &runtime->objects, runtime);
+    *runtime = (struct mrt_runtime){ 0 };
+}
+
+// ---- bytes
+
+struct sizes {
+    const struct mrt_runtime_size *of;
+    uint64_t walls, texels; // of a block
+    uint64_t k_b, k_r;      // padded
+    uint64_t probes, probe_rows;
+    uint64_t number, values; // bytes of a number of an operator; values of a texel
+};
+
+static struct sizes sizes_of(const struct mrt_runtime_size *of)
+{
+    const uint64_t walls = of->tube ? 1 : CUBE_FACES;
+    const uint64_t probes = of->options.probes ? (uint64_t)mrt_probes_of_block(of->probes) : 0;
+    return (struct sizes){ .of = of,
+                           .walls = walls,
+                           .texels = walls * (uint64_t)(of->resolution * of->resolution),
+                           .k_b = 4 * mrt_quads(of->k_b),
+                           .k_r = 4 * mrt_quads(of->k_r),
+                           .probes = probes,
+                           .probe_rows = MRT_PROBE_VALUES * probes,
+                           .number = of->options.half ? 2 : 4,
+                           .values = of->options.vector ? 1 + VECTOR_VALUES : 1 };
+}
+
+static uint64_t bytes_of_probes(const struct sizes *s)
+{
+    const uint64_t brick = (uint64_t)mrt_brick_texels(s->of->probes);
+    // A grid of the block: places, slabs and depths.
+    const uint64_t published =
+        s->of->options.publish ? (sizeof(vec4s) + PROBE_VOLUME_BYTES) * s->probes : 0;
+    if (!s->of->options.probes) return 8;
+    return s->probe_rows * s->number * (s->k_b + CUBE_FACES * s->k_r) +
+           (s->probe_rows + s->texels) * VEC3_BYTES + s->probes * sizeof(struct mrt_gpu_probe) +
+           brick * (sizeof(uint32_t) + 8 * FRAME_PROBE_SLABS) + published;
+}
+
+// A basis and a response of its own, one more opening, T_b→r and T_c→r.
+static uint64_t bytes_of_clutter(const struct sizes *s)
+{
+    const uint64_t edge = s->of->options.probes ? (uint64_t)mrt_sight_edge(s->of->probes) : 0;
+    const uint64_t sight = (1 + edge * edge * edge) * sizeof(uint32_t);
+    if (!s->of->has_clutter || s->of->tube) return 0;
+    return s->number * (s->texels * s->k_b * (1 + s->values) +
+                        (s->texels * s->values + s->probe_rows) * s->k_r + s->probe_rows * s->k_b +
+                        s->k_b * s->k_r + s->k_r * s->k_r) +
+           sizeof(float) * (3 * s->k_b * s->k_r + 5 * 3 * s->k_r) + sight;
+}
+
+uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
+{
+    const struct sizes s = sizes_of(size);
+    const uint64_t n = (uint64_t)size->resolution;
+    // A tile for each wall, RGBA16F; three layers of irradiance by normal.
+    const uint64_t map = s.walls * (n + 2) * (n + 2) * 8;
+    const uint64_t cells = MRT_LOOKUP_CELLS * MRT_LOOKUP_CELLS * MRT_LOOKUP_CELLS;
+    return cells * 3 * sizeof(uint32_t) +
+           s.texels * (sizeof(struct mrt_texel) + (2 + s.values) * VEC3_BYTES) +
+           s.walls * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
+           s.texels * s.k_b * s.number * (1 + s.values) + 3 * s.k_b * s.k_b * sizeof(float) +
+           MRT_RESPONSES * s.texels * s.k_r * s.number * s.values +
+           map * (size->options.vector ? 4 : 1) + bytes_of_probes(&s) + bytes_of_clutter(&s);
+}
