@@ -118,6 +118,7 @@ struct charts_wish {
     const char *technique; // in messages
     uint32_t texels;       // wanted number, without gutters
     float density;         // texels/m, in place of `texels`; 0: not given
+    float most_density;    // texels/m, even if there are fewer than `texels`; 0: any
     uint32_t most_charts;
     enum charts_coordinates coordinates;
 };

@@ -45,16 +45,16 @@ bool charts_init_wanted(struct charts *out, struct host *host, const struct scen
                         const struct charts_wish *wish)
 {
     const uint32_t texels = wish->texels;
-    struct charts_options how = { .texels_per_m = 1e6f,
-                                  .max_texels = texels < MOST_ATLAS / ATLAS_ROOM
-                                                    ? texels * ATLAS_ROOM
-                                                    : MOST_ATLAS,
-                                  .surface_texels = texels,
-                                  .join = CHARTS_JOINED,
-                                  .coordinates = wish->coordinates,
-                                  .atlas_per_texel = ATLAS_ROOM,
-                                  .most_texels = MOST_TEXELS,
-                                  .most_charts = wish->most_charts };
+    struct charts_options how = {
+        .texels_per_m = wish->most_density > 0.0f ? wish->most_density : 1e6f,
+        .max_texels = texels < MOST_ATLAS / ATLAS_ROOM ? texels * ATLAS_ROOM : MOST_ATLAS,
+        .surface_texels = texels,
+        .join = CHARTS_JOINED,
+        .coordinates = wish->coordinates,
+        .atlas_per_texel = ATLAS_ROOM,
+        .most_texels = MOST_TEXELS,
+        .most_charts = wish->most_charts
+    };
     if (wish->density > 0.0f) return init_at_density(out, host, pose, wish);
     for (int i = 0; i < DENSITY_TRIES; i++) {
         if (!charts_init(out, host, pose, &how)) return false;

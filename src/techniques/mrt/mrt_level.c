@@ -85,6 +85,20 @@ static bool find_clutter(struct mrt_parts *out, const struct mrt *mrt,
     return mrt_clutter_init(&out->clutter, out->host, pose, &mrt->map, &options);
 }
 
+static bool wants_light_map_of_clutter(const struct mrt_options *o)
+{
+    return o->gather && o->reflection && o->vector;
+}
+
+static void warn_of_clutter(const struct mrt *mrt, const char *scene)
+{
+    if (mrt->parts.clutter.is_too_fine && wants_light_map_of_clutter(&mrt->options))
+        host_log(mrt->host, LOG_WARNING,
+                 "gi drt: objects of %s have %u charts of %u texels, too many for a light map: "
+                 "probes light them",
+                 scene, mrt->parts.clutter.charts.count, mrt->parts.clutter.charts.texel_count);
+}
+
 // May open the map: once, as operators follow from it.
 static bool find_clutter_and_open(struct mrt *mrt, const struct scene_pose *pose)
 {
@@ -210,6 +224,7 @@ char *mrt_map_json(struct host *host, const struct mrt_options *options, bool de
 bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
 {
     if (!make_blocks(mrt, pose)) return false;
+    warn_of_clutter(mrt, pose->scene->name);
     const int resolution = mrt_face_texels((enum mrt_maze)mrt->options.maze, mrt->options.texels);
     return mrt->map.count == 0 ||
            (mrt_atlas_init(mrt->host, &mrt->map, resolution, &mrt->atlas) &&
@@ -239,8 +254,8 @@ static bool add_clutter(const struct mrt *mrt, const struct mrt_parts *parts,
                                                  .depth = options->depth,
                                                  .occlusion = options->occlusion,
                                                  .reflection = options->reflection,
-                                                 .gather = options->gather && options->reflection &&
-                                                           options->vector,
+                                                 .gather = wants_light_map_of_clutter(options) &&
+                                                           !parts->clutter.is_too_fine,
                                                  .stop = how->stop };
     return parts->clutter.triangles == 0 ||
            mrt_operators_add_clutter(operators, &mrt->level, &parts->clutter, parts->clutter_texels,

@@ -20,6 +20,8 @@ target_link_libraries(ag_test_mrt_runtime PUBLIC ag_test_gpu ag_test_mrt ag_test
 ag_test(techniques/mrt/runtime USES techniques LIBRARIES ag_test_mrt_runtime)
 
 ag_technique_tests(mrt/frame mrt/places mrt/drt_frame)
-ag_test(techniques/mrt/clutter_names USES techniques)
+foreach(name clutter_charts clutter_names)
+  ag_test(techniques/mrt/${name} USES techniques)
+endforeach()
 ag_test(techniques/mrt/drt_delta USES techniques)
 ag_test(techniques/mrt/drt_pillars USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)

@@ -73,16 +73,27 @@ static bool split(struct mrt_clutter *out, const struct scene_pose *pose, const 
     return true;
 }
 
-// Four texels for each of a block's walls at the same density bound the atlas.
+// Texels of clutter: four for each of its blocks' walls at the same density, and some for a level
+// of few blocks. Many small parts, as leaves, touch more: with `most` the light map is left out.
+static uint32_t wanted_texels(const struct mrt_block_map *map, float side)
+{
+    return (uint32_t)fminf(24.0f * side * side * (float)map->count, 262144.0f) + 8192u;
+}
+
+enum { MOST_TEXELS_OF_WANTED = 4 };
+
 static bool make_charts(struct mrt_clutter *out, const struct mrt_block_map *map,
                         const struct mrt_clutter_options *options)
 {
-    const float side = options->texels_per_edge;
-    const struct charts_options charts = {
-        .texels_per_m = side / mrt_block_map_mean_edge(map),
-        .max_texels = (uint32_t)fminf(24.0f * side * side * (float)map->count, 4194304.0f) + 65536u,
+    const uint32_t texels = wanted_texels(map, options->texels_per_edge);
+    const struct charts_wish wish = {
+        .technique = "drt",
+        .texels = texels,
+        .most_density = options->texels_per_edge / mrt_block_map_mean_edge(map),
     };
-    return charts_init(&out->charts, out->host, &out->objects.pose, &charts);
+    if (!charts_init_wanted(&out->charts, out->host, &out->objects.pose, &wish)) return false;
+    out->is_too_fine = out->charts.texel_count > MOST_TEXELS_OF_WANTED * texels;
+    return true;
 }
 
 bool mrt_clutter_init(struct mrt_clutter *out, struct host *host, const struct scene_pose *pose,

@@ -4,8 +4,9 @@
 //
 // Nodes can be named as clutter or as walls instead (docs/block-maps.md).
 //
-// Its triangles have charts (scene/charts). Their parts in each block are merged into at most
-// `max_faces` faces of that block. A face has one radiosity, the constant basis of section 5.3.2.
+// Its triangles have charts (scene/charts), small ones joined. Their parts in each block are merged
+// into at most `max_faces` faces of that block. A face has one radiosity, the constant basis of
+// section 5.3.2.
 #pragma once
 
 #include "scene/charts/charts.h"
@@ -33,6 +34,7 @@ struct mrt_chart_face {
 struct mrt_clutter {
     struct host *host;
     size_t triangles; // of the clutter; 0: there is none, and the rest is empty
+    bool is_too_fine; // its charts have too many texels for a light map: probes light it
     struct mrt_part walls, objects;
     uint32_t *indices;              // of both
     struct charts charts;           // of `objects`
