@@ -77,6 +77,14 @@ void block_face_normal(const struct block *block, int face, float out[3])
     for (int k = 0; k < 3 && face % 2 == 0; k++) out[k] = -out[k];
 }
 
+bool block_has_holes(const struct block *block, int face)
+{
+    if (block->neighbor[face] < 0) return false;
+    for (int p = 0; p < BLOCK_HOLES; p++)
+        if (block->holes[face][p] > 0.0f) return true;
+    return false;
+}
+
 enum opening block_opening(const struct block *block, int face)
 {
     if (block->neighbor[face] >= 0) return OPENING_NEIGHBOR;

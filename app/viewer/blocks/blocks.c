@@ -40,7 +40,8 @@ static bool same_block(const struct block *a, const struct block *b)
 {
     bool same = strcmp(a->name, b->name) == 0 && strcmp(a->shape, b->shape) == 0;
     for (int f = 0; f < BLOCK_FACES; f++)
-        same &= a->open[f] == b->open[f] && a->neighbor[f] == b->neighbor[f];
+        same &= a->open[f] == b->open[f] && a->neighbor[f] == b->neighbor[f] &&
+                memcmp(a->holes[f], b->holes[f], sizeof a->holes[f]) == 0;
     for (int c = 0; c < BLOCK_CORNERS; c++)
         for (int k = 0; k < 3; k++) same &= a->corner[c][k] == b->corner[c][k];
     return same;
@@ -186,6 +187,7 @@ static void close_face(struct blocks *blocks, int block, int face)
     const int other = it->neighbor[face];
     it->neighbor[face] = -1;
     it->open[face] = false;
+    memset(it->holes[face], 0, sizeof it->holes[face]);
     for (int f = 0; f < BLOCK_FACES && other >= 0; f++)
         if (blocks->at[other].neighbor[f] == block) {
             int to[4];
@@ -193,6 +195,7 @@ static void close_face(struct blocks *blocks, int block, int face)
             if (meets >= 0 && meets != f) continue; // another connection of the two
             blocks->at[other].neighbor[f] = -1;
             blocks->at[other].open[f] = false;
+            memset(blocks->at[other].holes[f], 0, sizeof blocks->at[other].holes[f]);
         }
 }
 

@@ -5,13 +5,21 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { BLOCKS_MOST = 1024, BLOCK_FACES = 6, BLOCK_CORNERS = 8, BLOCK_NAME = 64 };
+enum {
+    BLOCKS_MOST = 1024,
+    BLOCK_FACES = 6,
+    BLOCK_CORNERS = 8,
+    BLOCK_NAME = 64,
+    BLOCK_HOLES = 16, // parts of a face
+};
 
 struct block {
     char name[BLOCK_NAME], shape[16]; // shape: "cube", "straight" …
     float corner[BLOCK_CORNERS][3];   // bit 0 of the index: high x, bit 1 y, bit 2 z
     bool open[BLOCK_FACES];           // without a neighbour
     int neighbor[BLOCK_FACES];        // -1: none
+    // Shares of parts of a wall that are open to its neighbour; all 0: the whole face is.
+    float holes[BLOCK_FACES][BLOCK_HOLES];
 };
 
 struct blocks {
@@ -45,6 +53,7 @@ void block_face_normal(const struct block *block, int face, float out[3]);
 // Corner i, 0 to 3, around a face.
 int block_face_corner(int face, int i);
 enum opening block_opening(const struct block *block, int face);
+bool block_has_holes(const struct block *block, int face);
 
 // ---- changes of a map: those that add are -1 if there is no room or no memory
 

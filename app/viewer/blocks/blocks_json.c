@@ -37,6 +37,16 @@ static void read_open(const json_t *json, struct block *out)
     }
 }
 
+static void read_holes(const json_t *json, struct block *out)
+{
+    const json_t *holes = json_object_get(json, "holes");
+    for (int f = 0; f < BLOCK_FACES; f++) {
+        const json_t *shares = json_object_get(holes, block_faces[f]);
+        for (size_t p = 0; shares && p < BLOCK_HOLES; p++)
+            out->holes[f][p] = (float)json_number_value(json_array_get(shares, p));
+    }
+}
+
 static void read_block(const json_t *json, struct block *out)
 {
     const char *shape = json_string_value(json_object_get(json, "shape"));
@@ -45,6 +55,7 @@ static void read_block(const json_t *json, struct block *out)
     snprintf(out->shape, sizeof out->shape, "%s", shape ? shape : CUBE);
     read_corners(json, out);
     read_open(json, out);
+    read_holes(json, out);
     for (int f = 0; f < BLOCK_FACES; f++) out->neighbor[f] = -1;
 }
 
@@ -97,7 +108,8 @@ static json_t *corners_of(const struct block *block)
 
 static json_t *print_block(const struct blocks *blocks, const struct block *block)
 {
-    json_t *object = json_object(), *open = json_array(), *neighbors = json_object();
+    json_t *object = json_object(), *open = json_array();
+    json_t *neighbors = json_object(), *holes = json_object();
     const bool cube = strcmp(block->shape, CUBE) == 0;
     json_object_set_new(object, "name", json_text(block->name));
     if (!cube) json_object_set_new(object, "shape", json_text(block->shape));
@@ -109,9 +121,12 @@ static json_t *print_block(const struct blocks *blocks, const struct block *bloc
         if (opening == OPENING_NEIGHBOR)
             json_object_set_new(neighbors, block_faces[f],
                                 json_text(blocks->at[block->neighbor[f]].name));
+        if (block_has_holes(block, f))
+            json_object_set_new(holes, block_faces[f], json_floats(block->holes[f], BLOCK_HOLES));
     }
     json_object_set_new(object, "open", open);
     json_object_set_new(object, "neighbors", neighbors);
+    json_object_set_new(object, "holes", holes);
     return object;
 }
 

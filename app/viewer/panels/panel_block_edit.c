@@ -81,8 +81,9 @@ static void edit_opening(struct viewer *v, const struct block *block, int face)
     const enum opening now = block_opening(block, face);
     const int beyond = now == OPENING_NEIGHBOR ? block->neighbor[face]
                                                : blocks_meeting(blocks, v->block_edit.chosen, face);
-    char label[16], to[BLOCK_NAME + 8] = "";
-    if (beyond >= 0) snprintf(to, sizeof to, "to %s", blocks->at[beyond].name);
+    char label[16], to[BLOCK_NAME + 16] = "";
+    const char *const through = block_has_holes(block, face) ? "by holes to" : "to";
+    if (beyond >= 0) snprintf(to, sizeof to, "%s %s", through, blocks->at[beyond].name);
     const char *const names[] = { "wall", "open", to };
     int index = (int)now;
     snprintf(label, sizeof label, "face %s", block_faces[face]);
@@ -91,7 +92,9 @@ static void edit_opening(struct viewer *v, const struct block *block, int face)
         return;
     }
     ui_tooltip(
-        "A wall, an opening to the outside, or an opening to the block that meets this face.");
+        "A wall, an opening to the outside, or an opening to the block that meets this face. "
+        "Holes, "
+        "such as doors, are those of the map; wall and then the block opens the whole face.");
     if (now == OPENING_NEIGHBOR) return;
     ui_push(face);
     ui_same_line();

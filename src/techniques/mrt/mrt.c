@@ -310,7 +310,7 @@ static uint64_t drt_memory_estimate(const void *options)
 enum { MRT_CAN = CAN_MOVE_LIGHTS | NEEDS_BAKE | PUBLISHES_PROBES | GATHERS_EMISSION };
 #define MRT_TECHNIQUE(of_name, of_title, of_paper, rows)                                           \
     .name = of_name, .title = of_title, .paper = of_paper, .role = ROLE_SOURCE,                    \
-    .needs = FRAME_WRITES_IRRADIANCE | FRAME_LIGHT_EVOLVES, .bake_version = 5,                     \
+    .needs = FRAME_WRITES_IRRADIANCE | FRAME_LIGHT_EVOLVES, .bake_version = 6,                     \
     .options = OPTION_TABLE(struct mrt_options, rows, NULL), .presets = presets,                   \
     .debug_views = debug_views, .state_size = sizeof(struct mrt), .resolve = mrt_resolve_maze,     \
     .read_block_map = mrt_read_block_map, .bake = mrt_bake, .bake_report = mrt_bake_report,        \

@@ -121,6 +121,20 @@ static double along_normal(const struct matrix_f32 *scalar, const struct matrix_
     return worst;
 }
 
+// Largest difference of all parts of an interface together from the whole interface, which lets
+// everything pass.
+static double sum_of_parts_error(const struct mrt_dictionary *d)
+{
+    const size_t n = d->r_hole[0].rows;
+    double worst = 0.0;
+    for (size_t i = 0; i < n * n; i++) {
+        double sum = 0.0;
+        for (int p = 0; p < MRT_HOLE_PARTS; p++) sum += (double)d->r_hole[p].at[i];
+        worst = fmax(worst, fabs(sum - (i / n == i % n)));
+    }
+    return worst;
+}
+
 TEST(default_dictionary_is_as_large_as_the_paper_s)
 {
     struct mrt_dictionary_options options;
@@ -134,10 +148,12 @@ TEST(default_dictionary_is_as_large_as_the_paper_s)
         task_s += stage.seconds;
         print_message("  %-24s %6.2f s in %zu tasks\n", stage.name, stage.seconds, stage.tasks);
     }
-    print_message("shapes %.3f MB (paper: 4.7), interfaces %.3f MB (paper: 1.2), probes %.3f MB; "
-                  "%.1f s of tasks\n",
+    print_message("shapes %.3f MB (paper: 4.7), interfaces %.3f MB (paper: 1.2), probes %.3f MB, "
+                  "holes %.3f MB; %.1f s of tasks\n",
                   1e-6 * (double)bytes.shapes, 1e-6 * (double)bytes.interfaces,
-                  1e-6 * (double)bytes.probes, task_s);
+                  1e-6 * (double)bytes.probes, 1e-6 * (double)bytes.holes, task_s);
+    print_message("parts of an interface: %.1e from the whole\n", sum_of_parts_error(&d));
+    CHECK(sum_of_parts_error(&d) < 1e-3);
     CHECK_NEAR(1e-6 * (double)bytes.shapes, 4.7, 0.05);
     CHECK_NEAR(1e-6 * (double)bytes.interfaces, 1.2, 0.05);
     for (int i = 0; i < d.element_count; i++) {

@@ -58,6 +58,35 @@ void trial_two_rooms(struct frame_fixture *s, struct gpu *gpu, bool camera_in_da
         fixture_look(s, vec3_of(-3.8f, 2.5f, 1.8f), vec3_of(0, 0.8f, -1.5f));
 }
 
+void trial_door(struct frame_fixture *s, struct gpu *gpu, bool back)
+{
+    const float t = SLAB, half = SLAB / 2;
+    const struct box3 slabs[] = {
+        { vec3_of(-4, -t, -2), vec3_of(4, 0, 2) }, // floor, ceiling
+        { vec3_of(-4, 3, -2), vec3_of(4, 3 + t, 2) },
+        { vec3_of(-4 - t, -t, -2 - t), vec3_of(-4, 3 + t, 2 + t) }, // left, right
+        { vec3_of(4, -t, -2 - t), vec3_of(4 + t, 3 + t, 2 + t) },
+        { vec3_of(-4, -t, -2 - t), vec3_of(4, 3 + t, -2) }, // back, front
+        { vec3_of(-4, -t, 2), vec3_of(4, 3 + t, 2 + t) },
+        { vec3_of(-half, 0, -2), vec3_of(half, 3, -0.5f) }, // beside the door, and above it
+        { vec3_of(-half, 0, 0.5f), vec3_of(half, 3, 2) },
+        { vec3_of(-half, 2.1f, -0.5f), vec3_of(half, 3, 0.5f) },
+    };
+    fixture_init(s, gpu);
+    s->options.shadow_size = 512;
+    s->options.rsm_size = 256;
+    const int white = fixture_matte(s, grey(0.7f));
+    for (size_t i = 0; i < sizeof slabs / sizeof slabs[0]; i++)
+        fixture_box(s, slabs[i].min, slabs[i].max, false, white);
+    fixture_add_point(s, vec3_of(-2, 2.3f, 1.2f), grey(200));
+    add_camera(s, vec3_of(-2, 1.5f, 0));
+    add_camera(s, vec3_of(2, 1.5f, 0));
+    if (back)
+        fixture_look(s, vec3_of(3.8f, 2.5f, -1.8f), vec3_of(0, 2.2f, 1.2f));
+    else
+        fixture_look(s, vec3_of(0.3f, 1.5f, -1.8f), vec3_of(3, 1.6f, 2));
+}
+
 void trial_open_plane(struct frame_fixture *s, struct gpu *gpu, const struct trial_plane *plane)
 {
     const float half = 3, c = cosf(plane->tilt_rad), d = sinf(plane->tilt_rad);

@@ -9,6 +9,11 @@
 // each, where mrt begins to find blocks.
 void trial_two_rooms(struct frame_fixture *s, struct gpu *gpu, bool camera_in_dark_room);
 
+// Two rooms of 4 × 3 × 4 (albedo 0.7), side by side, of slabs 0.05 thick, joined by a door of
+// 1 × 2.1. A point light is in the left one; the camera is in the right one and sees none of its
+// direct light: `back` towards the wall with the door, else away from it.
+void trial_door(struct frame_fixture *s, struct gpu *gpu, bool back);
+
 // A square plane of 6 in the sun (1000 lux) or under a uniform sky (1 cd/m²), tilted around z.
 struct trial_plane {
     float tilt_rad;

@@ -73,3 +73,12 @@ bool mrt_bake_gather(const struct bake_task *task, const struct mrt_shape *shape
                      enum mrt_measure measure, const struct matrix_f32 *out);
 
 bool mrt_interface_bake(struct bake_plan *plan, const struct mrt_bake_job *job);
+// Names of tensors: H_rlf and its Σ after the last round.
+struct mrt_last_basis {
+    const char *basis, *sigma;
+};
+// Stages of waves wave_final + 1 and + 2. Tubes have none. `last` outlives the plan.
+bool mrt_hole_products(struct bake_plan *plan, const struct mrt_bake_job *job,
+                       const struct mrt_last_basis *last);
+bool mrt_hole_operators(struct bake_plan *plan, const struct mrt_bake_job *job,
+                        const struct mrt_last_basis *last);

@@ -120,3 +120,15 @@ void mrt_project_finish(const double *sigma, struct matrix_f32 *sum)
                     ? (float)((double)sum->at[r * sum->stride + c] / (sigma[r] * sigma[r]))
                     : 0.0f;
 }
+
+void mrt_project_stack(const struct matrix_f32 *product, const double *sigma, size_t first,
+                       size_t width, size_t count, float *to)
+{
+    for (size_t i = 0; i < count; i++) {
+        struct matrix_f32 out = { to + i * product->rows * width, product->rows, width, width };
+        for (size_t r = 0; r < out.rows; r++)
+            memcpy(out.at + r * width, product->at + r * product->stride + first + i * width,
+                   width * sizeof *to);
+        mrt_project_finish(sigma, &out);
+    }
+}

@@ -37,6 +37,12 @@ struct mrt_cube_place {
 };
 bool mrt_cube_find(enum mrt_maze maze, unsigned missing, struct mrt_cube_place *place);
 
+// Whether light may pass through holes in this wall: in the plane floors and ceilings are closed.
+static inline bool mrt_wall_may_have_holes(enum mrt_maze maze, int face)
+{
+    return maze == MRT_MAZE_3D || (maze == MRT_MAZE_2D && face / 2 != 1);
+}
+
 // The face that a rotation takes a face to.
 int mrt_rotated_face(mat3s to_from, int face);
 // The texel of `from` that a rotation takes to a texel of `to`; −1: an opening of `from`.

@@ -52,10 +52,15 @@ static bool copy_element(const struct reader *reader, const struct mrt_dictionar
     e->shape = mrt_dictionary_shape((enum mrt_maze)o->maze, o->texels, i);
     size_t n = (size_t)mrt_shape_texels(&e->shape), k = (size_t)o->modes;
     size_t probes = (size_t)(o->block_probes * o->block_probes * o->block_probes);
-    struct matrix_f32 *openings[MRT_MAX_OPENINGS];
-    size_t count = 0;
-    for (int f = 0; f < CUBE_FACES; f++)
-        if (e->shape.missing >> f & 1u) openings[count++] = &e->r_b[f];
+    struct matrix_f32 *openings[MRT_MAX_OPENINGS], *walls[CUBE_FACES];
+    size_t count = 0, wall_count = 0;
+    for (int f = 0; f < CUBE_FACES; f++) {
+        if (mrt_shape_is_open(&e->shape, f))
+            openings[count++] = &e->r_b[f];
+        else if (mrt_wall_may_have_holes((enum mrt_maze)o->maze, f))
+            walls[wall_count++] = &e->r_b[f];
+    }
+    const struct tensor_part light = { 1, (size_t)o->lightfield_modes, k };
     return copy_matrix(reader, shape_tensor(name, o->maze, i, "U_b"), n, 1, k, &e->u_b) &&
            copy_matrix(reader, shape_tensor(name, o->maze, i, "T_db"), k, 1, n, &e->t_db) &&
            copy_matrix(reader, shape_tensor(name, o->maze, i, "L_imp"), n, 1, k, &e->l_imp) &&
@@ -63,8 +68,9 @@ static bool copy_element(const struct reader *reader, const struct mrt_dictionar
            copy_matrix(reader, shape_tensor(name, o->maze, i, "U_bvol"), probes, 9, k,
                        &e->u_bvol) &&
            (count == 0 ||
-            copy_parts(reader, shape_tensor(name, o->maze, i, "R_b"),
-                       (struct tensor_part){ 1, (size_t)o->lightfield_modes, k }, count, openings));
+            copy_parts(reader, shape_tensor(name, o->maze, i, "R_b"), light, count, openings)) &&
+           (wall_count == 0 ||
+            copy_parts(reader, shape_tensor(name, o->maze, i, "R_wall"), light, wall_count, walls));
 }
 
 static bool copy_interfaces(const struct reader *reader, const struct mrt_dictionary_options *o,
@@ -74,7 +80,8 @@ static bool copy_interfaces(const struct reader *reader, const struct mrt_dictio
     const size_t m = (size_t)mrt_shape_texels(&entered), k_r = (size_t)o->response_modes;
     const size_t k_l = (size_t)o->lightfield_modes, parts = (size_t)d->entered_count;
     const size_t probes = (size_t)(o->block_probes * o->block_probes * o->block_probes);
-    struct matrix_f32 *turns[MRT_TURNS_3D], *part[4][MRT_MAX_ENTERED];
+    struct matrix_f32 *turns[MRT_TURNS_3D], *holes[MRT_HOLE_PARTS], *part[4][MRT_MAX_ENTERED];
+    for (int h = 0; h < MRT_HOLE_PARTS; h++) holes[h] = &d->r_hole[h];
     for (int t = 0; t < MRT_TURNS_3D; t++) turns[t] = &d->r_turn[t];
     for (int i = 0; i < MRT_MAX_ENTERED; i++) {
         part[0][i] = &d->entered[i].t_r;
@@ -84,6 +91,9 @@ static bool copy_interfaces(const struct reader *reader, const struct mrt_dictio
     }
     return copy_parts(reader, "interface/R_turn", (struct tensor_part){ 1, k_l, k_l },
                       (size_t)d->turn_count, turns) &&
+           (o->maze == MRT_TUNNEL ||
+            copy_parts(reader, "interface/R_hole", (struct tensor_part){ 1, k_l, k_l },
+                       MRT_HOLE_PARTS, holes)) &&
            copy_parts(reader, "interface/T_r", (struct tensor_part){ k_r, 1, k_l }, parts,
                       part[0]) &&
            copy_parts(reader, "interface/U_r", (struct tensor_part){ m, 1, k_r }, parts, part[1]) &&
@@ -126,6 +136,7 @@ void mrt_dictionary_finish(struct host *host, struct mrt_dictionary *d)
 {
     for (int i = 0; i < MRT_MAX_CUBES; i++) element_finish(host, &d->element[i]);
     for (int t = 0; t < MRT_TURNS_3D; t++) matrix_f32_finish(host, &d->r_turn[t]);
+    for (int h = 0; h < MRT_HOLE_PARTS; h++) matrix_f32_finish(host, &d->r_hole[h]);
     for (int i = 0; i < MRT_MAX_ENTERED; i++) {
         matrix_f32_finish(host, &d->entered[i].t_r);
         matrix_f32_finish(host, &d->entered[i].u_r);
@@ -147,8 +158,11 @@ struct mrt_dictionary_bytes mrt_dictionary_bytes(const struct mrt_dictionary *d)
         const struct mrt_element *e = &d->element[i];
         out.shapes += bytes_of(&e->u_b) + bytes_of(&e->t_db) + bytes_of(&e->u_vec);
         out.probes += bytes_of(&e->u_bvol);
-        for (int f = 0; f < MRT_MAX_OPENINGS; f++) out.interfaces += bytes_of(&e->r_b[f]);
+        for (int f = 0; f < MRT_MAX_OPENINGS; f++)
+            *(mrt_shape_is_open(&e->shape, f) ? &out.interfaces : &out.holes) +=
+                bytes_of(&e->r_b[f]);
     }
+    for (int h = 0; h < MRT_HOLE_PARTS; h++) out.holes += bytes_of(&d->r_hole[h]);
     for (int t = 0; t < d->turn_count; t++) out.interfaces += bytes_of(&d->r_turn[t]);
     for (int i = 0; i < d->entered_count; i++) {
         const struct mrt_entered *e = &d->entered[i];

@@ -13,7 +13,11 @@
 //     cube/I/sigma_L    [min(n, lights)]  singular values of the direct light of the prior
 //     cube/I/sigma_M    [k_d]          those of M = F P S
 //     cube/I/checks     [2]            ‖U_mᵀ U_m − I‖, ‖F L_imp − U_b‖ / ‖U_b‖
+//     cube/I/R_wall     [W, k_l, k_b]  the same at each closed face that may have holes, but for
+//     the
+//                                      light of that face
 //     interface/R_turn  [3 or 6, k_l, k_l]  propagation to the exits, by enum mrt_turn
+//     interface/R_hole  [16, k_l, k_l] what each part of an interface lets pass (hole_bake.c)
 //     interface/T_r     [e·k_r, k_l]   r-coefficients of lightfield coefficients
 //     interface/U_r     [e·m, k_r]     irradiance at the m texels of mrt_entered_shape
 //     interface/U_rvec  [e·m, 4, k_r]  the same by normal
@@ -61,7 +65,7 @@ struct mrt_entered {
 struct mrt_element {
     struct mrt_shape shape;
     struct matrix_f32 u_b, t_db, l_imp, u_vec, u_bvol; // U_vec: n·4 × k_b, U_bvol: p³·9 × k_b
-    struct matrix_f32 r_b[MRT_MAX_OPENINGS];           // by face; empty where it is closed
+    struct matrix_f32 r_b[MRT_MAX_OPENINGS];           // by face; empty where none may leave
 };
 
 struct mrt_dictionary {
@@ -70,6 +74,7 @@ struct mrt_dictionary {
     struct mrt_element element[MRT_MAX_CUBES];
     int turn_count;
     struct matrix_f32 r_turn[MRT_TURNS_3D];
+    struct matrix_f32 r_hole[MRT_HOLE_PARTS]; // empty in tubes
     int entered_count;
     struct mrt_entered entered[MRT_MAX_ENTERED];
 };
@@ -80,8 +85,8 @@ bool mrt_dictionary_init(struct host *host, const struct tensors *bake,
 void mrt_dictionary_finish(struct host *host, struct mrt_dictionary *dictionary);
 
 // Bytes of U_b, T_d→b and U_vec, and of the operators of interfaces, which the paper counts as 4.7
-// and 1.2 MB; volume probes are in neither.
+// and 1.2 MB; volume probes and holes in walls are in neither.
 struct mrt_dictionary_bytes {
-    size_t shapes, interfaces, probes;
+    size_t shapes, interfaces, probes, holes;
 };
 struct mrt_dictionary_bytes mrt_dictionary_bytes(const struct mrt_dictionary *dictionary);

@@ -39,6 +39,10 @@ struct mrt_passage {
 };
 struct mrt_passage mrt_passage_between(int entry_face, int exit_face);
 
+// A hole is known by the share of each part (i, j) of its face that is open, at i + j · MRT_HOLES:
+// u from i / MRT_HOLES, v from j / MRT_HOLES on.
+enum { MRT_HOLES = 4, MRT_HOLE_PARTS = MRT_HOLES * MRT_HOLES };
+
 // The mrt_entered_shape of light that enters a shape by a face.
 int mrt_entered_by(const struct mrt_shape *shape, int face);
 

@@ -313,19 +313,6 @@ static bool add_project(struct bake_plan *plan, const struct mrt_bake_job *job,
             .flops = flops / GRAM_TASKS });
 }
 
-// Columns of a projection as a stack of matrices, divided by σ².
-static void store_stack(const struct matrix_f32 *product, const double *sigma, size_t first,
-                        size_t width, size_t count, float *to)
-{
-    for (size_t i = 0; i < count; i++) {
-        struct matrix_f32 out = { to + i * product->rows * width, product->rows, width, width };
-        for (size_t r = 0; r < out.rows; r++)
-            memcpy(out.at + r * width, product->at + r * product->stride + first + i * width,
-                   width * sizeof *to);
-        mrt_project_finish(sigma, &out);
-    }
-}
-
 static bool run_operators(const struct bake_task *task)
 {
     const struct mrt_bake_job *job = task->job;
@@ -338,14 +325,14 @@ static bool run_operators(const struct bake_task *task)
     double *sigma = host_alloc(task->host, narrow.columns, sizeof *sigma);
     if (!sigma) return false;
     for (size_t i = 0; i < narrow.columns; i++) sigma[i] = (double)narrow.at[i];
-    store_stack(&turn, sigma, 0, (size_t)job->k_l, (size_t)job->turns, task->out[0]);
+    mrt_project_stack(&turn, sigma, 0, (size_t)job->k_l, (size_t)job->turns, task->out[0]);
     int output = 1;
     size_t first = 0;
     for (int i = 0; i < job->shapes; i++) {
         const struct mrt_shape shape = mrt_bake_shape(job, i);
         const size_t openings = (size_t)mrt_shape_openings(&shape);
         if (openings == 0) continue;
-        store_stack(&b, sigma, first, (size_t)job->k_b, openings, task->out[output++]);
+        mrt_project_stack(&b, sigma, first, (size_t)job->k_b, openings, task->out[output++]);
         first += openings * (size_t)job->k_b;
     }
     host_free(task->host, sigma);
@@ -517,7 +504,9 @@ static bool add_responses(struct bake_plan *plan, const struct mrt_bake_job *job
                           const struct round_names *last)
 {
     struct response_stage *stages = bake_plan_alloc(plan, 3, sizeof *stages);
-    if (!stages) return false;
+    struct mrt_last_basis *holes = bake_plan_alloc(plan, 1, sizeof *holes);
+    if (!stages || !holes) return false;
+    *holes = (struct mrt_last_basis){ last->basis, last->sigma };
     for (int m = 0; m < 3; m++)
         stages[m] = (struct response_stage){ (enum mrt_measure)m,
                                              m == MRT_IRRADIANCE ? last->basis : "interface/H_r",
@@ -531,7 +520,8 @@ static bool add_responses(struct bake_plan *plan, const struct mrt_bake_job *job
                                             count * job->probes, MRT_PROBE_COEFFICIENTS, job->k_r);
     return add_response(plan, job, "response", job->wave_final, &stages[0], &g) &&
            add_project(plan, job, last) && add_response_modes(plan, job) &&
-           add_operators(plan, job, last) && add_lift(plan, job, last) &&
+           mrt_hole_products(plan, job, holes) && add_operators(plan, job, last) &&
+           mrt_hole_operators(plan, job, holes) && add_lift(plan, job, last) &&
            add_response(plan, job, "response directions", job->wave_final + 3, &stages[1], &vec) &&
            add_response(plan, job, "response probes", job->wave_final + 3, &stages[2], &vol);
 }

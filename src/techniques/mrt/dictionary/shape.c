@@ -162,6 +162,7 @@ static void trace_cube(const struct mrt_shape *shape, vec3s from, vec3s directio
                        struct mrt_hit *hit)
 {
     struct cube_exit exit = cube_trace(from, direction);
+    hit->face = exit.face;
     hit->s = exit.s;
     hit->t = exit.t;
     hit->distance = exit.distance;

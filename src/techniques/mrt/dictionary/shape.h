@@ -31,6 +31,7 @@ struct mrt_point {
 // is one face, closed around.
 struct mrt_hit {
     int texels;
+    int face;    // of a cube
     int opening; // face; −1: a surface was hit
     float s, t;
     float distance; // in lengths of the direction

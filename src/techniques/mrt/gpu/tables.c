@@ -124,7 +124,7 @@ static void fill_blocks(const struct mrt_runtime_input *input, void *items)
         memcpy(to->corner, from->corner, sizeof to->corner);
         for (int f = 0; f < CUBE_FACES; f++)
             to->tile[f] = input->atlas->tile_of_face[CUBE_FACES * b + f];
-        for (int f = 0; f < CUBE_FACES; f++) to->neighbor[f] = from->neighbor[f].block;
+        for (int f = 0; f < CUBE_FACES; f++) to->neighbor[f] = mrt_block_beyond(from, f);
         fill_inverse(from, to);
         to->bend = mrt_block_is_tube(from) ? (int32_t)mrt_block_bend(from) : -1;
         to->first_texel = (uint32_t)mrt_first_texel(input->atlas, b);

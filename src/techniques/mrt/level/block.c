@@ -1,6 +1,8 @@
 // Blocks and their faces.
 #include "block.h"
 
+#include "core/saturate.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -36,6 +38,13 @@ const char *mrt_kind_name(enum mrt_block_kind kind)
 unsigned mrt_kind_openings(enum mrt_block_kind kind)
 {
     return kinds[kind].openings;
+}
+
+int mrt_hole_part(float s, float t)
+{
+    const int i = int_saturated((double)(s * MRT_HOLES), 0, MRT_HOLES - 1);
+    const int j = int_saturated((double)(t * MRT_HOLES), 0, MRT_HOLES - 1);
+    return i + j * MRT_HOLES;
 }
 
 void mrt_block_init(struct mrt_block *block, const char *name, enum mrt_block_kind kind)

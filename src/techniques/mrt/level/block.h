@@ -2,7 +2,7 @@
 // scene (Loos 2015, section 3.5.2), with the blocks beyond its openings.
 #pragma once
 
-#include "techniques/mrt/dictionary/cube.h"
+#include "techniques/mrt/dictionary/interface.h"
 
 enum { MRT_CORNERS = 8, MRT_MAX_BLOCKS = 1024, MRT_NAME_BYTES = 64 };
 
@@ -25,17 +25,42 @@ struct mrt_neighbor {
     int rolls;
 };
 
+// A wall may have holes, such as doors, through which light passes to its neighbour: the share of
+// each part of the face that is open (dictionary/interface.h), s and t in place of u and v.
+struct mrt_holes {
+    float share[MRT_HOLE_PARTS];
+};
+
 struct mrt_block {
     char name[MRT_NAME_BYTES];
     enum mrt_block_kind kind;
     unsigned open;             // bit f: face f of the cell is an opening
     vec3s corner[MRT_CORNERS]; // world; x is high in corner c if c & 1, y if c & 2, z if c & 4
-    struct mrt_neighbor neighbor[CUBE_FACES];
+    struct mrt_neighbor neighbor[CUBE_FACES]; // beyond an opening, or a wall with holes
+    struct mrt_holes holes[CUBE_FACES];       // 0 but for walls with a neighbour
 };
 
 static inline bool mrt_block_is_open(const struct mrt_block *block, int face)
 {
     return block->open >> face & 1u;
+}
+
+static inline bool mrt_block_has_holes(const struct mrt_block *block, int face)
+{
+    return block->neighbor[face].block >= 0 && !mrt_block_is_open(block, face);
+}
+
+// The part of a face at (s, t), and the share of it that is open: 0 where the wall has no holes.
+int mrt_hole_part(float s, float t);
+static inline float mrt_block_hole_at(const struct mrt_block *block, int face, float s, float t)
+{
+    return block->holes[face].share[mrt_hole_part(s, t)];
+}
+
+// The block beyond an opening; −1: none, or the face is a wall.
+static inline int mrt_block_beyond(const struct mrt_block *block, int face)
+{
+    return mrt_block_is_open(block, face) ? block->neighbor[face].block : -1;
 }
 
 // "-x", "+x", "-y", …

@@ -64,7 +64,7 @@ int mrt_meeting_face(const struct mrt_block *block, int face, const struct mrt_b
     return -1;
 }
 
-bool mrt_connect(const char *what, struct mrt_block_map *map, int block, int face, int other,
+static bool join(const char *what, struct mrt_block_map *map, int block, int face, int other,
                  int other_face)
 {
     struct mrt_block *a = &map->blocks[block], *b = &map->blocks[other];
@@ -81,8 +81,63 @@ bool mrt_connect(const char *what, struct mrt_block_map *map, int block, int fac
     // Seen from the other side, u is reversed and so is the sense of the turn; so are the roles of
     // the two frames: the number of turns stays.
     b->neighbor[other_face] = (struct mrt_neighbor){ block, face, rolls };
-    a->open |= 1u << face;
-    b->open |= 1u << other_face;
+    return true;
+}
+
+bool mrt_connect(const char *what, struct mrt_block_map *map, int block, int face, int other,
+                 int other_face)
+{
+    if (!join(what, map, block, face, other, other_face)) return false;
+    map->blocks[block].open |= 1u << face;
+    map->blocks[other].open |= 1u << other_face;
+    return true;
+}
+
+static void close_face(struct mrt_block *block, int face)
+{
+    block->neighbor[face].block = -1;
+    block->open &= ~(1u << face);
+    block->holes[face] = (struct mrt_holes){ 0 };
+}
+
+void mrt_disconnect(struct mrt_block_map *map, int block, int face)
+{
+    const struct mrt_neighbor beyond = map->blocks[block].neighbor[face];
+    if (beyond.block < 0) return;
+    close_face(&map->blocks[block], face);
+    close_face(&map->blocks[beyond.block], beyond.face);
+}
+
+// (s, t) at corner i of a face.
+static vec2s corner_place(int i)
+{
+    return (vec2s){ { i == 1 || i == 2 ? 1.0f : 0.0f, i >= 2 ? 1.0f : 0.0f } };
+}
+
+// Holes of a face as the other one has them, with the corners of rolls_between.
+static struct mrt_holes holes_from_beyond(const struct mrt_holes *holes, int rolls)
+{
+    struct mrt_holes out;
+    vec2s corner[4];
+    for (int i = 0; i < 4; i++) corner[i] = corner_place((i - rolls + 4) % 4 ^ 1);
+    for (int p = 0; p < MRT_HOLE_PARTS; p++) {
+        const float s = ((float)(p % MRT_HOLES) + 0.5f) / MRT_HOLES;
+        const float t = ((float)(p / MRT_HOLES) + 0.5f) / MRT_HOLES;
+        vec2s at = corner[0];
+        at = glms_vec2_add(at, glms_vec2_scale(glms_vec2_sub(corner[1], corner[0]), s));
+        at = glms_vec2_add(at, glms_vec2_scale(glms_vec2_sub(corner[3], corner[0]), t));
+        out.share[mrt_hole_part(at.x, at.y)] = holes->share[p];
+    }
+    return out;
+}
+
+bool mrt_connect_by_holes(const char *what, struct mrt_block_map *map, int block, int face,
+                          int other, int other_face, const struct mrt_holes *holes)
+{
+    if (!join(what, map, block, face, other, other_face)) return false;
+    map->blocks[block].holes[face] = *holes;
+    map->blocks[other].holes[other_face] =
+        holes_from_beyond(holes, map->blocks[block].neighbor[face].rolls);
     return true;
 }
 
@@ -123,8 +178,8 @@ float mrt_block_map_mean_edge(const struct mrt_block_map *map)
 
 static bool is_in_plane(const struct mrt_block *block, int face)
 {
-    if (!mrt_block_is_open(block, face)) return true;
     const struct mrt_neighbor *n = &block->neighbor[face];
+    if (!mrt_block_is_open(block, face) && n->block < 0) return true;
     bool side = face / 2 != 1 && (n->block < 0 || n->face / 2 != 1);
     return side && (n->block < 0 || n->rolls == 0);
 }

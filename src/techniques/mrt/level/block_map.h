@@ -32,6 +32,11 @@ void mrt_block_map_finish(struct mrt_block_map *map); // accepts zero
 // taken or their corners do not coincide.
 bool mrt_connect(const char *what, struct mrt_block_map *map, int block, int face, int other,
                  int other_face);
+// The same through holes of both walls, which stay; `holes` as this face has them.
+bool mrt_connect_by_holes(const char *what, struct mrt_block_map *map, int block, int face,
+                          int other, int other_face, const struct mrt_holes *holes);
+// Both faces become walls without a neighbour.
+void mrt_disconnect(struct mrt_block_map *map, int block, int face);
 // The face of `other` whose corners coincide with those of this face; −1: none.
 int mrt_meeting_face(const struct mrt_block *block, int face, const struct mrt_block *other);
 

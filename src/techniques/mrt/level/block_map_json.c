@@ -10,6 +10,7 @@
 
 #include <jansson.h>
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -72,7 +73,8 @@ static bool check_members(struct host *host, const char *what, const char *where
 
 static bool check_block(const struct source *source, const struct source_block *from)
 {
-    static const char *const known[] = { "name", "shape", "corners", "box", "open", "neighbors" };
+    static const char *const known[] = { "name", "shape",     "corners", "box",
+                                         "open", "neighbors", "holes" };
     char where[sizeof "block " + MRT_NAME_BYTES];
     snprintf(where, sizeof where, "block %.*s", MRT_NAME_BYTES - 1, from->name);
     return check_members(source->host, source->what, where, from->json, known,
@@ -177,16 +179,61 @@ static int find_block(const struct source *source, const char *name)
     return -1;
 }
 
+// *has: false where no holes of this face are given.
+static bool read_holes(const struct source *source, int i, int face, bool *has,
+                       struct mrt_holes *out)
+{
+    const json_t *holes = json_object_get(source->blocks[i].json, "holes");
+    const json_t *shares = json_object_get(holes, mrt_face_name(face));
+    *has = shares;
+    if (!shares) return true;
+    bool ok = json_array_size(shares) == MRT_HOLE_PARTS;
+    float sum = 0.0f;
+    for (size_t p = 0; ok && p < MRT_HOLE_PARTS; p++) {
+        const json_t *share = json_array_get(shares, p);
+        out->share[p] = (float)json_number_value(share);
+        ok = json_is_number(share) && out->share[p] >= 0.0f && out->share[p] <= 1.0f;
+        sum += out->share[p];
+    }
+    return (ok && sum > 0.0f) ||
+           host_fail(source->host, FAIL_FORMAT,
+                     "%s: block %s: holes of its face %s are not %d numbers from 0 to 1, some "
+                     "above 0",
+                     source->what, source->blocks[i].name, mrt_face_name(face), MRT_HOLE_PARTS);
+}
+
+// The neighbour has named this block before. Holes are given by both or by one.
+static bool check_holes(const struct source *source, const struct mrt_block_map *map, int i,
+                        int face)
+{
+    const struct mrt_block *block = &map->blocks[i];
+    struct mrt_holes holes;
+    bool has, same = true;
+    if (!read_holes(source, i, face, &has, &holes)) return false;
+    for (int p = 0; has && p < MRT_HOLE_PARTS; p++)
+        same = same && fabsf(holes.share[p] - block->holes[face].share[p]) < 1e-3f;
+    return same || host_fail(source->host, FAIL_FORMAT,
+                             "%s: block %s: holes of its face %s differ from those of block %s",
+                             source->what, block->name, mrt_face_name(face),
+                             map->blocks[block->neighbor[face].block].name);
+}
+
 static bool connect(const struct source *source, struct mrt_block_map *map, int i, int face,
                     const char *name)
 {
+    struct mrt_holes holes;
+    bool has_holes;
     struct mrt_block *block = &map->blocks[i];
     int other = name ? find_block(source, name) : -1;
     if (other < 0 || other == i)
         return wrong(source, block->name, "it has a neighbor that does not exist");
-    if (block->neighbor[face].block == other) return true; // from the other side
+    if (block->neighbor[face].block == other) return check_holes(source, map, i, face);
     int other_face = mrt_meeting_face(block, face, &map->blocks[other]);
-    if (other_face >= 0) return mrt_connect(source->what, map, i, face, other, other_face);
+    if (other_face >= 0)
+        return read_holes(source, i, face, &has_holes, &holes) &&
+               (has_holes
+                    ? mrt_connect_by_holes(source->what, map, i, face, other, other_face, &holes)
+                    : mrt_connect(source->what, map, i, face, other, other_face));
     return host_fail(source->host, FAIL_FORMAT,
                      "%s: block %s: its face %s does not meet a face of block %s", source->what,
                      block->name, mrt_face_name(face), map->blocks[other].name);
@@ -195,9 +242,17 @@ static bool connect(const struct source *source, struct mrt_block_map *map, int 
 static bool connect_block(const struct source *source, struct mrt_block_map *map, int i)
 {
     json_t *neighbors = json_object_get(source->blocks[i].json, "neighbors"), *name;
+    json_t *holes = json_object_get(source->blocks[i].json, "holes");
     const char *key;
     if (neighbors && !json_is_object(neighbors))
         return wrong(source, map->blocks[i].name, "neighbors is not an object");
+    if (holes && !json_is_object(holes))
+        return wrong(source, map->blocks[i].name, "holes is not an object");
+    json_object_foreach(holes, key, name)
+    {
+        if (!json_object_get(neighbors, key))
+            return wrong(source, map->blocks[i].name, "it has holes of a face without neighbor");
+    }
     json_object_foreach(neighbors, key, name)
     {
         int face = mrt_face_of_name(key);

@@ -61,6 +61,19 @@ static json_t *neighbors_of(const struct mrt_block_map *map, const struct mrt_bl
     return neighbors;
 }
 
+static json_t *holes_of(const struct mrt_block *block)
+{
+    json_t *holes = json_object();
+    for (int f = 0; f < CUBE_FACES; f++) {
+        if (!mrt_block_has_holes(block, f)) continue;
+        json_t *shares = json_array();
+        for (int p = 0; p < MRT_HOLE_PARTS; p++)
+            json_array_append_new(shares, number(block->holes[f].share[p]));
+        json_object_set_new(holes, mrt_face_name(f), shares);
+    }
+    return holes;
+}
+
 static void put_unless_empty(json_t *object, const char *name, json_t *value)
 {
     if (json_array_size(value) > 0 || json_object_size(value) > 0)
@@ -82,6 +95,7 @@ static json_t *block_of(const struct mrt_block_map *map, const struct mrt_block 
         json_object_set_new(object, "corners", corners_of(block));
     put_unless_empty(object, "open", open_of(block));
     put_unless_empty(object, "neighbors", neighbors_of(map, block));
+    put_unless_empty(object, "holes", holes_of(block));
     return object;
 }
 

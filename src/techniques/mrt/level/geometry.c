@@ -27,6 +27,9 @@ static bool is_in_solid(const struct trace_scene *scene, vec3s from, vec3s middl
     return glms_vec3_norm2(way) > 0.0f && trace_closest(scene, from, way, 1.0f, &hit) && !hit.front;
 }
 
+// Through a hole, surfaces farther behind the wall are those of the neighbour.
+static const float HOLE_END = 1.1f;
+
 static enum sight look_at_wall(const struct geometry_job *job, const struct mrt_tile *tile, int k,
                                struct mrt_geometry_texel *out)
 {
@@ -39,7 +42,8 @@ static enum sight look_at_wall(const struct geometry_job *job, const struct mrt_
     bool solid = is_in_solid(job->scene, from, mrt_block_middle(block));
     struct trace_hit hit;
     const vec3s way = glms_vec3_sub(to, from);
-    const bool found = trace_closest(job->scene, from, way, RAY_END, &hit);
+    const bool hole = mrt_block_hole_at(block, tile->face, s, t) > 0.0f;
+    const bool found = trace_closest(job->scene, from, way, hole ? HOLE_END : RAY_END, &hit);
     if (!found)
         *out = (struct mrt_geometry_texel){
             .position = to,

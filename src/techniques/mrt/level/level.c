@@ -29,6 +29,9 @@ static bool choose_shape(struct mrt_level *level, int b)
         level->place[b] = (struct mrt_cube_place){ (int)mrt_block_bend(block), GLMS_MAT3_IDENTITY };
     else if (!mrt_cube_find(level->maze, block->open, &level->place[b]))
         return unsupported(level, b, "cube with its openings");
+    for (int f = 0; f < CUBE_FACES; f++)
+        if (mrt_block_has_holes(block, f) && !mrt_wall_may_have_holes(level->maze, f))
+            return unsupported(level, b, "holes in floors and ceilings");
     return (level->maze == MRT_MAZE_3D || !is_tilted(block)) ||
            unsupported(level, b, "turn for its tilted neighbor");
 }

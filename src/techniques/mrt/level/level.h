@@ -14,7 +14,7 @@ struct mrt_level_options {
     bool retrace;  // bases in the proportions of the blocks, where they are cubes
 };
 
-// Light enters `block` by an opening.
+// Light enters `block` by an opening, or by holes of a wall.
 struct mrt_entry {
     int block, face;
 };

@@ -1,6 +1,7 @@
 // map=single and map=auto.
 #include "make_map.h"
 
+#include "holes.h"
 #include "map_cells.h"
 
 #include "scene/view/defaults.h"
@@ -38,6 +39,7 @@ bool mrt_map_single(struct host *host, const struct scene_pose *pose, struct mrt
 struct map_box {
     int low[3], high[3];
     unsigned open; // bit f: face f leads to one box with the same face, or outside
+    unsigned hole; // bit f: face f has holes to one box with the same face
 };
 
 struct map_boxes {
@@ -58,6 +60,7 @@ static void one_box_per_cell(struct map_boxes *boxes)
         mrt_cell_place(cells, i, box->low);
         for (int a = 0; a < 3; a++) box->high[a] = box->low[a] + 1;
         box->open = cells->cell[i].open;
+        box->hole = cells->cell[i].hole;
     }
 }
 
@@ -77,12 +80,13 @@ static bool is_cubic(const struct map_boxes *boxes, const struct map_box *box)
     return longest <= MAX_ASPECT * shortest;
 }
 
-// The box beyond an open face.
+// The box beyond an open face, or one with holes.
 static int box_beyond(const struct map_boxes *boxes, const struct map_box *box, int face)
 {
     int at[3] = { box->low[0], box->low[1], box->low[2] }, beyond[3];
     if (face & 1) at[face / 2] = box->high[face / 2] - 1;
-    if (!(box->open >> face & 1u) || !mrt_cell_beyond(boxes->cells, at, face, beyond)) return -1;
+    if (!((box->open | box->hole) >> face & 1u) || !mrt_cell_beyond(boxes->cells, at, face, beyond))
+        return -1;
     return boxes->box_of_cell[mrt_cell_at(boxes->cells, beyond) - boxes->cells->cell];
 }
 
@@ -92,7 +96,7 @@ static bool can_merge(const struct map_boxes *boxes, const struct map_box *a, in
                       const struct map_box *b)
 {
     unsigned ends = 3u << (face & ~1);
-    if ((a->open | b->open) & ~ends) return false;
+    if (!(a->open >> face & 1u) || (a->open | b->open | a->hole | b->hole) & ~ends) return false;
     struct map_box both = *a;
     if (face & 1)
         both.high[face / 2] = b->high[face / 2];
@@ -111,6 +115,7 @@ static void merge(struct map_boxes *boxes, int i, int face, int j)
     else
         a->low[axis] = b->low[axis];
     a->open = (a->open & ~(1u << face)) | (b->open & 1u << face);
+    a->hole = (a->hole & ~(1u << face)) | (b->hole & 1u << face);
     int last = --boxes->count;
     boxes->boxes[j] = boxes->boxes[last];
     for (int c = 0; c < mrt_cells_count(boxes->cells); c++) {
@@ -147,6 +152,21 @@ static void set_block(const struct map_boxes *boxes, int i, struct mrt_block *bl
     mrt_block_set_box(block, box);
 }
 
+static bool is_blocked(const void *scene, vec3s from, vec3s way)
+{
+    const float length = glms_vec3_norm(way);
+    return raycast_blocked(scene, from, vec3_unit(way), length);
+}
+
+static bool connect_by_holes(const char *what, const struct mrt_cells *cells,
+                             struct mrt_block_map *map, int i, int face, int j)
+{
+    struct mrt_holes holes;
+    if (mrt_find_holes(&map->blocks[i], face, is_blocked, cells->raycast, &holes) < MRT_LEAST_HOLE)
+        return true;
+    return mrt_connect_by_holes(what, map, i, face, j, cube_opposite(face), &holes);
+}
+
 static bool emit(struct host *host, const char *what, const struct map_boxes *boxes,
                  struct mrt_block_map *map)
 {
@@ -159,7 +179,10 @@ static bool emit(struct host *host, const char *what, const struct map_boxes *bo
     for (int i = 0; ok && i < boxes->count; i++) {
         for (int f = CUBE_RIGHT; ok && f < CUBE_FACES; f += 2) {
             int j = box_beyond(boxes, &boxes->boxes[i], f);
-            if (j >= 0) ok = mrt_connect(what, map, i, f, j, cube_opposite(f));
+            if (j >= 0 && boxes->boxes[i].open >> f & 1u)
+                ok = mrt_connect(what, map, i, f, j, cube_opposite(f));
+            else if (j >= 0)
+                ok = connect_by_holes(what, boxes->cells, map, i, f, j);
         }
     }
     ok = ok && mrt_block_map_check(what, map);

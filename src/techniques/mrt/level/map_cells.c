@@ -1,4 +1,5 @@
 // Free cells, and their walls.
+#include "holes.h"
 #include "map_cells.h"
 
 #include "core/host.h"
@@ -8,10 +9,11 @@
 #include <math.h>
 
 enum { SAMPLES = 8, DIRECTIONS = 128 }; // along each edge of a face; around a point
-static const float OPEN = 0.5f;         // least part of a face that is not covered by surfaces
-static const float OUTSIDE = 0.4f;      // least part of all directions without a surface
-static const float ALIGNED = 0.9f;      // cosine between a wall's normal and the axis
-static const float REACH = 0.25f;       // of a cell: surfaces this near to a face belong to it
+// Least part of a wall with holes that no surface covers, of few rays: doors have more.
+static const float HOLE = 0.05f;
+static const float OUTSIDE = 0.4f; // least part of all directions without a surface
+static const float ALIGNED = 0.9f; // cosine between a wall's normal and the axis
+static const float REACH = 0.25f;  // of a cell: surfaces this near to a face belong to it
 
 void mrt_cell_place(const struct mrt_cells *cells, int i, int at[3])
 {
@@ -55,7 +57,8 @@ static vec3s outward(int face)
     return d;
 }
 
-static bool is_open(const struct mrt_cells *cells, const int at[3], int face, const int beyond[3])
+static float open_share(const struct mrt_cells *cells, const int at[3], int face,
+                        const int beyond[3])
 {
     float inside = REACH * size_along(cells, at, face / 2);
     float outside = REACH * size_along(cells, beyond, face / 2);
@@ -63,7 +66,7 @@ static bool is_open(const struct mrt_cells *cells, const int at[3], int face, co
     for (int i = 0; i < SAMPLES * SAMPLES; i++)
         open += !raycast_blocked(cells->raycast, face_sample(cells, at, face, inside, i),
                                  outward(face), inside + outside);
-    return (float)open >= OPEN * (float)(SAMPLES * SAMPLES);
+    return (float)open / (float)(SAMPLES * SAMPLES);
 }
 
 static void find_openings(struct mrt_cells *cells)
@@ -74,9 +77,14 @@ static void find_openings(struct mrt_cells *cells)
         for (int face = 0; face < CUBE_FACES; face++) {
             bool inside = mrt_cell_beyond(cells, at, face, beyond);
             if (inside && !(face & 1)) continue; // each pair of cells once
-            if (!is_open(cells, at, face, inside ? beyond : at)) continue;
-            cells->cell[i].open |= 1u << face;
-            if (inside) mrt_cell_at(cells, beyond)->open |= 1u << cube_opposite(face);
+            const float share = open_share(cells, at, face, inside ? beyond : at);
+            if (share >= MRT_LEAST_OPENING) {
+                cells->cell[i].open |= 1u << face;
+                if (inside) mrt_cell_at(cells, beyond)->open |= 1u << cube_opposite(face);
+            } else if (inside && share >= HOLE) {
+                cells->cell[i].hole |= 1u << face;
+                mrt_cell_at(cells, beyond)->hole |= 1u << cube_opposite(face);
+            }
         }
     }
 }
@@ -111,8 +119,8 @@ static bool has_free_neighbor(const struct mrt_cells *cells, int i)
     int at[3], beyond[3];
     mrt_cell_place(cells, i, at);
     for (int f = 0; f < CUBE_FACES; f++)
-        if (cells->cell[i].open >> f & 1u && mrt_cell_beyond(cells, at, f, beyond) &&
-            mrt_cell_at(cells, beyond)->free)
+        if ((cells->cell[i].open | cells->cell[i].hole) >> f & 1u &&
+            mrt_cell_beyond(cells, at, f, beyond) && mrt_cell_at(cells, beyond)->free)
             return true;
     return false;
 }

@@ -12,6 +12,7 @@ struct mrt_cell {
     bool outside;  // open to the sky rather than enclosed
     bool free;     // connected with a seed, and not outside
     unsigned open; // bit f: nothing separates it from what is beyond face f
+    unsigned hole; // bit f: a wall with holes, such as a door, does
 };
 
 struct mrt_cells {

@@ -50,6 +50,7 @@ static void drop(struct mrt_cells *cells, int axis, int plane)
         if (at[axis] == plane - 1) {
             mrt_cell_beyond(&old, at, 2 * axis + 1, beyond);
             cell.open = (cell.open & ~end) | (mrt_cell_at(&old, beyond)->open & end);
+            cell.hole = (cell.hole & ~end) | mrt_cell_at(&old, beyond)->hole;
         }
         cells->cell[kept++] = cell; // never beyond i: cells ahead are unchanged
     }

@@ -84,6 +84,23 @@ static bool add_wave(struct traversal *t, struct wave *wave)
     return false;
 }
 
+// Through holes: replaces `light` by what they let pass, in the frame of the face.
+static bool pass_holes(const struct traversal *t, const struct mrt_holes *holes,
+                       struct matrix_f32 *light)
+{
+    const struct matrix_f32 *parts = t->level->dictionary->r_hole;
+    struct matrix_f32 sum = { 0 }, passed = { 0 };
+    bool ok = matrix_f32_init(t->host, &sum, parts[0].rows, parts[0].columns);
+    for (int p = 0; ok && p < MRT_HOLE_PARTS; p++)
+        for (size_t i = 0; i < sum.rows * sum.columns && holes->share[p] > 0.0f; i++)
+            sum.at[i] += holes->share[p] * parts[p].at[i];
+    ok = ok && multiply(t->host, &sum, light, &passed);
+    matrix_f32_finish(t->host, &sum);
+    matrix_f32_finish(t->host, light);
+    *light = passed;
+    return ok;
+}
+
 // Light that has left a block by a face, in that face's frame, enters the neighbour.
 static bool enter(struct traversal *t, int block, int face, unsigned taken,
                   struct matrix_f32 *light)
@@ -93,7 +110,8 @@ static bool enter(struct traversal *t, int block, int face, unsigned taken,
     struct wave wave = { .entry = t->level->entry_of_face[CUBE_FACES * to->block + to->face] };
     for (int f = 0; f < CUBE_FACES; f++)
         if (taken >> f & 1u) wave.taken |= 1u << mrt_neighbor_direction(from, face, f);
-    bool ok = roll(t, to->rolls, light);
+    bool ok = !mrt_block_has_holes(from, face) || pass_holes(t, &from->holes[face], light);
+    ok = ok && roll(t, to->rolls, light);
     wave.light = *light;
     *light = (struct matrix_f32){ 0 };
     if (ok) return add_wave(t, &wave);

@@ -50,7 +50,7 @@ static int opening_towards(const struct mrt_block *block, vec3s cell)
     float most = INSIDE;
     for (int a = 0; a < 3; a++) {
         int f = 2 * a + (cell.raw[a] > 0.0f);
-        if (!(fabsf(cell.raw[a]) > most) || block->neighbor[f].block < 0) continue;
+        if (!(fabsf(cell.raw[a]) > most) || mrt_block_beyond(block, f) < 0) continue;
         most = fabsf(cell.raw[a]);
         face = f;
     }

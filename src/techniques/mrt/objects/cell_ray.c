@@ -26,6 +26,15 @@ bool mrt_cell_ray(const struct mrt_clutter_rays *rays, int block, vec3s from, ve
     return true;
 }
 
+float mrt_passing_share(const struct mrt_block *block, const struct mrt_hit *hit, int *face)
+{
+    *face = hit->opening;
+    if (hit->opening >= 0) return 1.0f;
+    if (mrt_block_is_tube(block)) return 0.0f;
+    *face = hit->face;
+    return mrt_block_hole_at(block, hit->face, hit->s, hit->t);
+}
+
 mat3s mrt_frame_of_normal(vec3s normal)
 {
     mat3s frame;

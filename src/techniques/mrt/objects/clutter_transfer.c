@@ -86,9 +86,11 @@ static void follow(struct texel_job *t, int r)
     if (!mrt_cell_ray(input, t->job->out->block, t->from, way, &wall, &end)) return;
     const bool blocked =
         trace_closest(input->objects, t->from, way, glms_vec3_distance(t->from, end), &hit);
-    if (wall.opening >= 0) {
-        t->all[wall.opening] += cosine;
-        if (!blocked) t->kept[wall.opening] += cosine;
+    int face;
+    const float share = mrt_passing_share(&input->map->blocks[t->job->out->block], &wall, &face);
+    if (share > 0.0f) {
+        t->all[face] += share * cosine;
+        if (!blocked) t->kept[face] += share * cosine;
     }
     if (blocked)
         add_face(t, weight, &hit);

@@ -58,9 +58,11 @@ static void follow(const struct job *job, size_t i, struct mrt_point point, int 
     mrt_shape_trace(&job->cell->shape, point.position, way, &wall);
     const vec3s end = glms_vec3_muladds(way, wall.distance, point.position);
     const bool blocked = mrt_delta_blocked(job->cell, point.position, end, &hit);
-    if (wall.opening >= 0) {
-        passing->all[wall.opening] += weight[0];
-        if (!blocked) passing->kept[wall.opening] += weight[0];
+    int face;
+    const float share = mrt_passing_share(job->cell->block, &wall, &face);
+    if (share > 0.0f) {
+        passing->all[face] += share * weight[0];
+        if (!blocked) passing->kept[face] += share * weight[0];
     }
     if (!blocked) return;
     count->rays++;

@@ -81,6 +81,10 @@ bool mrt_cell_of_point(const struct mrt_block_map *map, int block, vec3s world, 
 bool mrt_cell_ray(const struct mrt_clutter_rays *rays, int block, vec3s from, vec3s way,
                   struct mrt_hit *hit, vec3s *end);
 
+// The share of a ray that passes where it ends, and its face: 1 at an opening, that of the holes
+// on a wall, which the wall keeps from it.
+float mrt_passing_share(const struct mrt_block *block, const struct mrt_hit *hit, int *face);
+
 // The frame whose third axis is the normal.
 mat3s mrt_frame_of_normal(vec3s normal);
 

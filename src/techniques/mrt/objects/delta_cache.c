@@ -112,8 +112,7 @@ static void find_reached(const struct mrt_block_map *map, int first, int depth, 
         for (int b = 0; b < map->count; b++)
             for (int f = 0; f < CUBE_FACES && openings[b] == d; f++) {
                 const int next = map->blocks[b].neighbor[f].block;
-                if (mrt_block_is_open(&map->blocks[b], f) && next >= 0 && openings[next] < 0)
-                    openings[next] = d + 1;
+                if (next >= 0 && openings[next] < 0) openings[next] = d + 1;
             }
 }
 

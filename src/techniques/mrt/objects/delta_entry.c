@@ -30,10 +30,9 @@ static int source_of(const struct mrt_entered_opening *input, int block)
 }
 
 static void add_wall(const struct job *job, size_t point, int source, int block, bool hidden,
-                     const struct mrt_hit *wall)
+                     float weight, const struct mrt_hit *wall)
 {
     float *to = job->b.at + point * job->b.stride + (size_t)source * job->k_b;
-    const float weight = 1.0f / (float)job->rays.count;
     if (hidden) {
         job->hidden[point * (size_t)job->opening->source_count + (size_t)source] = true;
         return;
@@ -42,7 +41,8 @@ static void add_wall(const struct job *job, size_t point, int source, int block,
 }
 
 // The first clutter of other blocks on a way.
-static bool meets_face(const struct job *job, int block, vec3s from, vec3s to, size_t point)
+static bool meets_face(const struct job *job, int block, vec3s from, vec3s to, float weight,
+                       size_t point)
 {
     const vec3s way = glms_vec3_sub(to, from);
     struct trace_hit hit;
@@ -51,11 +51,12 @@ static bool meets_face(const struct job *job, int block, vec3s from, vec3s to, s
         return false;
     const int face = mrt_face_of_hit(job->input->clutter, block, &hit);
     if (face < 0) return true;
-    job->c.at[point * job->c.stride + (size_t)face] += 1.0f / (float)job->rays.count;
+    job->c.at[point * job->c.stride + (size_t)face] += weight;
     return true;
 }
 
-static void follow(const struct job *job, size_t point, vec3s from, vec3s way, int block)
+static void follow(const struct job *job, size_t point, vec3s from, vec3s way, float weight,
+                   int block)
 {
     const struct mrt_block_map *map = job->input->map;
     bool hidden = false;
@@ -64,12 +65,14 @@ static void follow(const struct job *job, size_t point, vec3s from, vec3s way, i
         vec3s end;
         if (block < 0 || !mrt_cell_ray(job->input, block, from, way, &wall, &end)) return;
         const int source = source_of(job->opening, block);
-        hidden = hidden || meets_face(job, block, from, end, point);
-        if (wall.opening < 0) {
-            if (source >= 0) add_wall(job, point, source, block, hidden, &wall);
-            return;
-        }
-        block = map->blocks[block].neighbor[wall.opening].block;
+        int face;
+        const float share = mrt_passing_share(&map->blocks[block], &wall, &face);
+        hidden = hidden || meets_face(job, block, from, end, weight, point);
+        if (share < 1.0f && source >= 0)
+            add_wall(job, point, source, block, hidden, (1.0f - share) * weight, &wall);
+        if (share == 0.0f) return;
+        weight *= share;
+        block = map->blocks[block].neighbor[face].block;
         from = end;
     }
 }
@@ -86,10 +89,14 @@ static void trace_point(void *user, size_t i)
         struct mrt_hit hit;
         mrt_shape_trace(&job->open, point.position, way, &hit);
         if (hit.opening < 0) continue;
+        const float share = mrt_block_is_open(block, job->opening->face)
+                                ? 1.0f
+                                : mrt_block_hole_at(block, job->opening->face, hit.s, hit.t);
+        if (share == 0.0f) continue;
         const vec3s at = glms_vec3_muladds(way, hit.distance, point.position);
         const vec3s world = glms_mat3_mulv(mrt_warp_jacobian(block->corner, at), way);
         follow(job, i, mrt_warp_point(block->corner, at), vec3_unit(world),
-               block->neighbor[job->opening->face].block);
+               share / (float)job->rays.count, block->neighbor[job->opening->face].block);
     }
 }
 

@@ -32,35 +32,34 @@ static void add_wall(const struct job *job, int block, size_t face, float weight
     mrt_add_radiosity(hit, weight, job->input->l_imp[block], to);
 }
 
-// The end of a ray that no clutter blocks.
-struct ray_end {
-    int block; // −1: on no wall
-    float distance;
-    struct mrt_hit hit;
-};
-
-static struct ray_end end_of(const struct job *job, int block, vec3s from, vec3s way)
-{
-    struct ray_end out = { .block = -1, .distance = INFINITY };
-    vec3s at = from, end;
-    for (int passed = 0; passed <= job->input->depth && block >= 0; passed++) {
-        if (!mrt_cell_ray(job->input, block, at, way, &out.hit, &end)) break;
-        if (out.hit.opening < 0) {
-            out.block = block;
-            out.distance = glms_vec3_distance(from, end);
-            break;
-        }
-        block = job->input->map->blocks[block].neighbor[out.hit.opening].block;
-        at = end;
-    }
-    return out;
-}
-
 static void add_face(const struct job *job, size_t face, float weight, const struct trace_hit *hit)
 {
     const int column = mrt_face_at(job->input->clutter, hit);
     struct matrix_f32 *of_c = &job->out->of_c;
     if (column >= 0) of_c->at[face * of_c->stride + (size_t)column] += weight;
+}
+
+// Adds a ray to the first clutter on it, or to the walls where it ends: to one with holes the share
+// that these keep from it.
+static void follow(const struct job *job, size_t face, vec3s from, vec3s way, float weight)
+{
+    const struct mrt_block_map *map = job->input->map;
+    struct trace_hit hit;
+    const bool blocked = trace_closest(job->input->objects, from, way, INFINITY, &hit);
+    vec3s at = from, end;
+    int block = job->block;
+    for (int passed = 0; block >= 0 && passed <= job->input->depth; passed++, at = end) {
+        struct mrt_hit wall;
+        int exit;
+        if (!mrt_cell_ray(job->input, block, at, way, &wall, &end)) break;
+        const float share = mrt_passing_share(&map->blocks[block], &wall, &exit);
+        if (blocked && hit.distance <= glms_vec3_distance(from, end)) break;
+        if (share < 1.0f) add_wall(job, block, face, (1.0f - share) * weight, &wall);
+        if (share == 0.0f) return;
+        weight *= share;
+        block = map->blocks[block].neighbor[exit].block;
+    }
+    if (blocked) add_face(job, face, weight, &hit);
 }
 
 static void trace_texel(const struct job *job, size_t face, uint32_t of_face, int rays,
@@ -79,12 +78,7 @@ static void trace_texel(const struct job *job, size_t face, uint32_t of_face, in
     for (int r = 0; r < rays; r++) {
         const vec2s u = sobol_2d((uint32_t)r, seed);
         const vec3s way = glms_mat3_mulv(frame, sample_hemisphere_cosine(u));
-        struct trace_hit hit;
-        const struct ray_end end = end_of(job, of->block, from, way);
-        if (trace_closest(job->input->objects, from, way, end.distance, &hit))
-            add_face(job, face, weight, &hit);
-        else if (end.block >= 0)
-            add_wall(job, end.block, face, weight, &end.hit);
+        follow(job, face, from, way, weight);
     }
 }
 

@@ -30,7 +30,7 @@ static float coordinate_of(const struct mrt_clutter_cell *cell, int axis, int te
     const float p = (float)probes;
     const int side = texel > 0, face = 2 * axis + side;
     float most = 0.5f - 0.5f / p;
-    if (texel == 0 || texel > probes) most = cell->block->neighbor[face].block >= 0 ? 0.5f : most;
+    if (texel == 0 || texel > probes) most = mrt_block_beyond(cell->block, face) >= 0 ? 0.5f : most;
     return fminf(fmaxf(((float)texel - 0.5f) / p - 0.5f, -most), most);
 }
 
