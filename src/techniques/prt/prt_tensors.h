@@ -19,7 +19,7 @@
 #define PRT_PROBE_MATRIX  "probes/matrix"  // F16 [probes][prt_probe_rows][dimension]
 #define PRT_PROBE_EMITTED "probes/emitted" // F32 [probes][prt_probe_rows][3], cd/m²
 #define PRT_PROBE_PLACE   "probes/place"   // F32 [probes][4]
-#define PRT_PROBE_DEPTH   "probes/depth"   // F16 [probes][8 · 8][2]
+#define PRT_PROBE_DEPTH   "probes/depth"   // F16 [probes][9 · 9][2]
 
 // In place of the vectors with compression:
 #define PRT_CODEBOOK "compressed/rows"    // F16 [clusters · (1 + vectors)][dimension]

@@ -19,7 +19,7 @@
 #define RADIOSITY_PROBE_PLACE    "probes/place"            // F32 [probes][4]
 #define RADIOSITY_PROBE_SKY      "probes/sky"              // F32 [probes][9]
 #define RADIOSITY_PROBE_EMITTED  "probes/emitted"          // F32 [probes][9][3]
-#define RADIOSITY_PROBE_DEPTH    "probes/depth"            // F16 [probes][8 · 8][2]
+#define RADIOSITY_PROBE_DEPTH    "probes/depth"            // F16 [probes][9 · 9][2]
 
 // Rows allocated before clusters are subdivided: two for each, since walls may split it.
 static inline uint64_t radiosity_cluster_rows(const struct radiosity_map *map)

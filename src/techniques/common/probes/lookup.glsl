@@ -4,30 +4,42 @@
 // Ray-Traced Irradiance Fields").
 //
 // Depths are stored as nearness 1/|v|₁, with the L1 norm of an offset v. On a plane, nearness is a
-// linear function of the place in a face of the octahedral map: bilinear interpolation is exact,
-// and the variance is that about a linear function. Euclidean distances of a plane at a grazing
-// angle vary within a texel by more than a wall's thickness.
+// linear function of the place in a face of the octahedral map. The map has points at the corners
+// of cells, and cells are cut along the edges of the octahedron: interpolation in triangles is
+// exact on a plane, in all directions. The deviation is that of other rays from the interpolated
+// map. Euclidean distances of a plane at a grazing angle vary within a cell by more than a wall's
+// thickness.
 //
 // The volume is that of frame/probes.glsl with one slab more: of each probe its offset from the
 // grid, in spacings, and 1, or 0 where it has no light of its own. `depth`: RG16F, a tile for each
-// probe, mean and standard deviation of the nearness, in 1/spacing: an octahedral map
-// (frame/octahedral.glsl) of PROBE_DEPTH_SIDE² texels with a border of one. Include after
+// probe, nearness and its standard deviation, in 1/spacing: an octahedral map
+// (frame/octahedral.glsl) of PROBE_DEPTH_TILE² points. Include after
 // core/sh.glsl, frame/frame_shared.h, frame/octahedral.glsl and frame/probes.glsl.
 #ifndef AG_PROBES_LOOKUP_GLSL
 #define AG_PROBES_LOOKUP_GLSL
 
 #include "techniques/common/probes/depth_shared.h"
 
-const float PROBE_BIAS = 0.05;     // spacings along the normal, against the variance of planes
-const float PROBE_OCCLUDED = 1e-5; // weight of probes behind walls, which counts if all are
-const float PROBE_SPREAD = 0.01;   // least deviation, over the mean
+const float PROBE_BIAS = 0.05; // spacings along the normal, against the variance of planes
 
 vec2 probe_depth(sampler2D depth, int probe, vec3 direction)
 {
     int columns = textureSize(depth, 0).x / PROBE_DEPTH_TILE;
-    vec2 tile = float(PROBE_DEPTH_TILE) * vec2(probe % columns, probe / columns);
-    vec2 at = (0.5 * octahedral_encode(direction) + 0.5) * float(PROBE_DEPTH_SIDE) + 1.0;
-    return textureLod(depth, (tile + at) / vec2(textureSize(depth, 0)), 0.0).rg;
+    ivec2 tile = PROBE_DEPTH_TILE * ivec2(probe % columns, probe / columns);
+    vec2 at = (0.5 * octahedral_encode(direction) + 0.5) * float(PROBE_DEPTH_SIDE);
+    ivec2 near = min(ivec2(at), ivec2(PROBE_DEPTH_SIDE - 1)), far = near + 1;
+    vec2 share = at - vec2(near);
+    bvec2 low = lessThan(near, ivec2(PROBE_DEPTH_SIDE / 2));
+    if (low.x != low.y) {
+        share.x = 1.0 - share.x;
+        near.x++;
+        far.x--;
+    }
+    bool beyond = share.x + share.y > 1.0;
+    vec2 other = beyond ? 1.0 - share.yx : share;
+    return (1.0 - other.x - other.y) * texelFetch(depth, tile + (beyond ? far : near), 0).rg +
+           other.x * texelFetch(depth, tile + ivec2(far.x, near.y), 0).rg +
+           other.y * texelFetch(depth, tile + ivec2(near.x, far.y), 0).rg;
 }
 
 // to: from the probe, in spacings.
@@ -40,7 +52,8 @@ float probe_visibility(sampler2D depth, int probe, vec3 to)
     if (beyond <= 0.0) return 1.0;
     float deviation = max(moments.y, PROBE_SPREAD * moments.x);
     float bound = deviation * deviation / (deviation * deviation + beyond * beyond);
-    return bound * bound * bound;
+    float hidden = clamp(beyond / (PROBE_ERROR * moments.x) - 1.0, 0.0, 1.0);
+    return bound * bound * bound * (1.0 - hidden);
 }
 
 // One of the eight probes around a place.

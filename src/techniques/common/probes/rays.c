@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-enum { SIDE = PROBE_DEPTH_SIDE, TRIES = 16 };
+enum { SIDE = PROBE_DEPTH_SIDE, TILE = PROBE_DEPTH_TILE, TRIES = 16, WAYS = SIDE * SIDE };
 
 // A probe is inside geometry if backs of single-sided surfaces cover more than this part of its
 // sphere of directions.
@@ -34,7 +34,7 @@ struct way_out {
 static float look_around(const struct probe_tracer *tracer, vec3s from, struct way_out *out)
 {
     float backs = 0.0f, all = 0.0f;
-    for (int i = 0; i < PROBE_DEPTHS; i++) {
+    for (int i = 0; i < WAYS; i++) {
         const struct probe_ray ray =
             ray_at(from, (float)(i % SIDE) + 0.5f, (float)(i / SIDE) + 0.5f, SIDE);
         bool inside = false;
@@ -50,7 +50,7 @@ static float look_around(const struct probe_tracer *tracer, vec3s from, struct w
 static struct way_out pop_nearest(struct way_out *ways)
 {
     int nearest = 0;
-    for (int i = 1; i < PROBE_DEPTHS; i++)
+    for (int i = 1; i < WAYS; i++)
         if (ways[i].distance < ways[nearest].distance) nearest = i;
     const struct way_out way = ways[nearest];
     ways[nearest].distance = INFINITY;
@@ -60,7 +60,7 @@ static struct way_out pop_nearest(struct way_out *ways)
 bool probe_find_place(const struct probe_tracer *tracer, vec3s center, float spacing_m,
                       vec3s *position)
 {
-    struct way_out ways[PROBE_DEPTHS];
+    struct way_out ways[WAYS];
     *position = center;
     if (look_around(tracer, center, ways) <= MOST_BACKS) return true;
     for (int i = 0; i < TRIES; i++) {
@@ -79,7 +79,7 @@ bool probe_find_place(const struct probe_tracer *tracer, vec3s center, float spa
 
 struct probe_sphere probe_sphere_of(int rays)
 {
-    // Two along an edge at least: the distances of a square are fitted by a linear function.
+    // Two along an edge of a cell at least: each point of the map has some around it.
     const int across = (int)lroundf(sqrtf((float)rays) / SIDE);
     const struct probe_sphere s = { .side = SIDE * (across > 2 ? across : 2) };
     float sum = 0.0f;
@@ -95,22 +95,6 @@ float probe_solid_angle(const struct probe_sphere *sphere, vec3s direction)
     return sphere->scale * norm * norm * norm * across * across;
 }
 
-// Sums over the rays of a square, by their offset from its middle in squares.
-struct moments {
-    float sum, square, along[2];
-};
-
-// Mean, and standard deviation about a linear function.
-static void finish_moments(const struct moments *m, int across, uint16_t out[2])
-{
-    const float count = (float)(across * across), mean = m->sum / count;
-    const float spread = (1.0f - 1.0f / count) / 12.0f; // mean square of an offset
-    float variance = m->square / count - mean * mean;
-    for (int a = 0; a < 2; a++) variance -= m->along[a] * m->along[a] / (count * count * spread);
-    out[0] = half_from_float(mean);
-    out[1] = half_from_float(sqrtf(fmaxf(variance, 0.0f)));
-}
-
 // Nearness of a hit: spacings over the L1 norm of the way to it.
 static float nearness(const struct probe_tracer *tracer, const struct probe_ray *ray, float spacing)
 {
@@ -120,25 +104,58 @@ static float nearness(const struct probe_tracer *tracer, const struct probe_ray 
     return fminf(fmaxf(spacing / way, PROBE_FAR), PROBE_NEAR);
 }
 
+// Squares of the differences between rays and the interpolated map, by point, and their weights.
+struct differences {
+    float square[PROBE_DEPTHS], weight[PROBE_DEPTHS];
+};
+
+static void join(struct differences *d, int a, int b)
+{
+    d->square[a] = d->square[b] = d->square[a] + d->square[b];
+    d->weight[a] = d->weight[b] = d->weight[a] + d->weight[b];
+}
+
+// Beyond an edge the map continues at the same edge, mirrored: two points there are one direction.
+static void join_edges(struct differences *d)
+{
+    for (int i = 0; i < SIDE / 2; i++)
+        for (int far = 0; far <= SIDE; far += SIDE)
+            join(d, i * TILE + far, (SIDE - i) * TILE + far);
+    for (int i = 0; i < SIDE / 2; i++)
+        for (int far = 0; far <= SIDE; far += SIDE) join(d, far * TILE + i, far * TILE + SIDE - i);
+}
+
+static void add_difference(struct differences *d, float x, float y, float near, const float *mean)
+{
+    const struct probe_depth_place place = probe_depth_place_at(x, y);
+    float difference = near;
+    for (int k = 0; k < 3; k++) difference -= place.weight[k] * mean[place.point[k]];
+    for (int k = 0; k < 3; k++) {
+        d->square[place.point[k]] += place.weight[k] * difference * difference;
+        d->weight[place.point[k]] += place.weight[k];
+    }
+}
+
 void probe_trace_depths(const struct probe_sphere *sphere, const struct probe_tracer *tracer,
                         vec3s from, float spacing_m, uint16_t depth[PROBE_DEPTHS][2])
 {
-    const int across = sphere->side / SIDE;
-    for (int square = 0; square < PROBE_DEPTHS; square++) {
-        struct moments moments = { 0 };
-        for (int i = 0; i < across * across; i++) {
-            const float x = ((float)(i % across) + 0.5f) / (float)across;
-            const float y = ((float)(i / across) + 0.5f) / (float)across;
-            struct probe_ray ray =
-                ray_at(from, ((float)(square % SIDE) + x) * (float)across,
-                       ((float)(square / SIDE) + y) * (float)across, sphere->side);
-            ray.solid_angle *= sphere->scale;
-            const float near = nearness(tracer, &ray, spacing_m);
-            moments.sum += near;
-            moments.square += near * near;
-            moments.along[0] += near * (x - 0.5f);
-            moments.along[1] += near * (y - 0.5f);
-        }
-        finish_moments(&moments, across, depth[square]);
+    const float cell = (float)SIDE / (float)sphere->side;
+    struct differences differences = { 0 };
+    float mean[PROBE_DEPTHS];
+    for (int i = 0; i < PROBE_DEPTHS; i++) {
+        struct probe_ray ray = ray_at(from, (float)(i % TILE), (float)(i / TILE), SIDE);
+        ray.solid_angle = 0.0f;
+        mean[i] = nearness(tracer, &ray, spacing_m);
+    }
+    for (int i = 0; i < sphere->side * sphere->side; i++) {
+        const float x = (float)(i % sphere->side) + 0.5f, y = (float)(i / sphere->side) + 0.5f;
+        struct probe_ray ray = ray_at(from, x, y, sphere->side);
+        ray.solid_angle *= sphere->scale;
+        add_difference(&differences, cell * x, cell * y, nearness(tracer, &ray, spacing_m), mean);
+    }
+    join_edges(&differences);
+    for (int i = 0; i < PROBE_DEPTHS; i++) {
+        depth[i][0] = half_from_float(mean[i]);
+        depth[i][1] = half_from_float(sqrtf(differences.square[i] / differences.weight[i]));
     }
 }

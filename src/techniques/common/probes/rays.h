@@ -2,18 +2,13 @@
 // outside geometry, and its depths.
 #pragma once
 
-#include "core/vec.h"
+#include "techniques/common/probes/depth_map.h"
 
-#include "techniques/common/probes/depth_shared.h"
-
-#include <stdbool.h>
 #include <stdint.h>
-
-enum { PROBE_DEPTHS = PROBE_DEPTH_SIDE * PROBE_DEPTH_SIDE };
 
 struct probe_ray {
     vec3s from, direction;
-    float solid_angle; // of its part of the sphere
+    float solid_angle; // of its part of the sphere; 0: its distance alone is needed
 };
 
 // Returns the distance of the first hit, INFINITY: none. *inside: it is the back of a single-sided

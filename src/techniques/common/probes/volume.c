@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SIDE = PROBE_DEPTH_SIDE, TILE = PROBE_DEPTH_TILE };
+enum { TILE = PROBE_DEPTH_TILE };
 
 struct gpu_image_desc probe_volume_desc(const char *name, struct frame_probes grid, int slabs)
 {
@@ -16,32 +16,13 @@ struct gpu_image_desc probe_volume_desc(const char *name, struct frame_probes gr
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
 }
 
-// The square of an octahedral map in a texel of its tile: beyond an edge the map continues at the
-// same edge, mirrored.
-static int square_of(int x, int y)
-{
-    x -= 1;
-    y -= 1;
-    if (x < 0 || x >= SIDE) {
-        x = x < 0 ? 0 : SIDE - 1;
-        y = SIDE - 1 - y;
-    }
-    if (y < 0 || y >= SIDE) {
-        y = y < 0 ? 0 : SIDE - 1;
-        x = SIDE - 1 - x;
-    }
-    return y * SIDE + x;
-}
-
 static void fill_tile(const uint16_t *depth, uint32_t probe, uint32_t columns, uint16_t *texels)
 {
     const size_t width = (size_t)columns * TILE;
-    const uint16_t *from = depth + 2 * SIDE * SIDE * (size_t)probe;
+    const uint16_t *from = depth + 2 * TILE * TILE * (size_t)probe;
     const size_t first = probe / columns * TILE * width + probe % columns * TILE;
-    for (int y = 0; y < TILE; y++)
-        for (int x = 0; x < TILE; x++)
-            memcpy(texels + 2 * (first + (size_t)y * width + (size_t)x), from + 2 * square_of(x, y),
-                   2 * sizeof *texels);
+    for (size_t y = 0; y < TILE; y++)
+        memcpy(texels + 2 * (first + y * width), from + 2 * TILE * y, 2 * TILE * sizeof *texels);
 }
 
 bool probe_depth_create(struct host *host, struct gpu *gpu, uint32_t probes, const uint16_t *depth,

@@ -22,7 +22,7 @@ struct probe_volume {
 // slabs: FRAME_PROBE_SLABS, or one more.
 struct gpu_image_desc probe_volume_desc(const char *name, struct frame_probes grid, int slabs);
 
-// The depth atlas of a grid's probes. depth: halves, [probes][PROBE_DEPTH_SIDE²][2].
+// The depth atlas of a grid's probes. depth: halves, [probes][PROBE_DEPTH_TILE²][2].
 bool probe_depth_create(struct host *host, struct gpu *gpu, uint32_t probes, const uint16_t *depth,
                         gpu_image *out);
 

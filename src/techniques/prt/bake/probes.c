@@ -81,15 +81,16 @@ static float trace_ray(void *user, const struct probe_ray *from, bool *inside)
 {
     struct work *w = user;
     const struct ray ray = { from->from, from->direction, 0.0f, INFINITY };
+    const bool gathers = w->gathers && from->solid_angle > 0.0f;
     struct ray_hit hit;
     *inside = false;
     if (!embree_closest(w->scene->trace->embree, &ray, NULL, false, &hit)) {
-        if (w->gathers) add_sky(w, from);
+        if (gathers) add_sky(w, from);
         return INFINITY;
     }
     const struct texel_hit at_hit = texel_hit_at(w->scene->trace, &ray, &hit);
     *inside = at_hit.inside;
-    if (w->gathers) add_hit(w, from, &hit, &at_hit);
+    if (gathers) add_hit(w, from, &hit, &at_hit);
     return hit.distance;
 }
 

@@ -78,15 +78,16 @@ static float trace_ray(void *user, const struct probe_ray *from, bool *inside)
 {
     const struct job *job = user;
     const struct ray ray = { from->from, from->direction, 0.0f, INFINITY };
+    const bool gathers = job->gather && from->solid_angle > 0.0f;
     struct ray_hit hit;
     *inside = false;
     if (!embree_closest(job->scene->trace->embree, &ray, NULL, false, &hit)) {
-        if (job->gather) add_sh(ray.direction, from->solid_angle, job->out->sky, 1);
+        if (gathers) add_sh(ray.direction, from->solid_angle, job->out->sky, 1);
         return INFINITY;
     }
     const struct texel_hit at_hit = texel_hit_at(job->scene->trace, &ray, &hit);
     *inside = at_hit.inside;
-    if (job->gather) add_hit(job, from, &at_hit, radiosity_cluster_at(job->scene, &hit, &at_hit));
+    if (gathers) add_hit(job, from, &at_hit, radiosity_cluster_at(job->scene, &hit, &at_hit));
     return hit.distance;
 }
 
