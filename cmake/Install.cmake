@@ -11,7 +11,8 @@ install(FILES LICENSE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.[ch])
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # Headers for a host's own shaders: `glslc -DAG_GLSL=1 -I <prefix>/share/afterglow/glsl`. Paths are those of src/.
-foreach(file core/shared.h core/sh.glsl frame/frame_shared.h frame/octahedral.glsl frame/probes.glsl)
+foreach(file core/shared.h core/sh.glsl frame/frame_shared.h frame/octahedral.glsl frame/probes.glsl
+    techniques/common/probes/depth_shared.h techniques/common/probes/lookup.glsl)
   get_filename_component(folder ${file} DIRECTORY)
   install(FILES src/${file} DESTINATION ${CMAKE_INSTALL_DATADIR}/afterglow/glsl/${folder})
 endforeach()

@@ -1,11 +1,7 @@
 // Probe volumes: downloaded, sampled on the CPU, or passed on as a Vulkan image.
 #include "api/renderer_state.h"
 
-#include "core/sh.h"
-
-#include <string.h>
-
-enum { COEFFICIENTS = 9, NUMBERS = 3 * COEFFICIENTS };
+#include "techniques/common/probes/copy.h"
 
 // The probe volume of the newest frame.
 static enum ag_result find(const char *function, struct ag_renderer *r, struct probe_volume *out)
@@ -16,10 +12,8 @@ static enum ag_result find(const char *function, struct ag_renderer *r, struct p
     return api_done(context, gi_probes(r->gi, out));
 }
 
-static void grid_of(const struct probe_volume *volume, float first[3], float *spacing,
-                    int counts[3])
+static void grid_of(const struct frame_probes *grid, float first[3], float *spacing, int counts[3])
 {
-    const struct frame_probes *grid = &volume->grid;
     api_store(first, grid->first_m);
     *spacing = grid->spacing_m;
     counts[0] = grid->count_x;
@@ -27,57 +21,29 @@ static void grid_of(const struct probe_volume *volume, float first[3], float *sp
     counts[2] = grid->count_z;
 }
 
-// Converts slabs of texels (frame/probes.glsl) to arrays of coefficients.
-static void unpack(const struct ag_probes *probes, const float *texels,
-                   const struct gpu_image_desc *size, const struct frame_probes *grid, float scale)
-{
-    float *out = probes->coefficients;
-    for (int z = 0; z < probes->counts[2]; z++)
-        for (int y = 0; y < probes->counts[1]; y++)
-            for (int x = 0; x < probes->counts[0]; x++)
-                for (int k = 0; k < NUMBERS; k++) {
-                    size_t row = (size_t)(z + k / 4 * grid->slab) * size->height + (size_t)y;
-                    *out++ = texels[4 * (row * size->width + (size_t)x) + (size_t)(k % 4)] / scale;
-                }
-}
-
 // Probes keep their context, which their memory comes from.
 struct owned_probes {
     struct ag_probes probes; // first: programs have its address
+    struct probe_copy copy;
     struct ag_context *context;
 };
 
-static struct ag_probes *create(struct ag_context *context, const struct probe_volume *volume)
+static struct ag_probes *create(struct ag_renderer *r, const struct probe_volume *volume)
 {
-    struct host *host = &context->host;
-    struct owned_probes *own = host_alloc(host, 1, sizeof *own);
+    struct ag_context *context = renderer_context(r);
+    struct owned_probes *own = host_alloc(&context->host, 1, sizeof *own);
     if (!own) return NULL;
-    struct ag_probes *probes = &own->probes;
-    grid_of(volume, probes->first, &probes->spacing, probes->counts);
-    size_t count =
-        (size_t)probes->counts[0] * (size_t)probes->counts[1] * (size_t)probes->counts[2];
-    probes->coefficients = host_alloc(host, count, NUMBERS * sizeof *probes->coefficients);
-    if (!probes->coefficients) {
-        host_free(host, own);
+    if (!probe_copy_create(&context->host, r->device->gpu, volume,
+                           frame_radiance_scale(r->main.frame), &own->copy)) {
+        host_free(&context->host, own);
         return NULL;
     }
+    struct ag_probes *probes = &own->probes;
+    grid_of(&volume->grid, probes->first, &probes->spacing, probes->counts);
+    probes->coefficients = own->copy.coefficients;
     own->context = context;
     api_context_use(context);
     return probes;
-}
-
-static bool download(struct ag_renderer *r, const struct probe_volume *volume,
-                     const struct ag_probes *probes)
-{
-    struct host *host = &renderer_context(r)->host;
-    struct gpu *gpu = r->device->gpu;
-    const struct gpu_image_desc *size = gpu_image_info(gpu, volume->image);
-    size_t texels = (size_t)size->width * size->height * size->depth;
-    float *values = host_alloc(host, texels, 4 * sizeof *values);
-    bool ok = values && gpu_image_download_float(gpu, volume->image, 0, 0, values, 4, 4 * texels);
-    if (ok) unpack(probes, values, size, &volume->grid, frame_radiance_scale(r->main.frame));
-    host_free(host, values);
-    return ok;
 }
 
 enum ag_result ag_renderer_read_probes(struct ag_renderer *r, struct ag_probes **out)
@@ -88,14 +54,8 @@ enum ag_result ag_renderer_read_probes(struct ag_renderer *r, struct ag_probes *
     enum ag_result result = find(__func__, r, &volume);
     if (result == AG_OK) result = ag_renderer_wait(r);
     if (result != AG_OK) return result;
-    struct ag_probes *probes = create(context, &volume);
-    if (!probes || !download(r, &volume, probes)) {
-        result = api_done(context, false);
-        ag_probes_destroy(context, probes);
-        return result;
-    }
-    *out = probes;
-    return api_done(context, true);
+    *out = create(r, &volume);
+    return api_done(context, *out != NULL);
 }
 
 void ag_probes_destroy(struct ag_context *context, struct ag_probes *probes)
@@ -104,55 +64,33 @@ void ag_probes_destroy(struct ag_context *context, struct ag_probes *probes)
     if (!probes) return;
     struct owned_probes *own = (struct owned_probes *)probes;
     struct ag_context *owner = own->context;
-    host_free(&owner->host, probes->coefficients);
+    probe_copy_finish(&owner->host, &own->copy);
     host_free(&owner->host, own);
     api_context_release(owner);
-}
-
-// Trilinear interpolation: the eight probes around a point and their weights.
-struct corner {
-    size_t probe;
-    float weight;
-};
-
-static void corners_of(const struct ag_probes *probes, const float *position, struct corner out[8])
-{
-    int low[3];
-    float share[3];
-    for (int axis = 0; axis < 3; axis++) {
-        float last = (float)(probes->counts[axis] - 1);
-        float at = (position[axis] - probes->first[axis]) / probes->spacing;
-        at = at > 0.0f ? fminf(at, last) : 0.0f; // NaN too
-        low[axis] = (int)at;
-        share[axis] = at - (float)low[axis];
-    }
-    for (int c = 0; c < 8; c++) {
-        size_t cell[3];
-        out[c].weight = 1.0f;
-        for (int axis = 0; axis < 3; axis++) {
-            bool high = (c >> axis) & 1;
-            cell[axis] = (size_t)(low[axis] + (high && low[axis] + 1 < probes->counts[axis]));
-            out[c].weight *= high ? share[axis] : 1.0f - share[axis];
-        }
-        size_t row = cell[2] * (size_t)probes->counts[1] + cell[1];
-        out[c].probe = row * (size_t)probes->counts[0] + cell[0];
-    }
 }
 
 void ag_probes_irradiance(const struct ag_probes *probes, const float *position,
                           const float *normal, float *out)
 {
-    struct corner corners[8];
-    float basis[COEFFICIENTS], sum[3] = { 0 };
+    const struct owned_probes *own = (const struct owned_probes *)probes;
     if (!probes || !position || !normal || !out) return;
-    corners_of(probes, position, corners);
-    sh_eval(3, api_vec3(normal), basis);
-    for (int c = 0; c < 8; c++) {
-        const float *numbers = probes->coefficients + NUMBERS * corners[c].probe;
-        for (int k = 0; k < NUMBERS; k++)
-            sum[k % 3] += corners[c].weight * basis[k / 3] * numbers[k];
-    }
-    for (int k = 0; k < 3; k++) out[k] = fmaxf(sum[k], 0.0f);
+    probe_copy_irradiance(&own->copy, api_vec3(position), api_vec3(normal), out);
+}
+
+_Static_assert(AG_PROBES_VISIBILITY_DEPTHS == PROBE_VISIBILITY_DEPTHS &&
+                   AG_PROBES_VISIBILITY_WALLS == PROBE_VISIBILITY_WALLS,
+               "programs pass them to lookup.glsl");
+
+void ag_probes_get_visibility(const struct ag_probes *probes, struct ag_probes_visibility *out)
+{
+    const struct owned_probes *own = (const struct owned_probes *)probes;
+    if (out) *out = (struct ag_probes_visibility){ .kind = AG_PROBES_VISIBILITY_NONE };
+    if (!probes || !out) return;
+    out->kind = (enum ag_probes_visibility_kind)own->copy.visibility;
+    out->tile_side = own->copy.depths ? PROBE_DEPTH_TILE : 0;
+    out->offsets = own->copy.offsets;
+    out->depths = own->copy.depths;
+    out->walls = own->copy.walls;
 }
 
 enum ag_result ag_renderer_probes_handle(struct ag_renderer *r, struct ag_probes_handle *out)
@@ -163,9 +101,13 @@ enum ag_result ag_renderer_probes_handle(struct ag_renderer *r, struct ag_probes
     *out = (struct ag_probes_handle){ 0 };
     enum ag_result result = find(__func__, r, &volume);
     if (result != AG_OK) return result;
-    grid_of(&volume, out->first, &out->spacing, out->counts);
+    struct gpu *gpu = r->device->gpu;
+    grid_of(&volume.grid, out->first, &out->spacing, out->counts);
     out->slab = volume.grid.slab;
-    out->vk_image = gpu_image_handle(r->device->gpu, volume.image, &out->vk_layout);
+    out->vk_image = gpu_image_handle(gpu, volume.image, &out->vk_layout);
+    if (volume.depth.id)
+        out->vk_depth_image = gpu_image_handle(gpu, volume.depth, &out->vk_depth_layout);
+    out->visibility = (uint32_t)probe_volume_visibility(&volume);
     out->scale = frame_radiance_scale(r->main.frame);
     return api_done(context, true);
 }

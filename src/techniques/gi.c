@@ -289,7 +289,7 @@ static void record_debug_view(struct gi *gi, struct gpu_cmd *cmd, const struct f
         technique->debug_view(gi->state[term], cmd, view, gi->debug_name, gi->debug_image);
         leave(gi);
     } else if (probes_of(gi, term, &probes)) {
-        probe_view_record(&gi->probe_view, cmd, view, probes.image, probes.grid, gi->debug_image);
+        probe_view_record(&gi->probe_view, cmd, view, &probes, gi->debug_image);
     }
 }
 

@@ -89,13 +89,15 @@ cat >"$work/host.comp" <<'END'
 #include "frame/frame_shared.h"
 #include "frame/octahedral.glsl"
 #include "frame/probes.glsl"
+#include "techniques/common/probes/lookup.glsl"
 layout(local_size_x = 1) in;
 layout(binding = 0) uniform sampler3D volume;
-layout(binding = 1, scalar) buffer Data { frame_probes grid; vec3 position, normal, irradiance; } data;
+layout(binding = 1) uniform sampler2D depths;
+layout(binding = 2, scalar) buffer Data { frame_probes grid; int visibility; vec3 position, normal, irradiance; } data;
 void main()
 {
     vec3 normal = octahedral_decode(octahedral_encode(data.normal));
-    data.irradiance = probes_irradiance(volume, data.grid, data.position, normal);
+    data.irradiance = probes_published_irradiance(volume, depths, data.grid, data.visibility, data.position, normal);
 }
 END
 "$glslc" --target-env=vulkan1.3 -DAG_GLSL=1 -I "$(pkg-config --variable=glsldir afterglow)" "$work/host.comp" -o "$work/host.spv"

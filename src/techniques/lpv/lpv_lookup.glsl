@@ -13,6 +13,15 @@ layout(set = 0, binding = LPV_WALLS_BINDING, scalar) readonly buffer lpv_walls
     uint walls[];
 };
 
+// The share of the light that surfaces occlude between the next lower centre along an axis and this
+// cell's, and their place in that interval, 0 to 1.
+vec2 lpv_wall_below(ivec3 cell, ivec3 cells, int axis)
+{
+    uint wall = walls[(cell.z * cells.y + cell.y) * cells.x + cell.x] >> (10 * axis);
+    return vec2(min(lpv.occlusion * float(wall & 31u) / float(LPV_LINES * LPV_LINES), 1.0),
+                float((wall >> 5 & 31u) + 1u) / float(2u * LPV_PLACES));
+}
+
 // The position, moved so that a filtered lookup does not see through walls of the grid of `cells`.
 // `own` is the cell on the side of the position, known after the first round over the axes.
 vec3 lpv_visible(vec3 at, ivec3 cells)
@@ -26,9 +35,9 @@ vec3 lpv_visible(vec3 at, ivec3 cells)
         ivec3 cell = own;
         cell[axis] = int(low) + 1;
         if (cell[axis] < 1 || cell[axis] >= cells[axis]) continue;
-        uint wall = walls[(cell.z * cells.y + cell.y) * cells.x + cell.x] >> (10 * axis);
-        float covered = min(lpv.occlusion * float(wall & 31u) / float(LPV_LINES * LPV_LINES), 1.0);
-        bool above = f > float((wall >> 5 & 31u) + 1u) / float(2u * LPV_PLACES);
+        vec2 wall = lpv_wall_below(cell, cells, axis);
+        float covered = wall.x;
+        bool above = f > wall.y;
         if (covered == 0.0) {
             result[axis] = at[axis];
             continue;

@@ -41,7 +41,8 @@ void lpv_record_probes(struct lpv *finest, struct gpu_cmd *cmd)
     lpv_dispatch_cells_push(from, cmd, finest->pipelines.probes,
                             GPU_BIND(lpv_grid_binding(from, cmd),
                                      { .name = "light", .image = from->volumes.light },
-                                     { .name = "probes", .image = volume }),
+                                     { .name = "probes", .image = volume },
+                                     { .name = "lpv_walls", .buffer = lpv_walls(from) }),
                             &grid, sizeof grid);
     gpu_scope_end(cmd);
 }
@@ -49,6 +50,8 @@ void lpv_record_probes(struct lpv *finest, struct gpu_cmd *cmd)
 bool lpv_probes_publish(const struct lpv *finest, struct probe_volume *out)
 {
     if (!finest->options.probes) return false;
-    *out = (struct probe_volume){ .image = finest->volumes.probes, .grid = probe_grid(finest) };
+    *out = (struct probe_volume){ .image = finest->volumes.probes,
+                                  .grid = probe_grid(finest),
+                                  .walls = finest->options.geometry == LPV_GEOMETRY_SCENE };
     return true;
 }

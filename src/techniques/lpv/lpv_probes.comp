@@ -1,7 +1,7 @@
 // The probe volume: irradiance of a surface of any normal n at the centre of each cell,
 // E(n) = ∫ I(ω) (−n·ω)₊ dω as in lpv_apply.comp: one factor per band, with the sign of band 1
 // flipped because n points towards the light. Not clamped: light from one side only may leave E
-// slightly negative.
+// slightly negative. Lookups between them end at walls as those of pixels do.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -12,6 +12,8 @@
 #include "frame/probes.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
+#define LPV_WALLS_BINDING 3
+#include "techniques/lpv/lpv_lookup.glsl"
 
 layout(local_size_x = LPV_CELLS_LOCAL) in;
 
@@ -22,6 +24,20 @@ layout(push_constant, scalar) uniform push_block
 {
     frame_probes grid;
 };
+
+// The slabs of common/probes/lookup.glsl.
+void store_walls(ivec3 cell)
+{
+    vec4 covered = vec4(0.0), place = vec4(0.0);
+    for (int axis = 0; axis < 3; axis++) {
+        vec2 wall = lpv_wall_below(cell, lpv_cells(), axis);
+        covered[axis] = wall.x;
+        place[axis] = wall.y;
+    }
+    ivec3 slab = cell + ivec3(0, 0, FRAME_PROBE_SLABS * grid.slab);
+    imageStore(probes, slab, covered);
+    imageStore(probes, slab + ivec3(0, 0, grid.slab), place);
+}
 
 void main()
 {
@@ -44,4 +60,5 @@ void main()
     }
     for (int s = 0; s < FRAME_PROBE_SLABS; s++)
         imageStore(probes, cell + ivec3(0, 0, s * grid.slab), probes_slab(coefficients, s));
+    if (LPV_GEOMETRY == LPV_GEOMETRY_SCENE) store_walls(cell);
 }

@@ -24,7 +24,7 @@ struct lpv_volumes {
     gpu_buffer sums;    // [cell][coefficient][colour] 64-bit integers
     gpu_image injected; // injected light
     gpu_image steps[2]; // ping-pong of propagation; half precision: `light` replaces steps[1]
-    gpu_image probes;   // RGBA16F: irradiance probes, FRAME_PROBE_SLABS slabs
+    gpu_image probes;   // RGBA16F: irradiance probes
     gpu_image sent;     // bounces: injected light + light that surfaces reflect
 
     gpu_image light;     // RGBA16F: accumulated over all steps

@@ -1,6 +1,7 @@
 // Sizes, images and buffers of all volumes.
 #include "techniques/lpv/lpv_volumes.h"
 
+#include "techniques/common/probes/volume.h"
 #include "techniques/lpv/lpv_state.h"
 
 uint32_t lpv_slabs(const struct lpv_options *options)
@@ -42,6 +43,12 @@ static struct gpu_image_desc image(const struct lpv_options *options, enum gpu_f
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
 }
 
+static uint32_t probe_slabs(const struct lpv_options *options)
+{
+    if (!options->probes) return 0;
+    return options->geometry == LPV_GEOMETRY_SCENE ? PROBE_SLABS_WITH_WALLS : FRAME_PROBE_SLABS;
+}
+
 #define LEVEL(member) offsetof(struct lpv, volumes.member)
 
 // Each cascade has its own.
@@ -76,8 +83,7 @@ void lpv_add_volumes(const struct lpv_options *o, struct gpu_objects *out)
             { GPU_IMAGE, "injected", LEVEL(injected), .image = image(o, step, slabs) },
             { GPU_IMAGE, "step_even", LEVEL(steps[0]), .image = image(o, step, slabs) },
             { GPU_IMAGE, "step_odd", LEVEL(steps[1]), .image = image(o, step, half ? 0 : slabs) },
-            { GPU_IMAGE, "probes", LEVEL(probes),
-              .image = image(o, GPU_RGBA16F, o->probes ? FRAME_PROBE_SLABS : 0) },
+            { GPU_IMAGE, "probes", LEVEL(probes), .image = image(o, GPU_RGBA16F, probe_slabs(o)) },
             { GPU_IMAGE, "sent", LEVEL(sent), .image = image(o, step, o->bounces > 0 ? slabs : 0) },
             { GPU_SAMPLER, "linear", .member = offsetof(struct lpv, linear) });
     for (int i = 0; i < o->cascades; i++)

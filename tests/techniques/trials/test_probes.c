@@ -5,11 +5,13 @@
 // the mean irradiance of the box in the dark room over that of the same box, mirrored at the wall,
 // in the sunlit one.
 #include "techniques/baked_fixture.h"
+#include "techniques/common/probes/copy.h"
 #include "techniques/trials/light_trial.h"
 #include "techniques/trials/light_trial_scenes.h"
 #include "techniques_test_shaders.h"
 
 #include <math.h>
+#include <string.h>
 
 // That of test_light.c.
 #define DICTIONARY                                                                                 \
@@ -114,7 +116,9 @@ static struct object_light light_of(vec3s points[POINTS][2], int facing, double 
     return out;
 }
 
-static void look_up(struct gpu *gpu, const struct probe_volume *probes, vec3s points[POINTS][2])
+// probes: `depth` is any image where the shader needs none.
+static void look_up_by(struct gpu *gpu, const struct gpu_shader *shader,
+                       const struct probe_volume *probes, int visibility, vec3s points[POINTS][2])
 {
     static const struct gpu_sampler_desc desc = { .name = "test.linear",
                                                   .filter = GPU_LINEAR,
@@ -125,12 +129,11 @@ static void look_up(struct gpu *gpu, const struct probe_volume *probes, vec3s po
     const struct {
         struct frame_probes grid;
         uint32_t count;
-    } push = { probes->grid, POINTS };
+        int32_t visibility;
+    } push = { probes->grid, POINTS, visibility };
     gpu_sampler linear;
     CHECK(gpu_sampler_get(gpu, &desc, &linear));
-    gpu_pipeline lookup =
-        test_gpu_compute(gpu, probes->depth.id ? &shader_probes_probe_points_seen_comp
-                                               : &shader_probes_probe_points_grid_comp);
+    gpu_pipeline lookup = test_gpu_compute(gpu, shader);
     gpu_buffer buffer = test_gpu_buffer(gpu, bytes);
     CHECK(gpu_buffer_upload(gpu, buffer, 0, points, bytes));
     struct gpu_cmd *cmd = gpu_frame_begin(gpu);
@@ -143,6 +146,14 @@ static void look_up(struct gpu *gpu, const struct probe_volume *probes, vec3s po
     CHECK(gpu_buffer_download(gpu, buffer, 0, points, bytes));
     gpu_buffer_destroy(gpu, &buffer);
     gpu_pipeline_destroy(gpu, &lookup);
+}
+
+static void look_up(struct gpu *gpu, const struct probe_volume *probes, vec3s points[POINTS][2])
+{
+    look_up_by(gpu,
+               probes->depth.id ? &shader_probes_probe_points_seen_comp
+                                : &shader_probes_probe_points_grid_comp,
+               probes, probe_volume_visibility(probes), points);
 }
 
 static struct object_light volume_share(struct gpu *gpu, const char *gi)
@@ -174,7 +185,7 @@ static struct object_light volume_share(struct gpu *gpu, const char *gi)
 }
 
 // Not bounded is the side that faces the wall, which no camera sees: lookups begin a twentieth of a
-// spacing in front of it, in the wall or beyond. Probes of lpv do not say what they see.
+// spacing in front of it, in the wall or beyond. Those of lpv take the probes behind it, too.
 TEST_GPU(probes_at_an_object_in_a_dark_room_have_no_light_of_the_next_room)
 {
     const struct {
@@ -191,5 +202,74 @@ TEST_GPU(probes_at_an_object_in_a_dark_room_have_no_light_of_the_next_room)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const struct object_light got = volume_share(gpu, cases[i].gi);
         CHECK(got.center <= cases[i].center && got.others <= cases[i].others);
+    }
+}
+
+// ---- the lookup for shaders of programs, and that of the CPU
+
+struct comparison {
+    double difference, light; // lux: the largest difference at points, the largest mean of a box
+};
+
+// At the points of a box, which may be in the wall in part.
+static void compare_at(struct gpu *gpu, const struct probe_volume *probes,
+                       const struct probe_copy *copy, float scale, vec3s center,
+                       struct comparison *out)
+{
+    vec3s points[POINTS][2], shaded[POINTS][2];
+    struct probe_volume bound = *probes;
+    double mean = 0.0;
+    points_of_box(center, points);
+    memcpy(shaded, points, sizeof points);
+    if (!bound.depth.id)
+        bound.depth = test_gpu_image(gpu, GPU_2D, GPU_RG16F, 1, 1, 1, 1, GPU_SAMPLED);
+    look_up_by(gpu, &shader_probes_probe_points_published_comp, &bound, copy->visibility, shaded);
+    if (!probes->depth.id) gpu_image_destroy(gpu, &bound.depth);
+    for (int i = 0; i < CENTER; i++) {
+        float lux[3];
+        probe_copy_irradiance(copy, points[i][0], points[i][1], lux);
+        for (int c = 0; c < 3; c++) {
+            out->difference =
+                fmax(out->difference,
+                     fabs((double)shaded[i][0].raw[c] / (double)scale - (double)lux[c]));
+            mean += (double)lux[c] / (3 * CENTER);
+        }
+    }
+    out->light = fmax(out->light, mean);
+}
+
+TEST_GPU(shaders_look_probes_up_as_the_cpu_does)
+{
+    const struct {
+        const char *gi;
+        int visibility;
+    } cases[] = {
+        { "radiosity:texels=4096,rays=64,probes=true", PROBE_VISIBILITY_DEPTHS },
+        { "mrt:probes=true," DICTIONARY "2", PROBE_VISIBILITY_DEPTHS },
+        { "lpv:probes=true", PROBE_VISIBILITY_WALLS },
+        { "holpv:probes=true,dim=16", PROBE_VISIBILITY_WALLS },
+        { "lpv:probes=true,geometry=off", PROBE_VISIBILITY_NONE },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct frame_fixture s;
+        struct baked_fixture run;
+        struct probe_volume probes;
+        struct probe_copy copy;
+        trial_two_rooms(&s, gpu, false);
+        baked_fixture_open(&run, &s, cases[i].gi);
+        fixture_render(&s);
+        CHECK(gi_probes(run.gi, &probes));
+        const float scale = frame_radiance_scale(s.frame);
+        CHECK(probe_copy_create(test_host(), gpu, &probes, scale, &copy));
+        CHECK(copy.visibility == cases[i].visibility);
+        struct comparison got = { 0 };
+        for (int k = 0; k < 5; k++) // in both rooms, and across the wall
+            compare_at(gpu, &probes, &copy, scale, vec3_of(-2.9f + 1.45f * (float)k, 1.3f, 0.2f),
+                       &got);
+        print_message("%s: lookups on GPU and CPU differ by %.5f of %.0f lux\n", cases[i].gi,
+                      got.difference / got.light, got.light);
+        CHECK(got.light > 100 && got.difference <= 0.01 * got.light);
+        probe_copy_finish(test_host(), &copy);
+        baked_fixture_close(&run, &s);
     }
 }

@@ -14,4 +14,9 @@
 // behind by twice of that is hidden, whatever the deviation.
 #define PROBE_ERROR 0.2f
 
+// As enum ag_probes_visibility_kind.
+#define PROBE_VISIBILITY_NONE   0
+#define PROBE_VISIBILITY_DEPTHS 1
+#define PROBE_VISIBILITY_WALLS  2
+
 #endif

@@ -139,4 +139,69 @@ void probes_visible_coefficients(sampler3D volume, sampler2D depth, frame_probes
     for (int j = 0; j < 9; j++) c[j] /= weights;
 }
 
+// ---- for shaders of a program
+
+// The place of a lookup, in spacings of the grid, moved towards the probes on its side of the walls
+// around it: a surface between two probes removes its covered share of the weight of the one beyond
+// it. Of each probe, slab FRAME_PROBE_SLABS has the shares of the intervals to its lower neighbours
+// along x, y and z, the next slab the surfaces' places there. The second round over the axes knows
+// on which side of all walls the place is.
+vec3 probes_before_walls(sampler3D volume, frame_probes grid, vec3 at)
+{
+    ivec3 counts = ivec3(grid.count_x, grid.count_y, grid.count_z), own = ivec3(floor(at + 0.5));
+    vec3 result = at;
+    for (int i = 0; i < 6; i++) {
+        int axis = i % 3;
+        float low = floor(at[axis]), share = at[axis] - low;
+        ivec3 cell = own;
+        cell[axis] = int(low) + 1;
+        if (cell[axis] >= counts[axis]) continue;
+        cell.z += FRAME_PROBE_SLABS * grid.slab;
+        float covered = texelFetch(volume, cell, 0)[axis];
+        bool above = share > texelFetch(volume, cell + ivec3(0, 0, grid.slab), 0)[axis];
+        result[axis] =
+            low + (above ? 1.0 - (1.0 - share) * (1.0 - covered) : share * (1.0 - covered));
+        if (covered > 0.0) own[axis] = int(low) + (above ? 1 : 0);
+    }
+    return result;
+}
+
+// With the weights of interpolation and visibility alone. Points beyond the grid are moved to its
+// cells.
+vec3 probes_seen_irradiance(sampler3D volume, sampler2D depth, frame_probes grid, vec3 position,
+                            vec3 normal)
+{
+    vec3 counts = vec3(grid.count_x, grid.count_y, grid.count_z);
+    vec3 at = clamp((position - grid.first_m) / grid.spacing_m, vec3(-0.5), counts - 0.5);
+    float basis[9], weights = 0.0;
+    sh9_eval(normal, basis);
+    vec3 sum = vec3(0.0);
+    for (int k = 0; k < 8; k++) {
+        probe_corner corner = probe_corner_of(volume, depth, grid, at, k);
+        float weight = corner.linear * (corner.visibility + PROBE_OCCLUDED);
+        vec4 values;
+        for (int i = 0; i < 27; i++) {
+            if (i % 4 == 0)
+                values = texelFetch(volume, corner.cell + ivec3(0, 0, i / 4 * grid.slab), 0);
+            sum[i % 3] += weight * basis[i / 3] * values[i % 4];
+        }
+        weights += weight;
+    }
+    return max(sum / weights, vec3(0.0));
+}
+
+// Irradiance at a world position for a unit normal, as ag_probes_irradiance has it, times the scale
+// of struct ag_probes_handle. visibility: of that struct; it also has `grid` and both images, which
+// have linear filters and clamped coordinates. Without depths any image may be in their place.
+vec3 probes_published_irradiance(sampler3D volume, sampler2D depth, frame_probes grid,
+                                 int visibility, vec3 position, vec3 normal)
+{
+    if (visibility == PROBE_VISIBILITY_DEPTHS)
+        return probes_seen_irradiance(volume, depth, grid, position, normal);
+    vec3 last = vec3(grid.count_x, grid.count_y, grid.count_z) - 1.0;
+    vec3 at = clamp((position - grid.first_m) / grid.spacing_m, vec3(0.0), last);
+    if (visibility == PROBE_VISIBILITY_WALLS) at = probes_before_walls(volume, grid, at);
+    return probes_irradiance_at(volume, grid.slab, at + 0.5, normal);
+}
+
 #endif

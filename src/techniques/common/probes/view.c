@@ -33,17 +33,20 @@ static int32_t sphere_spacing(struct frame_probes grid)
 }
 
 void probe_view_record(const struct probe_view *view, struct gpu_cmd *cmd,
-                       const struct frame_view *frame, gpu_image probes, struct frame_probes grid,
+                       const struct frame_view *frame, const struct probe_volume *volume,
                        gpu_image out)
 {
-    const struct probe_view_push push = { grid, sphere_spacing(grid) };
+    const struct probe_view_push push = { volume->grid, sphere_spacing(volume->grid),
+                                          probe_volume_visibility(volume) };
+    const gpu_image depths = volume->depth.id ? volume->depth : frame->layers[FRAME_NORMAL];
     gpu_scope_begin(cmd, "probe_view");
     gpu_dispatch(
         cmd, view->pipeline,
         GPU_BIND(frame->constants_binding, { .name = "depth", .image = frame->layers[FRAME_DEPTH] },
                  { .name = "normal", .image = frame->layers[FRAME_NORMAL] },
                  { .name = "albedo", .image = frame->layers[FRAME_ALBEDO] },
-                 { .name = "probes", .image = probes, .sampler = view->linear },
+                 { .name = "probes", .image = volume->image, .sampler = view->linear },
+                 { .name = "probe_depths", .image = depths, .sampler = view->linear },
                  { .name = "target", .image = out }),
         &push, sizeof push, gpu_groups(frame->width, LOCAL), gpu_groups(frame->height, LOCAL), 1);
     gpu_scope_end(cmd);

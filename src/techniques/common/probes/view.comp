@@ -8,6 +8,7 @@
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "frame/probes.glsl"
+#include "techniques/common/probes/lookup.glsl"
 #include "techniques/common/probes/view_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -20,7 +21,8 @@ layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2) uniform sampler2D normal;
 layout(set = 0, binding = 3) uniform sampler2D albedo;
 layout(set = 0, binding = 4) uniform sampler3D probes;
-layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D target;
+layout(set = 0, binding = 5) uniform sampler2D probe_depths; // or any image
+layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D target;
 
 const float RADIUS = 0.12, DIM = 0.3;
 
@@ -74,8 +76,10 @@ void main()
     if (z > 0.0) {
         vec3 n = octahedral_decode(texelFetch(normal, ivec2(pixel), 0).rg);
         vec3 reflected = texelFetch(albedo, ivec2(pixel), 0).rgb / PI;
+        vec3 before = position + 0.5 * push.grid.spacing_m * n;
         colour = DIM * reflected *
-                 probes_irradiance(probes, push.grid, position + 0.5 * push.grid.spacing_m * n, n);
+                 probes_published_irradiance(probes, probe_depths, push.grid, push.visibility,
+                                             before, n);
     }
     float unit = float(push.every) * push.grid.spacing_m;
     vec3 from = (frame_ray_origin(frame_uv(pixel)) - push.grid.first_m) / unit + 0.5,

@@ -11,10 +11,11 @@
 struct probe_view_push {
     AG_STRUCT(frame_probes) grid;
     int32_t every; // probes from one sphere to the next
+    int32_t visibility;
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct probe_view_push) == 9 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct probe_view_push) == 10 * 4, "layout is shared with GLSL");
 #endif
 
 #endif

@@ -14,12 +14,21 @@ struct probe_volume {
     // Depths of the probes, RG16F, against leaks through walls; the image then has the slab that
     // common/probes/lookup.glsl needs. May be empty.
     gpu_image depth;
+    bool walls; // the image has two slabs more, of the surfaces between probes
     // Coefficients of the radiance that arrives at probes, bands 0 to 4: RGBA16F, a table
     // (common/light_map/table.h) of [coefficient][probe]. May be empty.
     gpu_image radiance;
 };
 
-// slabs: FRAME_PROBE_SLABS, or one more.
+// PROBE_VISIBILITY_…
+static inline int probe_volume_visibility(const struct probe_volume *volume)
+{
+    if (volume->depth.id) return PROBE_VISIBILITY_DEPTHS;
+    return volume->walls ? PROBE_VISIBILITY_WALLS : PROBE_VISIBILITY_NONE;
+}
+
+// slabs: FRAME_PROBE_SLABS, one more with depths, PROBE_SLABS_WITH_WALLS with walls.
+enum { PROBE_SLABS_WITH_WALLS = FRAME_PROBE_SLABS + 2 };
 struct gpu_image_desc probe_volume_desc(const char *name, struct frame_probes grid, int slabs);
 
 // The depth atlas of a grid's probes. depth: halves, [probes][PROBE_DEPTH_TILE²][2].

@@ -8,7 +8,7 @@
 #include "frame/frame_shared.h"
 #include "frame/octahedral.glsl"
 #include "frame/probes.glsl"
-#ifdef SEEN
+#if defined SEEN || defined PUBLISHED
 #include "techniques/common/probes/lookup.glsl"
 #endif
 
@@ -19,7 +19,7 @@ layout(set = 0, binding = 1, scalar) buffer points
 {
     vec3 point_table[]; // position, normal of each point; irradiance takes the position's place
 };
-#ifdef SEEN
+#if defined SEEN || defined PUBLISHED
 layout(set = 0, binding = 2) uniform sampler2D probe_depths;
 #endif
 
@@ -27,6 +27,7 @@ layout(push_constant, scalar) uniform push_block
 {
     frame_probes grid;
     uint count;
+    int visibility;
 };
 
 #ifdef SEEN
@@ -44,7 +45,11 @@ vec3 in_space(vec3 position)
 #else
 vec3 on_surface(vec3 position, vec3 normal)
 {
+#ifdef PUBLISHED
+    return probes_published_irradiance(volume, probe_depths, grid, visibility, position, normal);
+#else
     return probes_irradiance(volume, grid, position, normal);
+#endif
 }
 
 // Bands 1 and 2 cancel over the axes.
