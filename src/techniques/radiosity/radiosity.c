@@ -233,7 +233,8 @@ static uint64_t memory_estimate(const void *options)
     const uint64_t of_texels =
         light_map_table_bytes((TEXEL_PARTS + TEXEL_SKY_WORDS) * texels, 16) +
         rows_bytes(texels, 8 * sources) +
-        light_map_table_bytes(RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR * texels, 16) +
+        light_map_table_bytes(
+            RADIOSITY_SMOOTH_PASSES * RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR * texels, 16) +
         light_map_table_bytes(texels, 16) + 2 * light_map_table_bytes(3 * texels, 8) +
         places * sizeof(struct radiosity_gpu_label);
     const uint64_t of_clusters =

@@ -1,5 +1,5 @@
-// Light of each texel: F B of the clusters, the sky, emissive surfaces and paint. By colour:
-// irradiance along the normal and the vector irradiance.
+// Light of each texel: F B of the clusters and the sky; emissive surfaces and paint only without
+// smoothing, which adds them. By colour: irradiance along the normal and the vector irradiance.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -41,16 +41,15 @@ void add_entry(uvec2 word)
     sum.by_v += along.y * light;
 }
 
-// Light of clusters, the sky, emissive surfaces and paint.
 void store_light(uint texel)
 {
-    sum.irradiance += light_map_painted_light(texel, push.sources);
     mat3 basis = basis_of(light_map_texel_part(texel, push.texels, TEXEL_NORMAL).xyz);
-    vec4 area_light[3] = light_map_area_light(texel, push.texels, push.sources);
+    vec4 sky[3] = light_map_sky_light(texel, push.texels, push.sources);
+    vec4 sharp[3] = light_map_sharp_light(texel, push.texels, push.sources);
     for (int c = 0; c < 3; c++) {
         vec4 light = vec4(sum.irradiance[c], sum.irradiance[c] * basis[2] + sum.by_u[c] * basis[0] +
                                                  sum.by_v[c] * basis[1]) +
-                     area_light[c];
+                     sky[c] + push.sharp * sharp[c];
         imageStore(texel_light, light_map_at(c * push.texels + texel),
                    uvec4(light_map_pack(light), 0u, 0u));
     }

@@ -98,9 +98,10 @@ static void record_gather_of(struct radiosity *s, struct gpu_cmd *cmd,
                              const struct frame_view *view, const struct radiosity_block *block,
                              struct span rows)
 {
-    const struct radiosity_gather_push push = { rows.first, rows.count, s->map.texel_count,
-                                                light_map_sources(&s->paint, view,
-                                                                  s->options.emitters) };
+    const struct radiosity_gather_push push = {
+        rows.first, rows.count, s->map.texel_count, s->options.smooth ? 0.0f : 1.0f,
+        light_map_sources(&s->paint, view, s->options.emitters)
+    };
     gpu_dispatch(
         cmd, s->pipelines.gather,
         GPU_BIND(view->constants_binding,
@@ -123,20 +124,22 @@ static void record_gather(struct radiosity *s, struct gpu_cmd *cmd, const struct
     }
 }
 
-static void record_smooth(struct radiosity *s, struct gpu_cmd *cmd, struct span rows)
+static void record_smooth(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view,
+                          struct span rows, uint32_t pass)
 {
-    const struct radiosity_smooth_push push = { rows.first, rows.count, s->map.texel_count };
-    gpu_dispatch(cmd, s->pipelines.smooth,
-                 GPU_BIND({ .name = "radiosity_neighbours", .image = s->tables.neighbours },
-                          { .name = "texel_light", .image = s->tables.light },
-                          { .name = "radiosity_smoothed", .image = s->tables.smoothed }),
-                 &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
-}
-
-// The light of texels that the map gets.
-static gpu_image final_light(const struct radiosity *s)
-{
-    return s->options.smooth ? s->tables.smoothed : s->tables.light;
+    const struct radiosity_smooth_push push = {
+        rows.first, rows.count,  s->map.texel_count,
+        pass,       (float)pass, light_map_sources(&s->paint, view, s->options.emitters)
+    };
+    const gpu_image light[2] = { s->tables.light, s->tables.smoothed };
+    gpu_dispatch(
+        cmd, s->pipelines.smooth,
+        GPU_BIND(view->constants_binding,
+                 LIGHT_MAP_TEXEL_BINDINGS(view, &s->paint, s->tables.texels, s->tables.sky),
+                 { .name = "radiosity_neighbours", .image = s->tables.neighbours },
+                 { .name = "texel_light", .image = light[pass] },
+                 { .name = "radiosity_smoothed", .image = light[1 - pass] }),
+        &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
 uint32_t radiosity_stage_rows(const struct radiosity *s, enum radiosity_stage stage)
@@ -148,6 +151,7 @@ uint32_t radiosity_stage_rows(const struct radiosity *s, enum radiosity_stage st
     case RADIOSITY_BOUNCES:
         return s->map.cluster_count;
     case RADIOSITY_SMOOTH:
+    case RADIOSITY_SMOOTH_WIDE:
         return s->options.smooth ? s->map.texel_count : 0;
     case RADIOSITY_LIGHT_MAP:
         return s->light_map.owner_count;
@@ -160,8 +164,8 @@ uint32_t radiosity_stage_rows(const struct radiosity *s, enum radiosity_stage st
 
 const char *radiosity_stage_name(enum radiosity_stage stage)
 {
-    static const char *const names[] = { "direct", "bounces",   "gather",
-                                         "smooth", "light_map", "seams" };
+    static const char *const names[] = { "direct",      "bounces",   "gather", "smooth",
+                                         "smooth_wide", "light_map", "seams" };
     return names[stage];
 }
 
@@ -180,13 +184,16 @@ static void record_rows(struct radiosity *s, struct gpu_cmd *cmd, const struct f
         record_gather(s, cmd, view, rows);
         break;
     case RADIOSITY_SMOOTH:
-        record_smooth(s, cmd, rows);
+        record_smooth(s, cmd, view, rows, 0);
+        break;
+    case RADIOSITY_SMOOTH_WIDE:
+        record_smooth(s, cmd, view, rows, 1);
         break;
     case RADIOSITY_LIGHT_MAP:
-        light_map_record_show(&s->light_map, cmd, final_light(s), rows.first, rows.count);
+        light_map_record_show(&s->light_map, cmd, s->tables.light, rows.first, rows.count);
         break;
     default:
-        light_map_record_seams(&s->light_map, cmd, final_light(s), rows.first, rows.count);
+        light_map_record_seams(&s->light_map, cmd, s->tables.light, rows.first, rows.count);
     }
 }
 

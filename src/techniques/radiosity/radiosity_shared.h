@@ -23,8 +23,9 @@
 #define RADIOSITY_PAIR LIGHT_MAP_PAIR
 #define RADIOSITY_QUAD 4
 
-// Neighbours of a texel, in pairs of (texel, weight).
-#define RADIOSITY_NEIGHBOURS 8
+// Neighbours of a texel, in pairs of (texel, weight), of each pass of the smoothing.
+#define RADIOSITY_NEIGHBOURS    8
+#define RADIOSITY_SMOOTH_PASSES 2
 
 // Debug data of a place of the light map: those of its nearest valid texel.
 struct radiosity_gpu_label {
@@ -63,11 +64,14 @@ struct radiosity_nodes_push {
 
 struct radiosity_gather_push {
     uint32_t first, count, texels;
+    float sharp; // factor of the light of emissive surfaces and of paint
     AG_STRUCT(light_map_sources) sources;
 };
 
 struct radiosity_smooth_push {
-    uint32_t first, count, texels;
+    uint32_t first, count, texels, pass;
+    float sharp; // as of radiosity_gather_push
+    AG_STRUCT(light_map_sources) sources;
 };
 
 struct radiosity_view_push {
@@ -83,8 +87,8 @@ _Static_assert(sizeof(struct radiosity_direct_push) == 28, "layout is shared wit
 _Static_assert(sizeof(struct radiosity_clusters_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_solve_push) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_nodes_push) == 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_gather_push) == 24, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_smooth_push) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_gather_push) == 28, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_smooth_push) == 32, "layout is shared with GLSL");
 #endif
 
 #endif

@@ -45,6 +45,7 @@ enum radiosity_stage {
     RADIOSITY_BOUNCES,
     RADIOSITY_GATHER,
     RADIOSITY_SMOOTH,
+    RADIOSITY_SMOOTH_WIDE,
     RADIOSITY_LIGHT_MAP,
     RADIOSITY_SEAMS,
     RADIOSITY_STAGES,
@@ -95,7 +96,7 @@ void radiosity_destroy_rows(struct radiosity *state, struct radiosity_rows *rows
 // The content of a bake about the surroundings of texels.
 struct radiosity_surroundings {
     const struct light_map_texels *texels;
-    const float *inverse_distance; // [texels] mean of 1/distance over the hits, 1/m
+    const float *nearness;         // [texels][4] means of direction/distance and 1/distance, 1/m
     const uint32_t *nearest_valid; // [texels]
 };
 // The neighbours over which light is smoothed. sky: [texels][4], becomes that of the texels,

@@ -8,18 +8,18 @@
 #include "techniques/radiosity/radiosity_map.h"
 #include "techniques/technique.h"
 
-#define RADIOSITY_SOURCE         "texels/source" // U32 [texels][sources]: nodes of the tree
-#define RADIOSITY_FACTOR         "texels/factor" // F16 [texels][sources][3]
-#define RADIOSITY_DISTANCE       "texels/inverse_distance" // F32 [texels]
-#define RADIOSITY_PART           "texels/part"             // U8 [texels]
-#define RADIOSITY_CLUSTER_SOURCE "clusters/source"         // U32 [clusters][2 · sources]
-#define RADIOSITY_CLUSTER_FACTOR "clusters/factor"         // F16 [clusters][2 · sources]
-#define RADIOSITY_PROBE_SOURCE   "probes/source"           // U32 [probes][2 · sources]
-#define RADIOSITY_PROBE_FACTOR   "probes/factor"           // F16 [probes][2 · sources][4]
-#define RADIOSITY_PROBE_PLACE    "probes/place"            // F32 [probes][4]
-#define RADIOSITY_PROBE_SKY      "probes/sky"              // F32 [probes][9]
-#define RADIOSITY_PROBE_EMITTED  "probes/emitted"          // F32 [probes][9][3]
-#define RADIOSITY_PROBE_DEPTH    "probes/depth"            // F16 [probes][9 · 9][2]
+#define RADIOSITY_SOURCE         "texels/source"   // U32 [texels][sources]: nodes of the tree
+#define RADIOSITY_FACTOR         "texels/factor"   // F16 [texels][sources][3]
+#define RADIOSITY_NEARNESS       "texels/nearness" // F32 [texels][4]
+#define RADIOSITY_PART           "texels/part"     // U8 [texels]
+#define RADIOSITY_CLUSTER_SOURCE "clusters/source" // U32 [clusters][2 · sources]
+#define RADIOSITY_CLUSTER_FACTOR "clusters/factor" // F16 [clusters][2 · sources]
+#define RADIOSITY_PROBE_SOURCE   "probes/source"   // U32 [probes][2 · sources]
+#define RADIOSITY_PROBE_FACTOR   "probes/factor"   // F16 [probes][2 · sources][4]
+#define RADIOSITY_PROBE_PLACE    "probes/place"    // F32 [probes][4]
+#define RADIOSITY_PROBE_SKY      "probes/sky"      // F32 [probes][9]
+#define RADIOSITY_PROBE_EMITTED  "probes/emitted"  // F32 [probes][9][3]
+#define RADIOSITY_PROBE_DEPTH    "probes/depth"    // F16 [probes][9 · 9][2]
 
 // Rows allocated before clusters are subdivided: two for each, since walls may split it.
 static inline uint64_t radiosity_cluster_rows(const struct radiosity_map *map)

@@ -21,8 +21,9 @@ static int steps_of(const struct radiosity *s)
 static float cost_of_row(const struct radiosity *s, enum radiosity_stage stage)
 {
     static const float COST[RADIOSITY_STAGES] = {
-        [RADIOSITY_DIRECT] = 40, [RADIOSITY_BOUNCES] = 3,   [RADIOSITY_GATHER] = 2,
-        [RADIOSITY_SMOOTH] = 10, [RADIOSITY_LIGHT_MAP] = 5, [RADIOSITY_SEAMS] = 32,
+        [RADIOSITY_DIRECT] = 40, [RADIOSITY_BOUNCES] = 3,      [RADIOSITY_GATHER] = 2,
+        [RADIOSITY_SMOOTH] = 10, [RADIOSITY_SMOOTH_WIDE] = 10, [RADIOSITY_LIGHT_MAP] = 5,
+        [RADIOSITY_SEAMS] = 32,
     };
     static const float CLUSTER_ENTRY = 0.35f; // half the words, no direction
     if (stage == RADIOSITY_BOUNCES)

@@ -11,7 +11,7 @@ struct content {
     const uint16_t *factor, *cluster_factor;
     const uint8_t *part;
     struct light_map_texels texels;
-    const float *inverse_distance;
+    const float *nearness;
     uint32_t *nearest_valid; // [texels]
     size_t sources, cluster_sources;
 };
@@ -26,7 +26,7 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
     return (out->source = EXPECT(RADIOSITY_SOURCE, TENSOR_U32, n, k)) &&
            (out->factor = EXPECT(RADIOSITY_FACTOR, TENSOR_F16, n, k, 3)) &&
            (out->part = EXPECT(RADIOSITY_PART, TENSOR_U8, n)) &&
-           (out->inverse_distance = EXPECT(RADIOSITY_DISTANCE, TENSOR_F32, n)) &&
+           (out->nearness = EXPECT(RADIOSITY_NEARNESS, TENSOR_F32, n, 4)) &&
            light_map_find_texels(&out->texels, s->host, &s->map.charts, bake) &&
            (out->cluster_source = EXPECT(RADIOSITY_CLUSTER_SOURCE, TENSOR_U32, c, 2 * k)) &&
            (out->cluster_factor = EXPECT(RADIOSITY_CLUSTER_FACTOR, TENSOR_F16, c, 2 * k));
@@ -211,8 +211,7 @@ static bool upload_clusters(struct radiosity *s, const struct content *c)
 static bool upload_light_map(struct radiosity *s, const struct content *c,
                              const struct tensors *bake)
 {
-    const struct radiosity_surroundings around = { &c->texels, c->inverse_distance,
-                                                   c->nearest_valid };
+    const struct radiosity_surroundings around = { &c->texels, c->nearness, c->nearest_valid };
     float *smoothed = host_alloc(s->host, s->map.texel_count, 4 * sizeof *smoothed);
     const bool ok =
         smoothed && radiosity_upload_neighbours(s, &around, smoothed) &&

@@ -71,7 +71,7 @@ void texel_gather(const struct trace_scene *scene, const struct texel_receiver *
     *out = (struct texel_lights){ 0 };
     basis_of(r->normal, &tangent, &bitangent);
     for (uint32_t k = 0; k < (uint32_t)r->rays; k++) {
-        vec3s local = sample_hemisphere_cosine(sobol_2d(k, r->seed));
+        vec3s local = sample_hemisphere_cosine(sobol_2d(r->first + k, r->seed));
         local.z = fmaxf(local.z, LEAST_COSINE);
         struct ray ray = { r->position, glms_vec3_scale(r->normal, local.z), 0.0f, INFINITY };
         ray.direction = glms_vec3_muladds(tangent, local.x, ray.direction);
@@ -90,7 +90,7 @@ void texel_gather(const struct trace_scene *scene, const struct texel_receiver *
     for (uint32_t k = 0; k < (uint32_t)r->light_samples; k++) {
         struct emitter_sample s;
         if (texel_sample_emitter(scene, r->position, &r->normal, k, (uint32_t)r->light_samples,
-                                 r->seed, &s))
+                                 r->seed + r->first, &s))
             add_emission(out, r, s.to_light, s.radiance, s.pdf);
     }
 }

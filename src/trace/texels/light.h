@@ -9,6 +9,7 @@
 struct texel_receiver {
     vec3s position, normal; // position: offset against self-intersection
     int rays, light_samples;
+    uint32_t first; // of the rays' points in the Sobol sequence
     uint32_t seed;
 };
 

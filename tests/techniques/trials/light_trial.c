@@ -1,6 +1,7 @@
 // Irradiance of a fixture's scene by techniques and by the reference.
 #include "techniques/trials/light_trial.h"
 
+#include "image/metrics.h"
 #include "scene/scene_edit.h"
 #include "techniques/baked_fixture.h"
 #include "techniques/gi_fixture.h"
@@ -9,6 +10,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static struct trial_irradiance summary(const float *irradiance, const float *depth, size_t pixels)
 {
@@ -56,7 +58,9 @@ static void add_to_scene(struct scene *scene, const struct world_light *light)
     assert_true(copy.node >= 0 && scene_add_light(scene, &copy) >= 0);
 }
 
-struct trial_irradiance trial_reference(struct frame_fixture *s, int bounces, int samples)
+// Irradiance, and depth if it is wanted.
+static void trace_reference(struct frame_fixture *s, int bounces, int samples,
+                            struct image *irradiance, struct image *depth)
 {
     for (int i = 0; i < s->input.light_count; i++) add_to_scene(s->scene, &s->lights[i]);
     const struct environment *environment = &s->input.environment;
@@ -70,15 +74,72 @@ struct trial_irradiance trial_reference(struct frame_fixture *s, int bounces, in
                                                    (int)s->width, (int)s->height, &options);
     assert_non_null(reference);
     assert_true(reference_render(reference, samples, NULL, NULL));
+    assert_true(reference_read(reference, REFERENCE_IRRADIANCE_EMITTERS_SKY, irradiance));
+    if (depth) assert_true(reference_read(reference, REFERENCE_DEPTH, depth));
+    reference_destroy(reference);
+}
+
+struct trial_irradiance trial_reference(struct frame_fixture *s, int bounces, int samples)
+{
     struct image irradiance, depth;
-    assert_true(reference_read(reference, REFERENCE_IRRADIANCE_EMITTERS_SKY, &irradiance));
-    assert_true(reference_read(reference, REFERENCE_DEPTH, &depth));
+    trace_reference(s, bounces, samples, &irradiance, &depth);
     const struct trial_irradiance result =
         summary(irradiance.pixels, depth.pixels, s->width * s->height);
     image_finish(&irradiance, test_host());
     image_finish(&depth, test_host());
-    reference_destroy(reference);
     return result;
+}
+
+static double mean_of(const struct image *image)
+{
+    const size_t count = 3 * (size_t)image->width * (size_t)image->height;
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) sum += (double)image->pixels[i];
+    return sum / (double)count;
+}
+
+static void scale(struct image *image, double factor)
+{
+    const size_t count = 3 * (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < count; i++)
+        image->pixels[i] = fminf((float)(factor * (double)image->pixels[i]), 1.0f);
+}
+
+static struct image technique_image(struct gpu *gpu, trial_build build, const char *text)
+{
+    struct frame_fixture s;
+    struct image out;
+    build(&s, gpu);
+    fixture_open(&s);
+    struct gi *gi = gi_fixture_light(&s, text);
+    fixture_render(&s);
+    float *irradiance = fixture_read(&s, READ_IRRADIANCE);
+    assert_true(image_init(&out, test_host(), (int)s.width, (int)s.height, 3));
+    memcpy(out.pixels, irradiance, 3 * (size_t)s.width * s.height * sizeof *irradiance);
+    free(irradiance);
+    gi_destroy(gi);
+    fixture_finish(&s);
+    return out;
+}
+
+struct trial_error trial_error_of(struct gpu *gpu, trial_build build, const char *gi, int samples)
+{
+    static const double DISPLAYED = 0.3;
+    struct frame_fixture s;
+    struct metrics metrics;
+    struct image expected, got = technique_image(gpu, build, gi);
+    build(&s, gpu);
+    trace_reference(&s, -1, samples, &expected, NULL);
+    fixture_finish(&s);
+    const double mean = mean_of(&expected);
+    struct trial_error error = { .energy = mean_of(&got) / mean };
+    scale(&got, DISPLAYED / mean);
+    scale(&expected, DISPLAYED / mean);
+    assert_true(metrics_compute(test_host(), &got, &expected, NULL, &metrics));
+    image_finish(&got, test_host());
+    image_finish(&expected, test_host());
+    error.flip = metrics.flip;
+    return error;
 }
 
 struct trial_irradiance trial_object_irradiance(struct frame_fixture *s, int first)

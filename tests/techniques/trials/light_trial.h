@@ -15,6 +15,13 @@ struct trial_irradiance trial_technique(struct frame_fixture *s, const char *gi)
 // Light of the same kinds as the technique's: without direct light of punctual lights, with that of
 // specular lobes in bounces. All bounces, or `bounces` of them; −1: all.
 struct trial_irradiance trial_reference(struct frame_fixture *s, int bounces, int samples);
+// Images of irradiance, of the technique over that of the reference with all bounces. FLIP is that
+// of display values: the reference's mean is 0.3.
+struct trial_error {
+    double energy, flip;
+};
+typedef void (*trial_build)(struct frame_fixture *s, struct gpu *gpu);
+struct trial_error trial_error_of(struct gpu *gpu, trial_build build, const char *gi, int samples);
 // Renders an open fixture: the pixels of this instance and later ones.
 struct trial_irradiance trial_object_irradiance(struct frame_fixture *s, int first);
 // A movable box in a furnace of albedo 0.5 gets the irradiance of the walls, within 1 %.

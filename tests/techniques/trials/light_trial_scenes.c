@@ -151,6 +151,50 @@ void trial_small_patch(struct frame_fixture *s, struct gpu *gpu)
     fixture_look(s, vec3_of(-2.8f, 2.6f, 1.8f), vec3_of(1, 0.8f, -1));
 }
 
+// Rings of quads between the poles.
+static void add_sphere(struct frame_fixture *s, vec3s center, float radius, int material)
+{
+    enum { ROUND = 48, DOWN = 24, VERTICES = (ROUND + 1) * (DOWN + 1) };
+    static vec3s positions[VERTICES], normals[VERTICES];
+    static uint32_t indices[6 * ROUND * DOWN];
+    for (uint32_t i = 0; i < VERTICES; i++) {
+        const float polar = GLM_PIf * (float)(i / (ROUND + 1)) / DOWN;
+        const float azimuth = 2.0f * GLM_PIf * (float)(i % (ROUND + 1)) / ROUND;
+        normals[i] = vec3_of(sinf(polar) * cosf(azimuth), cosf(polar), sinf(polar) * sinf(azimuth));
+        positions[i] = glms_vec3_muladds(normals[i], radius, center);
+    }
+    for (uint32_t q = 0; q < ROUND * DOWN; q++) {
+        const uint32_t a = q / ROUND * (ROUND + 1) + q % ROUND, b = a + ROUND + 1;
+        const uint32_t quad[6] = { a, a + 1, b + 1, a, b + 1, b };
+        for (uint32_t k = 0; k < 6; k++) indices[6 * q + k] = quad[k];
+    }
+    const int mesh = scene_add_mesh(s->scene, &(struct mesh){ .name = "sphere",
+                                                              .vertex_count = VERTICES,
+                                                              .index_count = 6 * ROUND * DOWN,
+                                                              .positions = positions,
+                                                              .normals = normals,
+                                                              .indices = indices,
+                                                              .material = material });
+    assert_true(mesh >= 0);
+    fixture_instance(s, mesh, NULL);
+}
+
+void trial_bright_spot(struct frame_fixture *s, struct gpu *gpu)
+{
+    fixture_init(s, gpu);
+    s->options.shadow_size = 1024;
+    s->width = 96;
+    s->height = 54;
+    const int white = fixture_matte(s, grey(0.7f));
+    const int materials[6] = { white, white, white, white, white, white };
+    add_walls(s, vec3_of(-3, 0, -2), vec3_of(3, 3, 2), materials);
+    add_sphere(s, vec3_of(-1.2f, 0.6f, -0.5f), 0.6f, fixture_matte(s, vec3_of(0.6f, 0.15f, 0.1f)));
+    add_sphere(s, vec3_of(0.4f, 0.45f, 0.3f), 0.45f, fixture_matte(s, vec3_of(0.15f, 0.5f, 0.2f)));
+    add_sphere(s, vec3_of(1.6f, 0.7f, -0.9f), 0.7f, fixture_matte(s, vec3_of(0.5f, 0.5f, 0.8f)));
+    fixture_add_point(s, vec3_of(2.2f, 2.88f, -1.2f), grey(40));
+    fixture_look(s, vec3_of(-2.6f, 1.7f, 1.8f), vec3_of(0.6f, 0.9f, -0.8f));
+}
+
 static int add_strips(struct frame_fixture *s, int count, vec2s size, float spacing, float height,
                       int material)
 {

@@ -28,6 +28,10 @@ void trial_empty_room(struct frame_fixture *s, struct gpu *gpu);
 // A room of 6 × 3 × 4 (albedo 0.7); a spot in the ceiling lights a patch of 0.5 on the floor.
 void trial_small_patch(struct frame_fixture *s, struct gpu *gpu);
 
+// A room of 6 × 3 × 4 (albedo 0.7) with three spheres on its floor, lit by a small bright spot: a
+// point light 12 cm below the ceiling, in a far corner.
+void trial_bright_spot(struct frame_fixture *s, struct gpu *gpu);
+
 // A grey floor of 6 under one mesh of 12 × 12 emissive strips of 0.4 × 0.02 at a height of 2.5.
 void trial_strips(struct frame_fixture *s, struct gpu *gpu);
 

@@ -36,16 +36,31 @@ vec3 light_map_sky_radiance(uint texel, uint texels, light_map_sources sources)
     return sum;
 }
 
-// Irradiance x and vector irradiance yzw of the environment and of emissive surfaces, by colour.
-vec4[3] light_map_area_light(uint texel, uint texels, light_map_sources sources)
+// Irradiance x and vector irradiance yzw, by colour.
+vec4[3] light_map_emitted_light(uint texel, uint texels, light_map_sources sources)
 {
     vec4 light[3];
     for (int c = 0; c < 3; c++)
         light[c] = light_map_texel_part(texel, texels, TEXEL_EMITTED_0 + c) *
                    (sources.emitters * frame.radiance_scale);
+    return light;
+}
+
+vec4[3] light_map_sky_light(uint texel, uint texels, light_map_sources sources)
+{
+    vec4 light[3];
     vec4 sky = light_map_texel_part(texel, texels, TEXEL_SKY_LIGHT);
     vec3 radiance = light_map_sky_radiance(texel, texels, sources);
-    for (int c = 0; c < 3; c++) light[c] += radiance[c] * sky;
+    for (int c = 0; c < 3; c++) light[c] = radiance[c] * sky;
+    return light;
+}
+
+// Both together.
+vec4[3] light_map_area_light(uint texel, uint texels, light_map_sources sources)
+{
+    vec4 light[3] = light_map_emitted_light(texel, texels, sources);
+    vec4 sky[3] = light_map_sky_light(texel, texels, sources);
+    for (int c = 0; c < 3; c++) light[c] += sky[c];
     return light;
 }
 
@@ -55,6 +70,16 @@ vec3 light_map_painted_light(uint texel, light_map_sources sources)
     if (sources.painted == 0u) return vec3(0.0);
     vec3 lux = imageLoad(light_map_paint, light_map_at(texel)).rgb;
     return min(lux * frame.radiance_scale, vec3(HALF_MAX));
+}
+
+// Light of emissive surfaces and of paint along the normal, as light_map_emitted_light.
+vec4[3] light_map_sharp_light(uint texel, uint texels, light_map_sources sources)
+{
+    vec4 light[3] = light_map_emitted_light(texel, texels, sources);
+    vec3 normal = light_map_texel_part(texel, texels, TEXEL_NORMAL).xyz;
+    vec3 painted = light_map_painted_light(texel, sources);
+    for (int c = 0; c < 3; c++) light[c] += painted[c] * vec4(1.0, normal);
+    return light;
 }
 
 #endif

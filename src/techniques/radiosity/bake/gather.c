@@ -1,6 +1,6 @@
 #include "techniques/radiosity/bake/gather.h"
 
-#include "core/rng.h"
+#include "techniques/radiosity/bake/shared_samples.h"
 
 #include <math.h>
 
@@ -53,8 +53,9 @@ static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit
     const struct visit *v = user;
     const float rays = (float)v->scene->options.rays;
     const uint32_t cluster = radiosity_cluster_at(v->scene, hit, at_hit);
-    (void)ray;
-    v->gather->inverse_distance += 1.0f / (fmaxf(hit->distance, LEAST_DISTANCE_M) * rays);
+    const float per_m = 1.0f / (fmaxf(hit->distance, LEAST_DISTANCE_M) * rays);
+    v->gather->nearness =
+        glms_vec4_muladds(vec4_of(ray->direction, 1.0f), per_m, v->gather->nearness);
     if (cluster == CHART_NONE) return;
     struct radiosity_factor *factor = &v->gather->factor[cluster];
     if (factor->weight == 0.0f) v->gather->hit[v->gather->hit_count++] = cluster;
@@ -75,15 +76,18 @@ void radiosity_gather_clear(struct radiosity_gather *gather)
 void radiosity_gather(const struct radiosity_scene *scene, uint32_t texel, vec3s position,
                       uint64_t seed, struct radiosity_gather *gather)
 {
-    const struct chart_triangle *of = chart_triangle_of(&scene->map.charts, texel);
+    const struct charts *charts = &scene->map.charts;
+    const struct chart_texel *place = chart_texel_of(charts, texel);
+    const struct chart_triangle *of = chart_triangle_of(charts, texel);
     const struct trace_mesh *mesh = trace_mesh_of(scene->trace, of->instance);
-    const vec3s normal = chart_texel_normal(&scene->map.charts, texel);
+    const vec3s normal = chart_texel_normal(charts, texel);
     const struct texel_receiver receiver = {
         .position = glms_vec3_muladds(normal, mesh->facets[of->triangle].reach, position),
         .normal = normal,
         .rays = scene->options.rays,
         .light_samples = texel_light_samples(scene->trace, scene->options.rays),
-        .seed = (uint32_t)rng_mix(seed ^ (uint64_t)texel << 32) | 1u,
+        .first = radiosity_shared_part(place->x, place->y) * (uint32_t)scene->options.rays,
+        .seed = (uint32_t)rng_mix(seed ^ radiosity_shared_seed(charts, texel)) | 1u,
     };
     radiosity_gather_clear(gather);
     texel_gather_light(scene->trace, &receiver, add_hit, &(struct visit){ scene, gather },

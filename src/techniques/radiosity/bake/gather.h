@@ -34,7 +34,7 @@ struct radiosity_gather {
     uint32_t *hit;                   // clusters whose factor is not 0, in the order of the rays
     uint32_t hit_count;
     struct texel_lights light;
-    float inverse_distance; // mean over the rays, 1/m
+    vec4s nearness; // mean over the rays of direction/distance; w: of 1/distance, 1/m
 };
 
 // The cluster that a ray meets; CHART_NONE: none.

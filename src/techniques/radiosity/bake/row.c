@@ -93,25 +93,32 @@ static bool refine(struct radiosity_rows *rows, uint32_t node, uint32_t spare, u
     return true;
 }
 
-// The group in a node that stands for it.
-static uint32_t group_of(const struct radiosity_rows *rows, uint32_t node, struct rng *rng)
+// Phases of the nodes of a row are independent of each other.
+static float phase_of(uint32_t node, float phase)
+{
+    const float sum = phase + rng_unit(pcg_hash(node));
+    return sum < 1.0f ? sum : sum - 1.0f;
+}
+
+// The group in a node that stands for it: the one at `phase` of the weights of its groups.
+static uint32_t group_of(const struct radiosity_rows *rows, uint32_t node, float phase)
 {
     const struct radiosity_node *nodes = rows->tree->nodes;
+    float at = phase_of(node, phase) * rows->sum[node].weight;
     while (!rows->is_group[node]) {
         const uint32_t *child = nodes[node].child;
-        const float low = rows->sum[child[0]].weight, high = rows->sum[child[1]].weight;
-        node = child[rng_float(rng) * (low + high) < low ? 0 : 1];
-        // Rounding may choose a child that no ray hit.
-        if (rows->sum[node].weight == 0.0f) node = child[low > 0.0f ? 0 : 1];
+        const float low = rows->sum[child[0]].weight;
+        const bool upper = at >= low && rows->sum[child[1]].weight > 0.0f;
+        node = child[upper ? 1 : 0];
+        if (upper) at -= low;
     }
     return node;
 }
 
 uint32_t radiosity_make_row(struct radiosity_rows *rows, const struct radiosity_gather *gather,
-                            uint32_t most, uint64_t seed, struct radiosity_entry *out)
+                            uint32_t most, float phase, struct radiosity_entry *out)
 {
     uint32_t touched = 0, count = 0, heap = 0;
-    struct rng rng = rng_for((uint32_t)seed, (uint32_t)(seed >> 32), 0);
     for (uint32_t i = 0; i < gather->hit_count; i++)
         touched = add_upwards(rows, gather->hit[i], gather->factor[gather->hit[i]], touched);
     if (touched > 0) push(rows->heap, &heap, entry_of(rows, root_of(rows->tree)));
@@ -120,7 +127,7 @@ uint32_t radiosity_make_row(struct radiosity_rows *rows, const struct radiosity_
         // Entries in the heap stay, in the end.
         const uint32_t spare = most - (count + heap + 1);
         if (refine(rows, entry.node, spare, &heap)) continue;
-        entry.node = group_of(rows, entry.node, &rng);
+        entry.node = group_of(rows, entry.node, phase);
         out[count++] = entry;
     }
     for (uint32_t i = 0; i < touched; i++)

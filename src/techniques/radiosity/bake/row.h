@@ -24,6 +24,7 @@ void radiosity_rows_finish(struct radiosity_rows *rows);
 // Writes at most `most` entries and returns their number: from the root downwards the heaviest node
 // is replaced by its children while there are spare entries. Of a node larger than a group a group
 // in it stands for all, chosen by weight: the sum of the row is exact, and its light is without
-// bias.
+// bias. phase: 0…1, where in the nodes' weights the groups are: neighbours with phases of a
+// low-discrepancy sequence choose groups that complement each other.
 uint32_t radiosity_make_row(struct radiosity_rows *rows, const struct radiosity_gather *gather,
-                            uint32_t most, uint64_t seed, struct radiosity_entry *out);
+                            uint32_t most, float phase, struct radiosity_entry *out);

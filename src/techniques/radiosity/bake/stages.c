@@ -6,6 +6,7 @@
 #include "core/half.h"
 #include "trace/texels/close.h"
 #include "techniques/radiosity/bake/row.h"
+#include "techniques/radiosity/bake/shared_samples.h"
 #include "techniques/radiosity/probes/stage.h"
 
 #include <string.h>
@@ -86,7 +87,7 @@ enum {
     OUT_EMITTED,
     OUT_POINT,
     OUT_PART,
-    OUT_DISTANCE,
+    OUT_NEARNESS,
     OUT_COUNT
 };
 
@@ -108,6 +109,7 @@ static void gather_texel(const struct bake_task *task, struct scratch *scratch, 
     const uint32_t texel = (uint32_t)(first + i);
     struct radiosity_gather *gather = &scratch->gather;
     const struct charts *charts = &job->scene.map.charts;
+    const struct chart_texel *place = chart_texel_of(charts, texel);
     const struct texel_point point = texel_find_point(job->scene.trace, charts, texel);
     memcpy(bake_row(task, OUT_POINT, i), &point, sizeof point);
     *(uint8_t *)bake_row(task, OUT_PART, i) = job->scene.part[texel];
@@ -115,12 +117,12 @@ static void gather_texel(const struct bake_task *task, struct scratch *scratch, 
     radiosity_gather(&job->scene, texel, point.position, task->bake_seed, gather);
     const uint32_t count =
         radiosity_make_row(&scratch->rows, gather, (uint32_t)job->options.sources,
-                           task->bake_seed ^ (uint64_t)texel << 32, scratch->row);
+                           radiosity_shared_phase(place->x, place->y), scratch->row);
     write_row(scratch->row, count, bake_row(task, OUT_SOURCE, i), bake_row(task, OUT_FACTOR, i));
     memcpy(bake_row(task, OUT_SKY, i), &gather->light.sky, sizeof gather->light.sky);
     texel_sky_shares(&gather->light, bake_row(task, OUT_SKY_SHARES, i));
     memcpy(bake_row(task, OUT_EMITTED, i), gather->light.emitted, sizeof gather->light.emitted);
-    *(float *)bake_row(task, OUT_DISTANCE, i) = gather->inverse_distance;
+    memcpy(bake_row(task, OUT_NEARNESS, i), gather->nearness.raw, sizeof gather->nearness.raw);
     const vec4s albedo = texel_reflectance(job->scene.trace, charts, texel, NULL);
     memcpy(bake_row(task, OUT_ALBEDO, i), albedo.raw, sizeof albedo.raw);
 }
@@ -158,7 +160,7 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
         { LIGHT_MAP_EMITTED, TENSOR_F32, 3, { texels, 3, 4 }, BAKE_ROWS, BAKE_SAVED },
         { LIGHT_MAP_POINT, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_PART, TENSOR_U8, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
-        { RADIOSITY_DISTANCE, TENSOR_F32, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_NEARNESS, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
     };
     const size_t tasks = (size_t)((texels + TEXELS_PER_TASK - 1) / TEXELS_PER_TASK);
     return bake_plan_add(
@@ -245,6 +247,12 @@ static void sum_texels(const struct clusters *of, uint32_t cluster, struct radio
     }
 }
 
+static float phase_of(const struct radiosity_map *map, uint32_t cluster)
+{
+    const struct chart_texel *t = chart_texel_of(&map->charts, map->members[map->first[cluster]]);
+    return radiosity_shared_phase(t->x / map->edge, t->y / map->edge);
+}
+
 static void merge_rows(const struct bake_task *task, const struct clusters *of,
                        struct scratch *scratch)
 {
@@ -254,7 +262,7 @@ static void merge_rows(const struct bake_task *task, const struct clusters *of,
         sum_texels(of, (uint32_t)(first + i), &scratch->gather);
         const uint32_t entries =
             radiosity_make_row(&scratch->rows, &scratch->gather, (uint32_t)most,
-                               task->bake_seed ^ (first + i), scratch->row);
+                               phase_of(of->map, (uint32_t)(first + i)), scratch->row);
         uint32_t *source = bake_row(task, 0, i);
         uint16_t *factor = bake_row(task, 1, i);
         for (uint32_t k = 0; k < entries; k++) {

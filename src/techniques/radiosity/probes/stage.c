@@ -189,7 +189,7 @@ bool radiosity_probe_run(const struct bake_task *task, const struct radiosity_sc
         gather_probe(scene, grid, (uint32_t)(first + i), task->bake_seed, scratch->gather, &probe);
         const uint32_t entries =
             radiosity_make_row(scratch->rows, scratch->gather, (uint32_t)most,
-                               task->bake_seed ^ (first + i) << 32, scratch->row);
+                               r2_sequence((uint32_t)(first + i)).x, scratch->row);
         write_row(task, i, scratch->row, entries);
         write_probe(task, i, &probe);
     }
