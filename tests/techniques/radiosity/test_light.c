@@ -199,12 +199,12 @@ TEST_GPU(metal_reflects_uniform_light_whole)
 }
 
 // Radiance that a metal floor reflects to an eye on one side of it; a panel at +x emits light.
-static double seen_from(struct gpu *gpu, float eye, const char *text)
+static double seen_from(struct gpu *gpu, float roughness, float eye, const char *text)
 {
     struct frame_fixture s;
     struct baked_fixture run;
     fixture_init(&s, gpu);
-    fixture_floor(&s, 1, metal(&s, 0.3f));
+    fixture_floor(&s, 1, metal(&s, roughness));
     fixture_quad(&s, vec3_of(2, 0, -3), vec3_of(2, 0, 3), vec3_of(2, 3, 3), vec3_of(2, 3, -3),
                  fixture_emissive(&s, 0, 10));
     fixture_look(&s, vec3_of(eye, 0.8f, 0), vec3_of(0, 0, 0));
@@ -217,9 +217,26 @@ static double seen_from(struct gpu *gpu, float eye, const char *text)
 
 TEST_GPU(metal_reflects_the_side_that_light_comes_from)
 {
-    const double towards = seen_from(gpu, -1, "radiosity:texels=2048");
-    const double away = seen_from(gpu, 1, "radiosity:texels=2048");
+    const double towards = seen_from(gpu, 0.3f, -1, "radiosity:texels=2048");
+    const double away = seen_from(gpu, 0.3f, 1, "radiosity:texels=2048");
     print_message("towards the light %.2f cd/m2, away from it %.2f\n", towards, away);
     CHECK(towards > 3 * away && towards > 1.0 && towards < 10.0 && away >= 0.0);
-    CHECK(seen_from(gpu, -1, "radiosity:texels=2048,specular=false") == 0.0);
+    CHECK(seen_from(gpu, 0.3f, -1, "radiosity:texels=2048,specular=false") == 0.0);
+}
+
+// Two bands have no image of the panel: mirrors have the mean radiance, without a step to lobes.
+TEST_GPU(mirrors_reflect_the_mean_radiance_and_rougher_metal_the_direction)
+{
+    static const float ROUGHNESS[] = { 0.0f, 0.1f, 0.2f, 0.3f };
+    double last = 0;
+    for (int i = 0; i < 4; i++) {
+        const double towards = seen_from(gpu, ROUGHNESS[i], -1, "radiosity:texels=2048");
+        const double away = seen_from(gpu, ROUGHNESS[i], 1, "radiosity:texels=2048");
+        const double contrast = (towards - away) / (towards + away);
+        print_message("roughness %.1f: towards the light %.2f cd/m2, away from it %.2f\n",
+                      (double)ROUGHNESS[i], towards, away);
+        CHECK(i == 0 ? fabs(contrast) < 0.02 : contrast > last);
+        CHECK(towards > 0.1);
+        last = contrast;
+    }
 }

@@ -35,12 +35,20 @@ vec3 light_map_lobe_along(vec3 n, vec3 to_viewer, float alpha)
     return (dot(to_viewer, n) * n - to_viewer) * lobe_lean(alpha);
 }
 
+// Share of the first order in the radiance of a lobe. A mirror has no mean over directions that
+// would hide what two bands lack: there the mean radiance E/π has the lesser error.
+float light_map_first_order_share(float alpha)
+{
+    const float WHOLE_FROM = 0.3; // roughness
+    return smoothstep(0.0, WHOLE_FROM * WHOLE_FROM, alpha);
+}
+
 // Radiance in the mean direction of a specular lobe, L(ω) = E(n)/π + 3/(2π) V·t, with t the part of
 // ω along the surface. Its irradiance is E(n), its vector irradiance along the surface V. Uniform
 // light is exact.
 vec3 light_map_radiance(light_map_light light, vec3 n, vec3 to_viewer, float alpha)
 {
-    vec3 along = light_map_lobe_along(n, to_viewer, alpha);
+    vec3 along = light_map_first_order_share(alpha) * light_map_lobe_along(n, to_viewer, alpha);
     return INV_PI * (light.irradiance + 1.5 * (along * light.vector));
 }
 
