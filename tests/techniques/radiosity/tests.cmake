@@ -2,4 +2,4 @@ ag_technique_tests(radiosity/bake radiosity/damage radiosity/frames radiosity/li
 foreach(name corridor mottle probes)
   ag_test(techniques/radiosity/${name} USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
 endforeach()
-set_tests_properties(techniques.radiosity.corridor PROPERTIES TIMEOUT 900)
+set_tests_properties(techniques.radiosity.corridor techniques.radiosity.mottle PROPERTIES TIMEOUT 900)
