@@ -257,7 +257,7 @@ TEST(no_light_enters_a_closed_box)
     room_init(&room, WITH_HOLLOW_BOX);
     room_trace(&room);
     const struct mrt_delta *of = &room.delta.of[MRT_PROBE];
-    for (int i = 0; i < 8; i++) CHECK(of->closed[i] == (i == 0) && !of->inside[i]);
+    for (int i = 0; i < 8; i++) CHECK((of->open[i] == 0.0f) == (i == 0) && !of->inside[i]);
     for (int f = 0; f < CUBE_FACES; f++) CHECK(of->kept[0][f] == 0.0f);
     room_finish(&room);
 }

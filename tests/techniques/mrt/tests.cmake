@@ -20,7 +20,7 @@ target_link_libraries(ag_test_mrt_runtime PUBLIC ag_test_gpu ag_test_mrt ag_test
 ag_test(techniques/mrt/runtime USES techniques LIBRARIES ag_test_mrt_runtime)
 
 ag_technique_tests(mrt/frame mrt/places mrt/drt_frame)
-foreach(name clutter_charts clutter_names)
+foreach(name clutter_charts clutter_names weighted)
   ag_test(techniques/mrt/${name} USES techniques)
 endforeach()
 ag_test(techniques/mrt/drt_delta USES techniques)

@@ -243,6 +243,16 @@ void trial_panel(struct frame_fixture *s, struct gpu *gpu)
     fixture_look(s, vec3_of(0, 0.3f, 1.9f), vec3_of(0, 3, -0.5f));
 }
 
+void trial_ceiling_light(struct frame_fixture *s, struct gpu *gpu, float gap)
+{
+    fixture_init(s, gpu);
+    const int white = fixture_matte(s, grey(0.7f));
+    const int materials[6] = { white, white, white, white, white, white };
+    add_walls(s, vec3_of(-3, 0, -3), vec3_of(3, 5, 3), materials);
+    fixture_box(s, vec3_of(-1, 4.9f - gap, -1), vec3_of(1, 5 - gap, 1), false, emitter(s, 0));
+    fixture_look(s, vec3_of(2.7f, 3, 2.7f), vec3_of(-2, 0.5f, -2));
+}
+
 void trial_wall_before_slab(struct frame_fixture *s, struct gpu *gpu, float gap)
 {
     fixture_init(s, gpu);

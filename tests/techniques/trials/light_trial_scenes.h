@@ -39,6 +39,10 @@ void trial_strips(struct frame_fixture *s, struct gpu *gpu);
 // the camera looks.
 void trial_panel(struct frame_fixture *s, struct gpu *gpu);
 
+// A room of 6 × 5 × 6 (albedo 0.7) with a black emissive box of 2 × 0.1 × 2, `gap` below the
+// ceiling. The camera sees the floor and the walls.
+void trial_ceiling_light(struct frame_fixture *s, struct gpu *gpu, float gap);
+
 // A room of 4 × 3 × 4 with a point light; its left wall is white, and green in front of it at a
 // distance of `gap`; 0: green alone. The camera sees the floor next to that wall.
 void trial_wall_before_slab(struct frame_fixture *s, struct gpu *gpu, float gap);

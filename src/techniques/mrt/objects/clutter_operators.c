@@ -79,8 +79,9 @@ static void add_shadows(void *user, const struct grid_rows *grid)
     for (size_t r = grid->own; r < grid->own + grid->count; r++)
         for (size_t c = 0; c < at->rows->columns; c++) {
             float *u = &at->rows->at[r * at->rows->stride + c];
-            *u = at->delta->closed[r / values] ? 0.0f
-                                               : *u + at->delta->b.at[r * at->delta->b.stride + c];
+            *u = at->delta->open[r / values] == 0.0f
+                     ? 0.0f
+                     : *u + at->delta->b.at[r * at->delta->b.stride + c];
         }
     inpaint(at, grid, grid->own);
 }
@@ -129,8 +130,12 @@ static bool replace_basis(struct builder *s, int block, const struct mrt_delta_b
     to->basis_of_block[block] = to->basis_count++;
     const bool ok = matrix_f32_copy(to->host, &old->t_db, old->t_db.columns, &basis->t_db) &&
                     copy_light(to->host, old->u, basis->u);
-    if (ok) change_light(s, block, delta, -1, add_shadows, basis->u);
-    return ok;
+    if (!ok || (delta->of[MRT_IRRADIANCE].open &&
+                !mrt_weigh_projection(to->host, &old->l_imp, delta->of[MRT_IRRADIANCE].open,
+                                      &basis->t_db)))
+        return false;
+    change_light(s, block, delta, -1, add_shadows, basis->u);
+    return true;
 }
 
 static bool replace_response(struct builder *s, const struct mrt_delta_block *delta,

@@ -82,11 +82,11 @@ static void trace_point(void *user, size_t i)
     if (mrt_is_stopped(job->cell->rays->stop)) return;
     for (int r = 0; r < job->rays.count; r++) follow(job, i, point, r, &passing, &count);
     job->out->inside[i] = is_inside(count.backs, job->rays.count);
-    job->out->closed[i] = count.rays == job->rays.count;
+    job->out->open[i] = (float)(job->rays.count - count.rays) / (float)job->rays.count;
     for (int f = 0; f < CUBE_FACES; f++)
-        job->out->kept[i][f] = passing.all[f] > 0.0f ? passing.kept[f] / passing.all[f]
-                               : job->out->closed[i] ? 0.0f
-                                                     : 1.0f;
+        job->out->kept[i][f] = passing.all[f] > 0.0f       ? passing.kept[f] / passing.all[f]
+                               : job->out->open[i] == 0.0f ? 0.0f
+                                                           : 1.0f;
 }
 
 static bool trace_measure(struct mrt_delta_block *out, const struct mrt_clutter_cell *cell,
@@ -104,9 +104,9 @@ static bool trace_measure(struct mrt_delta_block *out, const struct mrt_clutter_
     const size_t rows = ok ? points * (size_t)job.rays.values : 0;
     job.touched = host_alloc(host, points, sizeof *job.touched);
     delta->inside = host_alloc(host, points, sizeof *delta->inside);
-    delta->closed = host_alloc(host, points, sizeof *delta->closed);
+    delta->open = host_alloc(host, points, sizeof *delta->open);
     delta->kept = host_alloc(host, points, sizeof *delta->kept);
-    ok = ok && delta->kept && job.touched && delta->inside && delta->closed &&
+    ok = ok && delta->kept && job.touched && delta->inside && delta->open &&
          matrix_f32_init(host, &delta->b, rows, rays->l_imp[cell->index]->columns) &&
          matrix_f32_init(host, &delta->c, rows, (size_t)out->face_count);
     if (ok) parallel_for(points, 4, trace_point, &job);
@@ -156,7 +156,7 @@ void mrt_delta_block_finish(struct mrt_delta_block *delta)
         matrix_f32_finish(delta->host, &delta->of[m].b);
         matrix_f32_finish(delta->host, &delta->of[m].c);
         host_free(delta->host, delta->of[m].inside);
-        host_free(delta->host, delta->of[m].closed);
+        host_free(delta->host, delta->of[m].open);
         host_free(delta->host, delta->of[m].kept);
     }
     if (delta->host) host_free(delta->host, delta->sight);

@@ -27,7 +27,7 @@ struct mrt_delta {
     struct matrix_f32 b;       // points · values × k_b: ΔU_b ≤ 0 for light ≥ 0
     struct matrix_f32 c;       // points · values × faces of the block: ΔU_c
     float (*kept)[CUBE_FACES]; // of each point, by opening: the share of rays that pass
-    bool *closed;              // all rays are blocked: no light of walls and openings arrives
+    float *open;               // of each point: the share of rays that no clutter blocks
     bool *inside;              // most rays meet backs of clutter: the point is inside an object
 };
 

@@ -1,0 +1,33 @@
+// A lit box below a ceiling, which is far brighter behind it than beside it.
+#include "techniques/trials/light_trial.h"
+#include "techniques/trials/light_trial_scenes.h"
+
+#define DICTIONARY                                                                                 \
+    ":texels=16,rays=256,prior_modes=32,modes=32,lightfield_positions=4,lightfield_directions=6,"  \
+    "lightfield_modes=16,response_modes=32,block_probes=2"
+
+// A tenth is what few modes lose. mrt has no shadows of the box in indirect light.
+TEST_GPU(light_between_a_box_and_the_ceiling_stays_there)
+{
+    const struct {
+        const char *gi;
+        double least, most;
+    } cases[] = { { "radiosity:texels=16384", 0.95, 1.05 },
+                  { "mrt" DICTIONARY, 0.8, 1.2 },
+                  { "drt" DICTIONARY, 0.85, 1.15 } };
+    static const float gaps[] = { 0.05f, 0.2f };
+    for (int g = 0; g < 2; g++) {
+        struct frame_fixture s;
+        trial_ceiling_light(&s, gpu, gaps[g]);
+        const struct trial_irradiance expected = trial_reference(&s, -1, 256);
+        fixture_finish(&s);
+        for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+            trial_ceiling_light(&s, gpu, gaps[g]);
+            const double share = trial_technique(&s, cases[i].gi).mean[1] / expected.mean[1];
+            fixture_finish(&s);
+            print_message("%s: box %.2f m below the ceiling: %.3f of the reference's %.3f lux\n",
+                          cases[i].gi, (double)gaps[g], share, expected.mean[1]);
+            CHECK(share >= cases[i].least && share <= cases[i].most);
+        }
+    }
+}
