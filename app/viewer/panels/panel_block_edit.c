@@ -92,9 +92,8 @@ static void edit_opening(struct viewer *v, const struct block *block, int face)
         return;
     }
     ui_tooltip(
-        "A wall, an opening to the outside, or an opening to the block that meets this face. "
-        "Holes, "
-        "such as doors, are those of the map; wall and then the block opens the whole face.");
+        "A wall, an opening to the outside, or an opening to the block that meets this face. Holes "
+        "such as doors are those of the map; wall and then the block opens the whole face.");
     if (now == OPENING_NEIGHBOR) return;
     ui_push(face);
     ui_same_line();

@@ -130,10 +130,14 @@ static void add_box(struct scene *scene, vec3s low, vec3s high)
     CHECK(scene_add_instance(scene, &it) >= 0);
 }
 
-// Two rooms of 4 × 3 × 4 and a wall of 0.1 between them, with a door of `width` and `height`.
-static struct scene *two_rooms(float width, float height)
+// Two rooms of 4 × 3 × 4, less half of the wall between them, which has a door.
+struct door {
+    float width, height, thickness;
+};
+
+static struct scene *two_rooms(struct door door)
 {
-    const float t = 0.1f, w = width / 2, h = t / 2;
+    const float t = 0.1f, w = door.width / 2, h = door.thickness / 2, height = door.height;
     struct scene *scene = scene_create(test_host(), "rooms");
     const struct material material = material_default();
     CHECK(scene_add_material(scene, &material) == 0);
@@ -150,9 +154,9 @@ static struct scene *two_rooms(float width, float height)
 }
 
 // The open share of the wall between the two blocks; 0: not connected, 1: a whole opening.
-static float open_share(float width, float height)
+static float open_share(struct door door)
 {
-    struct scene *scene = two_rooms(width, height);
+    struct scene *scene = two_rooms(door);
     struct scene_pose pose;
     struct mrt_block_map map;
     const vec3s seed = vec3_of(-2, 1.5f, 0);
@@ -165,8 +169,9 @@ static float open_share(float width, float height)
         for (int p = 0; p < MRT_HOLE_PARTS && mrt_block_has_holes(block, f); p++)
             share += block->holes[f].share[p] / MRT_HOLE_PARTS;
     }
-    print_message("door of %g × %g m: %d blocks, %.3f open\n", (double)width, (double)height,
-                  map.count, (double)share);
+    print_message("door of %g × %g m in a wall of %g: %d blocks, %.3f open\n", (double)door.width,
+                  (double)door.height, (double)door.thickness, map.count, (double)share);
+    CHECK(map.count == (share > 0.0f ? 2 : 1));
     mrt_block_map_finish(&map);
     pose_finish(&pose);
     scene_destroy(scene);
@@ -175,8 +180,15 @@ static float open_share(float width, float height)
 
 TEST(a_door_is_a_hole_of_its_size)
 {
-    CHECK_NEAR(open_share(1, 2.1f), 2.1 / 12, 0.01);
-    CHECK_NEAR(open_share(2.4f, 2.2f), 5.28 / 12, 0.01);
-    CHECK(open_share(3, 2.8f) == 1.0f);
-    CHECK(open_share(0.05f, 2) == 0.0f);
+    CHECK_NEAR(open_share((struct door){ 1, 2.1f, 0.1f }), 2.1 / 12, 0.01);
+    CHECK_NEAR(open_share((struct door){ 2.4f, 2.2f, 0.1f }), 5.28 / 12, 0.01);
+    CHECK(open_share((struct door){ 3, 2.8f, 0.1f }) == 1.0f);
+    CHECK(open_share((struct door){ 0.05f, 2, 0.1f }) == 0.0f);
+}
+
+// Its two sides are planes of their own.
+TEST(a_door_in_a_thick_wall_joins_its_rooms)
+{
+    CHECK_NEAR(open_share((struct door){ 1, 2.1f, 0.3f }), 2.1 / 12, 0.01);
+    CHECK_NEAR(open_share((struct door){ 1, 2.1f, 0.6f }), 2.1 / 12, 0.01);
 }

@@ -85,7 +85,8 @@ float probe_facing(vec3 normal, vec3 to)
     return facing * facing + 0.2;
 }
 
-vec3 probe_irradiance(sampler3D volume, int slab, ivec3 cell, float basis[9])
+// Negative where the coefficients ring.
+vec3 probe_sum(sampler3D volume, int slab, ivec3 cell, float basis[9])
 {
     vec4 values;
     vec3 sum = vec3(0.0);
@@ -93,7 +94,12 @@ vec3 probe_irradiance(sampler3D volume, int slab, ivec3 cell, float basis[9])
         if (i % 4 == 0) values = texelFetch(volume, cell + ivec3(0, 0, i / 4 * slab), 0);
         sum[i % 3] += basis[i / 3] * values[i % 4];
     }
-    return max(sum, vec3(0.0));
+    return sum;
+}
+
+vec3 probe_irradiance(sampler3D volume, int slab, ivec3 cell, float basis[9])
+{
+    return max(probe_sum(volume, slab, cell, basis), vec3(0.0));
 }
 
 // Irradiance by direction, at a point of a surface in the world; points beyond the grid are moved
@@ -179,12 +185,7 @@ vec3 probes_seen_irradiance(sampler3D volume, sampler2D depth, frame_probes grid
     for (int k = 0; k < 8; k++) {
         probe_corner corner = probe_corner_of(volume, depth, grid, at, k);
         float weight = corner.linear * (corner.visibility + PROBE_OCCLUDED);
-        vec4 values;
-        for (int i = 0; i < 27; i++) {
-            if (i % 4 == 0)
-                values = texelFetch(volume, corner.cell + ivec3(0, 0, i / 4 * grid.slab), 0);
-            sum[i % 3] += weight * basis[i / 3] * values[i % 4];
-        }
+        sum += weight * probe_sum(volume, grid.slab, corner.cell, basis);
         weights += weight;
     }
     return max(sum / weights, vec3(0.0));

@@ -111,24 +111,14 @@ bool mrt_project_add(struct host *host, const struct matrix_f32 *basis,
     return matrix_f32_multiply(host, 1.0f, &a, TRANSPOSED, &b, NOT_TRANSPOSED, 1.0f, sum);
 }
 
-void mrt_project_finish(const double *sigma, struct matrix_f32 *sum)
+void mrt_project_finish(const struct matrix_f32 *product, const struct matrix_f32 *sigma,
+                        size_t first, size_t width, size_t count, float *to)
 {
-    for (size_t r = 0; r < sum->rows; r++)
-        for (size_t c = 0; c < sum->columns; c++)
-            sum->at[r * sum->stride + c] =
-                sigma[r] > 0.0
-                    ? (float)((double)sum->at[r * sum->stride + c] / (sigma[r] * sigma[r]))
-                    : 0.0f;
-}
-
-void mrt_project_stack(const struct matrix_f32 *product, const double *sigma, size_t first,
-                       size_t width, size_t count, float *to)
-{
-    for (size_t i = 0; i < count; i++) {
-        struct matrix_f32 out = { to + i * product->rows * width, product->rows, width, width };
-        for (size_t r = 0; r < out.rows; r++)
-            memcpy(out.at + r * width, product->at + r * product->stride + first + i * width,
-                   width * sizeof *to);
-        mrt_project_finish(sigma, &out);
-    }
+    for (size_t i = 0; i < count; i++)
+        for (size_t r = 0; r < product->rows; r++) {
+            const double s = (double)sigma->at[r];
+            const float *from = product->at + r * product->stride + first + i * width;
+            for (size_t c = 0; c < width; c++)
+                *to++ = s > 0.0 ? (float)((double)from[c] / (s * s)) : 0.0f;
+        }
 }

@@ -36,7 +36,7 @@ bool mrt_span_apply(struct host *host, const struct mrt_span *span, size_t first
 bool mrt_project_add(struct host *host, const struct matrix_f32 *basis,
                      const struct matrix_f32 *lightfields, size_t first_row, size_t rows,
                      struct matrix_f32 *sum);
-void mrt_project_finish(const double *sigma, struct matrix_f32 *sum);
-// The same of `count` times `width` columns of a product, stored as matrices behind each other.
-void mrt_project_stack(const struct matrix_f32 *product, const double *sigma, size_t first,
-                       size_t width, size_t count, float *to);
+// `sigma` is one row; `count` times `width` columns of the product, from `first` on, are stored as
+// matrices behind each other.
+void mrt_project_finish(const struct matrix_f32 *product, const struct matrix_f32 *sigma,
+                        size_t first, size_t width, size_t count, float *to);

@@ -107,24 +107,20 @@ static bool run_operators(const struct bake_task *task)
 {
     const struct mrt_bake_job *job = task->job;
     const struct mrt_last_basis *last = task->argument;
-    struct matrix_f32 walls, parts, narrow;
+    struct matrix_f32 walls, parts, sigma;
     if (!mrt_bake_input(task, "interface/product/walls", &walls) ||
         !mrt_bake_input(task, "interface/product/holes", &parts) ||
-        !mrt_bake_input(task, last->sigma, &narrow))
+        !mrt_bake_input(task, last->sigma, &sigma))
         return false;
-    double *sigma = host_alloc(task->host, narrow.columns, sizeof *sigma);
-    if (!sigma) return false;
-    for (size_t i = 0; i < narrow.columns; i++) sigma[i] = (double)narrow.at[i];
-    mrt_project_stack(&parts, sigma, 0, (size_t)job->k_l, MRT_HOLE_PARTS, task->out[0]);
+    mrt_project_finish(&parts, &sigma, 0, (size_t)job->k_l, MRT_HOLE_PARTS, task->out[0]);
     int output = 1;
     size_t first = 0;
     for (int i = 0; i < job->shapes; i++) {
         const size_t count = walls_of(job, i);
         if (count == 0) continue;
-        mrt_project_stack(&walls, sigma, first, (size_t)job->k_b, count, task->out[output++]);
+        mrt_project_finish(&walls, &sigma, first, (size_t)job->k_b, count, task->out[output++]);
         first += count * (size_t)job->k_b;
     }
-    host_free(task->host, sigma);
     return true;
 }
 

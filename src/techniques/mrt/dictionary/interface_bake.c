@@ -317,25 +317,21 @@ static bool run_operators(const struct bake_task *task)
 {
     const struct mrt_bake_job *job = task->job;
     const struct round_names *names = task->argument;
-    struct matrix_f32 b, turn, narrow;
+    struct matrix_f32 b, turn, sigma;
     if (!mrt_bake_input(task, "interface/product/b", &b) ||
         !mrt_bake_input(task, "interface/product/turn", &turn) ||
-        !mrt_bake_input(task, names->sigma, &narrow))
+        !mrt_bake_input(task, names->sigma, &sigma))
         return false;
-    double *sigma = host_alloc(task->host, narrow.columns, sizeof *sigma);
-    if (!sigma) return false;
-    for (size_t i = 0; i < narrow.columns; i++) sigma[i] = (double)narrow.at[i];
-    mrt_project_stack(&turn, sigma, 0, (size_t)job->k_l, (size_t)job->turns, task->out[0]);
+    mrt_project_finish(&turn, &sigma, 0, (size_t)job->k_l, (size_t)job->turns, task->out[0]);
     int output = 1;
     size_t first = 0;
     for (int i = 0; i < job->shapes; i++) {
         const struct mrt_shape shape = mrt_bake_shape(job, i);
         const size_t openings = (size_t)mrt_shape_openings(&shape);
         if (openings == 0) continue;
-        mrt_project_stack(&b, sigma, first, (size_t)job->k_b, openings, task->out[output++]);
+        mrt_project_finish(&b, &sigma, first, (size_t)job->k_b, openings, task->out[output++]);
         first += openings * (size_t)job->k_b;
     }
-    host_free(task->host, sigma);
     return true;
 }
 

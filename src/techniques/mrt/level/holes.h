@@ -6,7 +6,7 @@
 // From this share of a face on, it is an opening; below it, it is a wall with holes. With less of
 // it, holes are cracks.
 #define MRT_LEAST_OPENING 0.5f
-#define MRT_LEAST_HOLE    0.02f
+#define MRT_LEAST_HOLE    0.05f
 
 // Whether a surface is between `from` and `from + way`, in the scene.
 typedef bool (*mrt_is_blocked)(const void *scene, vec3s from, vec3s way);

@@ -103,6 +103,32 @@ static bool gather_links(struct mrt_level *level, const struct mrt_sent *sent)
     return ok;
 }
 
+// Σ share · R_hole of each wall with holes.
+static bool add_holes(struct mrt_level *level)
+{
+    const struct matrix_f32 *parts = level->dictionary->r_hole;
+    const size_t faces = CUBE_FACES * (size_t)level->map->count;
+    level->holes = host_alloc(level->host, faces, sizeof *level->holes);
+    for (size_t f = 0; level->holes && f < faces; f++) {
+        const struct mrt_block *block = &level->map->blocks[f / CUBE_FACES];
+        struct matrix_f32 *sum = &level->holes[f];
+        if (!mrt_block_has_holes(block, (int)(f % CUBE_FACES))) continue;
+        if (!matrix_f32_init(level->host, sum, parts[0].rows, parts[0].columns)) return false;
+        for (int p = 0; p < MRT_HOLE_PARTS; p++)
+            for (size_t i = 0; i < sum->rows * sum->columns; i++)
+                sum->at[i] += block->holes[f % CUBE_FACES].share[p] * parts[p].at[i];
+    }
+    return level->holes;
+}
+
+static void finish_holes(struct mrt_level *level)
+{
+    for (int f = 0; level->holes && f < CUBE_FACES * level->map->count; f++)
+        matrix_f32_finish(level->host, &level->holes[f]);
+    host_free(level->host, level->holes);
+    level->holes = NULL;
+}
+
 static bool propagate(struct mrt_level *level, int max_depth)
 {
     size_t blocks = (size_t)level->map->count;
@@ -152,7 +178,8 @@ bool mrt_level_init(struct host *host, const struct mrt_block_map *map,
     if (ok) list_entries(level);
     if (ok && options->retrace && level->maze != MRT_TUNNEL)
         ok = mrt_retraces_init(host, map, level->place, dictionary, &level->retraces);
-    ok = ok && propagate(level, options->max_depth);
+    ok = ok && add_holes(level) && propagate(level, options->max_depth);
+    finish_holes(level);
     if (!ok) mrt_level_finish(level);
     return ok;
 }

@@ -37,10 +37,11 @@ struct mrt_level {
     int *first_texel;             // [blocks + 1], of the level
     struct mrt_entry *entries;    // in the order of blocks, then faces
     int entry_count;
-    int *entry_of_face;     // [CUBE_FACES · block + face], −1: none
-    int *first_link;        // [entry_count + 1]
-    struct mrt_link *links; // of each entry in the order of sources
-    int link_stride;        // k_r, rounded up to MRT_LANES; the rest is 0
+    int *entry_of_face;       // [CUBE_FACES · block + face], −1: none
+    int *first_link;          // [entry_count + 1]
+    struct mrt_link *links;   // of each entry in the order of sources
+    struct matrix_f32 *holes; // [CUBE_FACES · block + face] what holes pass, while links are made
+    int link_stride;          // k_r, rounded up to MRT_LANES; the rest is 0
     float *matrices;
 };
 

@@ -250,6 +250,7 @@ bool mrt_map_auto(struct host *host, const struct scene_pose *pose, const vec3s 
         mrt_cells_find_planes(&cells);
         ok = fill(host, pose, seeds, seed_count, &cells);
     }
+    if (ok && mrt_cells_join_walls(&cells)) ok = fill(host, pose, seeds, seed_count, &cells);
     if (ok) {
         mrt_cells_snap(&cells);
         mrt_cells_drop_planes(&cells, INFINITY);

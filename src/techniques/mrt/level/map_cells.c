@@ -9,11 +9,9 @@
 #include <math.h>
 
 enum { SAMPLES = 8, DIRECTIONS = 128 }; // along each edge of a face; around a point
-// Least part of a wall with holes that no surface covers, of few rays: doors have more.
-static const float HOLE = 0.05f;
-static const float OUTSIDE = 0.4f; // least part of all directions without a surface
-static const float ALIGNED = 0.9f; // cosine between a wall's normal and the axis
-static const float REACH = 0.25f;  // of a cell: surfaces this near to a face belong to it
+static const float OUTSIDE = 0.4f;      // least part of all directions without a surface
+static const float ALIGNED = 0.9f;      // cosine between a wall's normal and the axis
+static const float REACH = 0.25f;       // of a cell: surfaces this near to a face belong to it
 
 void mrt_cell_place(const struct mrt_cells *cells, int i, int at[3])
 {
@@ -81,7 +79,7 @@ static void find_openings(struct mrt_cells *cells)
             if (share >= MRT_LEAST_OPENING) {
                 cells->cell[i].open |= 1u << face;
                 if (inside) mrt_cell_at(cells, beyond)->open |= 1u << cube_opposite(face);
-            } else if (inside && share >= HOLE) {
+            } else if (inside && share >= MRT_LEAST_HOLE) {
                 cells->cell[i].hole |= 1u << face;
                 mrt_cell_at(cells, beyond)->hole |= 1u << cube_opposite(face);
             }

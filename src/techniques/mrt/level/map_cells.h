@@ -30,6 +30,10 @@ bool mrt_cells_fill(struct host *host, struct mrt_cells *cells, const vec3s *see
 // Moves the planes to the walls, as seen from the free cells on either side.
 void mrt_cells_snap(struct mrt_cells *cells);
 
+// Makes one plane of the two sides of a thick wall, whose cells light enters by holes alone, if at
+// all. The cells must be filled again where it returns true.
+bool mrt_cells_join_walls(struct mrt_cells *cells);
+
 // Removes planes that separate nothing, while edges of free cells stay below this ratio.
 void mrt_cells_drop_planes(struct mrt_cells *cells, float max_aspect);
 

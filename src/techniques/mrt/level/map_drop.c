@@ -66,6 +66,38 @@ void mrt_cells_drop_planes(struct mrt_cells *cells, float max_aspect)
             if (!separates(cells, axis, p, max_aspect)) drop(cells, axis, p);
 }
 
+// ---- thick walls
+
+// Greatest thickness, of the cells on either side.
+static const float THICK = 0.2f;
+
+static bool is_wall(const struct mrt_cells *cells, int axis, int plane)
+{
+    const float *at = cells->plane[axis] + plane;
+    if (at[1] - at[0] > THICK * fminf(at[0] - at[-1], at[2] - at[1])) return false;
+    for (int i = 0; i < mrt_cells_count(cells); i++) {
+        int place[3];
+        mrt_cell_place(cells, i, place);
+        if (place[axis] != plane || !cells->cell[i].free) continue;
+        if (cells->cell[i].open >> 2 * axis & 3u) return false;
+    }
+    return true;
+}
+
+bool mrt_cells_join_walls(struct mrt_cells *cells)
+{
+    bool any = false;
+    for (int axis = 0; axis < 3; axis++)
+        for (int p = cells->planes[axis] - 3; p > 0; p--) {
+            if (!is_wall(cells, axis, p)) continue;
+            const float middle = 0.5f * (cells->plane[axis][p] + cells->plane[axis][p + 1]);
+            drop(cells, axis, p + 1);
+            cells->plane[axis][p] = middle;
+            any = true;
+        }
+    return any;
+}
+
 // ---- long cells
 
 // Pieces of the cells between two planes: their length over the mean width, weighted by volume.

@@ -42,17 +42,24 @@ static bool multiply(struct host *host, const struct matrix_f32 *a, const struct
            matrix_f32_multiply(host, 1.0f, a, NOT_TRANSPOSED, b, NOT_TRANSPOSED, 0.0f, out);
 }
 
+// Replaces `light` by operator · light.
+static bool apply(const struct traversal *t, const struct matrix_f32 *operator,
+                  struct matrix_f32 * light)
+{
+    struct matrix_f32 applied = { 0 };
+    const bool ok = multiply(t->host, operator, light, &applied);
+    matrix_f32_finish(t->host, light);
+    *light = applied;
+    return ok;
+}
+
 // Turns the frame of an interface: replaces `light`.
 static bool roll(const struct traversal *t, int rolls, struct matrix_f32 *light)
 {
-    for (int i = 0; i < rolls; i++) {
-        struct matrix_f32 rotated = { 0 };
-        bool ok = multiply(t->host, &t->level->dictionary->r_turn[MRT_ROLL], light, &rotated);
-        matrix_f32_finish(t->host, light);
-        *light = rotated;
-        if (!ok) return false;
-    }
-    return true;
+    bool ok = true;
+    for (int i = 0; ok && i < rolls; i++)
+        ok = apply(t, &t->level->dictionary->r_turn[MRT_ROLL], light);
+    return ok;
 }
 
 static bool append(struct host *host, struct waves *waves, const struct wave *wave)
@@ -84,23 +91,6 @@ static bool add_wave(struct traversal *t, struct wave *wave)
     return false;
 }
 
-// Through holes: replaces `light` by what they let pass, in the frame of the face.
-static bool pass_holes(const struct traversal *t, const struct mrt_holes *holes,
-                       struct matrix_f32 *light)
-{
-    const struct matrix_f32 *parts = t->level->dictionary->r_hole;
-    struct matrix_f32 sum = { 0 }, passed = { 0 };
-    bool ok = matrix_f32_init(t->host, &sum, parts[0].rows, parts[0].columns);
-    for (int p = 0; ok && p < MRT_HOLE_PARTS; p++)
-        for (size_t i = 0; i < sum.rows * sum.columns && holes->share[p] > 0.0f; i++)
-            sum.at[i] += holes->share[p] * parts[p].at[i];
-    ok = ok && multiply(t->host, &sum, light, &passed);
-    matrix_f32_finish(t->host, &sum);
-    matrix_f32_finish(t->host, light);
-    *light = passed;
-    return ok;
-}
-
 // Light that has left a block by a face, in that face's frame, enters the neighbour.
 static bool enter(struct traversal *t, int block, int face, unsigned taken,
                   struct matrix_f32 *light)
@@ -110,7 +100,8 @@ static bool enter(struct traversal *t, int block, int face, unsigned taken,
     struct wave wave = { .entry = t->level->entry_of_face[CUBE_FACES * to->block + to->face] };
     for (int f = 0; f < CUBE_FACES; f++)
         if (taken >> f & 1u) wave.taken |= 1u << mrt_neighbor_direction(from, face, f);
-    bool ok = !mrt_block_has_holes(from, face) || pass_holes(t, &from->holes[face], light);
+    bool ok = !mrt_block_has_holes(from, face) ||
+              apply(t, &t->level->holes[CUBE_FACES * block + face], light);
     ok = ok && roll(t, to->rolls, light);
     wave.light = *light;
     *light = (struct matrix_f32){ 0 };

@@ -6,6 +6,8 @@
 #include "techniques/mrt/level/holes.h"
 #include "techniques/mrt/level/wall.h"
 
+#include <string.h>
+
 static bool is_blocked(const void *walls, vec3s from, vec3s way)
 {
     struct trace_hit hit;
@@ -16,6 +18,12 @@ static bool can_open(const struct mrt_block *block, int face, bool vertical)
 {
     return !mrt_block_is_tube(block) && !mrt_block_is_open(block, face) &&
            mrt_block_walls(block) > 1 && (vertical || face / 2 != 1);
+}
+
+static bool has_holes(const struct mrt_block *block, int face, const struct mrt_holes *holes)
+{
+    return mrt_block_has_holes(block, face) &&
+           memcmp(&block->holes[face], holes, sizeof *holes) == 0;
 }
 
 static bool open_face(struct mrt_block_map *map, const struct trace_scene *walls, int block,
@@ -29,6 +37,7 @@ static bool open_face(struct mrt_block_map *map, const struct trace_scene *walls
         struct mrt_holes holes;
         const float share = mrt_find_holes(a, face, is_blocked, walls, &holes);
         if (share < MRT_LEAST_HOLE) continue;
+        if (share < MRT_LEAST_OPENING && has_holes(a, face, &holes)) return true;
         mrt_disconnect(map, block, face);
         if (share >= MRT_LEAST_OPENING
                 ? !mrt_connect("auto", map, block, face, other, meeting)
