@@ -75,7 +75,7 @@ struct mrt_gpu_probe {
     float sky[9];
 };
 
-// The same at a point of the outdoor grid, premultiplied by `open` (level/area_light.h).
+// The same at a point of the outdoor grid, premultiplied by `open` (light/area_light.h).
 struct mrt_gpu_outdoor_probe {
     AG_STRUCT(mrt_gpu_probe) light;
     float open;

@@ -6,7 +6,7 @@
 
 #include "techniques/common/light_map/surface.h"
 #include "techniques/mrt/objects/clutter.h"
-#include "techniques/mrt/level/area_light.h"
+#include "techniques/mrt/light/area_light.h"
 #include "techniques/mrt/level/operators.h"
 #include "techniques/mrt/level/published.h"
 #include "techniques/mrt/mrt_shared.h"

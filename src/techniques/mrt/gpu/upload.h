@@ -83,7 +83,7 @@ bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inp
 bool mrt_probes_make_empty(struct mrt_runtime *runtime);
 // MRT_CONSTANT_SIGHT.
 uint32_t mrt_sight_voxels(const struct mrt_operators *operators);
-// The grid of outdoor probes (level/area_light.h).
+// The grid of outdoor probes (light/area_light.h).
 bool mrt_outdoors_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
 // All operators as the shaders read them (operators.glsl): rows of four numbers at a time, half
 // floats or floats.

@@ -7,12 +7,6 @@
 
 enum { MRT_PROBE_VALUES = 9 }; // SH coefficients of irradiance by normal
 
-// Direct light of area lights at a probe, world frame.
-struct mrt_area_light_probe {
-    vec3s emitted[MRT_PROBE_VALUES]; // of emissive surfaces, lux
-    float sky[MRT_PROBE_VALUES];     // of a sky of radiance 1/π
-};
-
 static inline int mrt_probes_of_block(int p)
 {
     return p * p * p;
@@ -29,10 +23,3 @@ vec3s mrt_probe_position(const struct mrt_block *block, int p, int i); // world
 mat3s mrt_block_rotation(const struct mrt_block *block);
 // The probe of the level at texel i of a block's brick. Beyond a wall: the nearest of the block.
 int mrt_probe_of_brick_texel(const struct mrt_block_map *map, int p, int block, int i);
-
-struct trace_scene;
-// Direct light of area lights at all probes. A probe inside a solid has that of the nearest probe
-// of its block outside.
-struct mrt_area_light_probe *mrt_area_light_probes_create(struct host *host,
-                                                          const struct mrt_block_map *map, int p,
-                                                          const struct trace_scene *scene);

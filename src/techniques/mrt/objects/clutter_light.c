@@ -1,7 +1,7 @@
 // Clutter's texels as a geometry image.
 #include "techniques/mrt/objects/clutter.h"
 
-#include "techniques/mrt/level/area_light.h"
+#include "techniques/mrt/light/area_light.h"
 #include "trace/texels/texels.h"
 
 static struct mrt_geometry_texel look_at(const struct trace_scene *objects,

@@ -9,6 +9,12 @@
 
 // ---- area_light_points.c: by uniform rays and samples of the emitters
 
+// Direct light of area lights at a probe, world frame.
+struct mrt_area_light_probe {
+    vec3s emitted[MRT_PROBE_VALUES]; // of emissive surfaces, lux
+    float sky[MRT_PROBE_VALUES];     // of a sky of radiance 1/π
+};
+
 struct mrt_lit_point {
     vec3s position;                    // world
     struct mrt_area_light_probe light; // result, 0 before
@@ -18,6 +24,12 @@ struct mrt_lit_point {
 // rays: a power of two. false: out of memory.
 bool mrt_area_light_points(struct host *host, const struct trace_scene *scene, int rays,
                            struct mrt_lit_point *points, size_t count);
+
+// Direct light of area lights at all probes. A probe inside a solid has that of the nearest probe
+// of its block outside.
+struct mrt_area_light_probe *mrt_area_light_probes_create(struct host *host,
+                                                          const struct mrt_block_map *map, int p,
+                                                          const struct trace_scene *scene);
 
 // ---- area_light_outdoors.c: probes outside of all blocks, on a grid over the scene, for surfaces
 // that belong to no room

@@ -1,5 +1,5 @@
 // Probes outside of all blocks.
-#include "techniques/mrt/level/area_light.h"
+#include "techniques/mrt/light/area_light.h"
 
 #include <math.h>
 

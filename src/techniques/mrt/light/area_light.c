@@ -1,5 +1,5 @@
 // Irradiance of emissive surfaces and of the sky at texels.
-#include "techniques/mrt/level/area_light.h"
+#include "techniques/mrt/light/area_light.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"

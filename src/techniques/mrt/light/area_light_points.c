@@ -1,5 +1,5 @@
 // Light of emitters and the sky at points: any, and the probes of blocks.
-#include "techniques/mrt/level/area_light.h"
+#include "techniques/mrt/light/area_light.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"
