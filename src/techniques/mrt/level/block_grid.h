@@ -1,0 +1,27 @@
+// A grid over all blocks; each cell lists the blocks whose bounds, with a margin, touch it.
+#pragma once
+
+#include "techniques/mrt/level/block_map.h"
+
+struct mrt_block_list {
+    uint32_t first, count; // of the candidates
+};
+
+struct mrt_block_grid {
+    struct host *host;
+    vec3s origin_m;
+    float cell_m;
+    int cells[3];
+    struct mrt_block_list *lists; // [z][y][x]
+    uint32_t *candidates;         // the block nearest to a cell's middle is the first of its list
+    size_t candidate_count;
+};
+
+// cells: along the longest side. margin: of a block's bounds on each side, in its own size.
+// false: out of memory.
+bool mrt_block_grid_init(struct host *host, const struct mrt_block_map *map, float margin,
+                         int cells, struct mrt_block_grid *out);
+void mrt_block_grid_finish(struct mrt_block_grid *grid); // accepts zero
+
+// An empty list outside of the grid.
+struct mrt_block_list mrt_blocks_near(const struct mrt_block_grid *grid, vec3s point);
