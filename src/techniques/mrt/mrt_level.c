@@ -118,10 +118,13 @@ static bool find_clutter_and_open(struct mrt *mrt, const struct scene_pose *pose
     return find_clutter(&mrt->parts, mrt, pose);
 }
 
-static bool light_clutter(struct mrt_parts *out, const struct scene_pose *pose)
+static bool light_clutter(struct mrt_parts *out, const struct mrt *mrt,
+                          const struct scene_pose *pose)
 {
+    if (!mrt_reflectors_init(out->host, &mrt->map, &out->reflectors)) return false;
     if (out->clutter.triangles == 0) return true;
-    out->clutter_texels = mrt_clutter_light_create(out->host, pose, &out->clutter);
+    out->clutter_texels =
+        mrt_clutter_light_create(out->host, pose, &out->clutter, &out->reflectors);
     return out->clutter_texels;
 }
 
@@ -162,7 +165,7 @@ static bool make_images(struct mrt_parts *out, const struct mrt *mrt, const stru
     if (mrt->delta) out->walls = hash_of_walls(walls);
     const bool same = last && hash128_same(last->walls, out->walls);
     return (!mrt->delta || note_walls(out, walls)) &&
-           mrt_scene_images_init(out->host, pose, walls, &mrt->map, &mrt->atlas, probes,
+           mrt_scene_images_init(&out->reflectors, pose, walls, &mrt->atlas, probes,
                                  same ? last->images.geometry : NULL, &out->images);
 }
 
@@ -170,21 +173,22 @@ bool mrt_parts_init(struct mrt_parts *out, struct host *host, const struct mrt *
                     const struct scene_pose *pose, const struct mrt_parts *last)
 {
     *out = (struct mrt_parts){ .host = host };
-    return find_clutter(out, mrt, pose) && light_clutter(out, pose) &&
+    return find_clutter(out, mrt, pose) && light_clutter(out, mrt, pose) &&
            make_images(out, mrt, pose, last);
 }
 
-void mrt_parts_end_clutter(struct mrt_parts *parts)
+void mrt_parts_end_inputs(struct mrt_parts *parts)
 {
     host_free(parts->host, parts->clutter_texels);
     parts->clutter_texels = NULL;
     mrt_clutter_finish(&parts->clutter);
+    mrt_reflectors_finish(&parts->reflectors);
 }
 
 void mrt_parts_finish(struct mrt_parts *parts)
 {
     if (!parts->host) return;
-    mrt_parts_end_clutter(parts);
+    mrt_parts_end_inputs(parts);
     mrt_scene_images_finish(&parts->images);
     host_free(parts->host, parts->has_walls);
     *parts = (struct mrt_parts){ 0 };
@@ -228,7 +232,7 @@ bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
     const int resolution = mrt_face_texels((enum mrt_maze)mrt->options.maze, mrt->options.texels);
     return mrt->map.count == 0 ||
            (mrt_atlas_init(mrt->host, &mrt->map, resolution, &mrt->atlas) &&
-            light_clutter(&mrt->parts, pose) && make_images(&mrt->parts, mrt, pose, NULL) &&
+            light_clutter(&mrt->parts, mrt, pose) && make_images(&mrt->parts, mrt, pose, NULL) &&
             (!mrt->options.probes || mrt_published_init(&mrt->published, mrt->host, pose, &mrt->map,
                                                         mrt->options.block_probes)));
 }
@@ -270,6 +274,7 @@ bool mrt_make_runtime(const struct mrt *mrt, struct host *host, const struct mrt
     const struct mrt_runtime_input input = { .map = &mrt->map,
                                              .atlas = &mrt->atlas,
                                              .images = &parts->images,
+                                             .reflectors = &parts->reflectors,
                                              .operators = &operators,
                                              .clutter = &parts->clutter,
                                              .clutter_texels = parts->clutter_texels,
@@ -294,7 +299,7 @@ static bool start_runtime(struct mrt *mrt)
 {
     const struct mrt_build how = { .cache = &mrt->update.cache };
     const bool ok = mrt_make_runtime(mrt, mrt->host, &mrt->parts, &how, &mrt->runtime);
-    mrt_parts_end_clutter(&mrt->parts);
+    mrt_parts_end_inputs(&mrt->parts);
     return ok;
 }
 

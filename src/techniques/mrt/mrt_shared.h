@@ -25,6 +25,16 @@
 #define MRT_CONSTANT_OUTDOORS 9 // bool: some places are not enclosed
 #define MRT_MAX_QUADS         16
 
+// Shares of reflectors: those of light that surfaces in no block send (light/reflectors.h).
+struct mrt_gpu_reflector_row {
+    uint32_t first, count;
+};
+
+struct mrt_gpu_reflector_share {
+    uint32_t reflector, direction; // towards it: octahedral, two snorm values
+    float weight;                  // of its radiosity
+};
+
 // A texel of the geometry image: the point of the scene where direct light is computed.
 struct mrt_texel {
     vec3s position; // world
@@ -34,6 +44,7 @@ struct mrt_texel {
     vec3s reflectance;
     float sky;     // irradiance of a sky of radiance 1/π
     vec3s emitted; // irradiance of emissive surfaces, lux
+    AG_STRUCT(mrt_gpu_reflector_row) reflected;
 };
 
 // A wall of a block: `texels` texels from first_texel.
@@ -73,6 +84,7 @@ struct mrt_gpu_opening {
 struct mrt_gpu_probe {
     vec3s emitted[9];
     float sky[9];
+    AG_STRUCT(mrt_gpu_reflector_row) reflected;
 };
 
 // The same at a point of the outdoor grid, premultiplied by `open` (light/area_light.h).
@@ -141,6 +153,7 @@ struct mrt_level_params {
     float gain;            // artistic factor on the result
     uint32_t probes;       // along an edge of a block
     uint32_t brick_columns;
+    uint32_t reflectors;
     AG_STRUCT(frame_probes) outdoors; // no probes: all places are enclosed
 };
 
@@ -158,11 +171,13 @@ struct mrt_view_push {
 #define MRT_VIEW_DIRECT 1
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct mrt_texel) == 60, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_reflector_row) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_reflector_share) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_texel) == 68, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_tile) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_block) == 220, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_gpu_probe) == 144, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_gpu_outdoor_probe) == 148, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_probe) == 152, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_outdoor_probe) == 156, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_opening) == 28, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_face) == 40, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_group) == 8, "layout is shared with GLSL");
@@ -171,7 +186,7 @@ _Static_assert(sizeof(struct mrt_gpu_clutter_sample) == 8, "layout is shared wit
 _Static_assert(sizeof(struct mrt_apply_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_clutter_fill_push) == 116, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_level_params) == 116, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_level_params) == 120, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_view_push) == 4, "layout is shared with GLSL");
 #endif
 

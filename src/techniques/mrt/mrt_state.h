@@ -6,6 +6,7 @@
 #include "techniques/mrt/objects/clutter.h"
 #include "techniques/mrt/objects/delta_cache.h"
 #include "techniques/mrt/level/solver.h"
+#include "techniques/mrt/light/reflectors.h"
 #include "techniques/mrt/mrt_host_solver.h"
 #include "techniques/mrt/mrt_update.h"
 #include "techniques/mrt/gpu/runtime.h"
@@ -32,6 +33,7 @@ struct mrt_parts {
     struct host *host;
     struct mrt_clutter clutter; // drt; until the operators are made, as its texels
     struct mrt_geometry_texel *clutter_texels;
+    struct mrt_reflectors reflectors; // until the operators are made
     struct mrt_scene_images images;
     struct hash128 walls; // of the surfaces that images.geometry was traced from
     bool *has_walls;      // [instance_count]: of instances, surfaces that are no clutter
@@ -81,7 +83,7 @@ void mrt_parts_finish(struct mrt_parts *parts);
 // Moves images and walls, of parts without clutter.
 void mrt_parts_replace(struct mrt_parts *to, struct mrt_parts *from);
 // Frees the inputs of operators. Images and walls stay.
-void mrt_parts_end_clutter(struct mrt_parts *parts);
+void mrt_parts_end_inputs(struct mrt_parts *parts);
 
 struct mrt_build {
     struct mrt_delta_cache *cache; // drt

@@ -31,7 +31,7 @@ static bool make(struct mrt *mrt)
     const bool ok = mrt_parts_init(u->parts, &u->host, mrt, &u->snapshot.pose, &mrt->parts) &&
                     !mrt_is_stopped(&u->stop) &&
                     mrt_make_runtime(mrt, &u->host, u->parts, &how, &u->next);
-    mrt_parts_end_clutter(u->parts);
+    mrt_parts_end_inputs(u->parts);
     return ok;
 }
 

@@ -8,7 +8,7 @@ set_tests_properties(techniques.mrt.bake_file PROPERTIES LABELS "techniques;bake
 
 add_library(ag_test_mrt_map STATIC techniques/mrt/atlas_twin.c techniques/mrt/mrt_map_fixture.c techniques/mrt/mrt_operators_fixture.c)
 target_link_libraries(ag_test_mrt_map PUBLIC ag_test_framework ag_techniques PRIVATE afterglow_flags m)
-foreach(name atlas blocks geometry holes level maps options solver)
+foreach(name atlas blocks geometry holes level maps options reflectors solver)
   ag_test(techniques/mrt/${name} USES techniques LIBRARIES ag_test_mrt_map)
 endforeach()
 foreach(name light probes retrace)

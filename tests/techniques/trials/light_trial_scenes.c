@@ -87,6 +87,34 @@ void trial_door(struct frame_fixture *s, struct gpu *gpu, bool back)
         fixture_look(s, vec3_of(0.3f, 1.5f, -1.8f), vec3_of(3, 1.6f, 2));
 }
 
+void trial_window(struct frame_fixture *s, struct gpu *gpu, bool towards_window)
+{
+    const float t = 0.2f;
+    const struct box3 slabs[] = {
+        { vec3_of(-2 - t, -t, -2 - t), vec3_of(2 + t, 0, 2 + t) }, // floor, ceiling
+        { vec3_of(-2 - t, 2.8f, -2 - t), vec3_of(2 + t, 2.8f + t, 2 + t) },
+        { vec3_of(-2 - t, 0, -2 - t), vec3_of(-2, 2.8f, 2 + t) }, // left, back, front
+        { vec3_of(-2, 0, -2 - t), vec3_of(2 + t, 2.8f, -2) },
+        { vec3_of(-2, 0, 2), vec3_of(2 + t, 2.8f, 2 + t) },
+        { vec3_of(2, 0, -2), vec3_of(2 + t, 2.8f, -0.8f) }, // around the window
+        { vec3_of(2, 0, 0.8f), vec3_of(2 + t, 2.8f, 2) },
+        { vec3_of(2, 0, -0.8f), vec3_of(2 + t, 0.9f, 0.8f) },
+        { vec3_of(2, 2.1f, -0.8f), vec3_of(2 + t, 2.8f, 0.8f) },
+    };
+    fixture_init(s, gpu);
+    s->options.shadow_size = 1024;
+    const int white = fixture_matte(s, grey(0.7f)), ground = fixture_matte(s, grey(0.4f));
+    for (size_t i = 0; i < sizeof slabs / sizeof slabs[0]; i++)
+        fixture_box(s, slabs[i].min, slabs[i].max, false, white);
+    fixture_box(s, vec3_of(-20, -0.4f, -20), vec3_of(20, -0.05f, 20), false, ground);
+    fixture_add_sun(s, vec3_of(0, -1, -1), grey(20000));
+    add_camera(s, vec3_of(0, 1.5f, 0));
+    if (towards_window)
+        fixture_look(s, vec3_of(-1.8f, 1.6f, 1.7f), vec3_of(1, 1.2f, -1));
+    else
+        fixture_look(s, vec3_of(1.6f, 1.6f, -1.7f), vec3_of(-1.5f, 1.2f, 1));
+}
+
 void trial_open_plane(struct frame_fixture *s, struct gpu *gpu, const struct trial_plane *plane)
 {
     const float half = 3, c = cosf(plane->tilt_rad), d = sinf(plane->tilt_rad);

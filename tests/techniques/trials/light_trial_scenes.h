@@ -14,6 +14,12 @@ void trial_two_rooms(struct frame_fixture *s, struct gpu *gpu, bool camera_in_da
 // direct light: `back` towards the wall with the door, else away from it.
 void trial_door(struct frame_fixture *s, struct gpu *gpu, bool back);
 
+// A room of 4 × 2.8 × 4 (albedo 0.7) of walls 0.2 thick on a ground of 40 × 40 (albedo 0.4) in the
+// sun of 20000 lux, which comes along the wall with the window of 1.6 × 1.2: all light in the room
+// is what ground and reveals reflect. The camera is in the room, towards the wall with the window
+// or away from it.
+void trial_window(struct frame_fixture *s, struct gpu *gpu, bool towards_window);
+
 // A square plane of 6 in the sun (1000 lux) or under a uniform sky (1 cd/m²), tilted around z.
 struct trial_plane {
     float tilt_rad;

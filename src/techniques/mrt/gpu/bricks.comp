@@ -1,6 +1,6 @@
 // Bricks of probes: irradiance by normal in the world frame, from that of indirect light in the
-// cells of the blocks and that of emitters and the sky (Loos 2015, section 3.5.5). The border of a
-// brick has probes of the blocks beyond its openings.
+// cells of the blocks and that of emitters, the sky and reflectors (Loos 2015, section 3.5.5). The
+// border of a brick has probes of the blocks beyond its openings.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -10,7 +10,10 @@
 #include "frame/environment.glsl"
 #include "frame/frame.glsl"
 #include "frame/probes.glsl"
+#define MRT_REFLECTOR_LIGHT_BINDING  7
+#define MRT_REFLECTOR_SHARES_BINDING 8
 #include "techniques/mrt/gpu/level.glsl"
+#include "techniques/mrt/gpu/reflectors.glsl"
 
 layout(local_size_x = MRT_LOCAL) in;
 
@@ -56,8 +59,10 @@ void main()
         vec3 area_light =
             area_light_table[probe].emitted[k] * (frame.radiance_scale * level.emitters) +
             environment[k];
-        coefficients[k] = clamp(rotated(probe, source, k) + area_light, -HALF_MAX, HALF_MAX);
+        coefficients[k] = rotated(probe, source, k) + area_light;
     }
+    add_reflected(area_light_table[probe].reflected, coefficients);
+    for (int k = 0; k < 9; k++) coefficients[k] = clamp(coefficients[k], -HALF_MAX, HALF_MAX);
     ivec3 at = ivec3(block % level.brick_columns, block / level.brick_columns, 0) * int(edge) +
                ivec3(i % edge, i / edge % edge, i / (edge * edge));
     for (int s = 0; s < FRAME_PROBE_SLABS; s++)

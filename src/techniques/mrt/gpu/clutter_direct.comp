@@ -1,12 +1,15 @@
 // The mean radiosity of direct light of each face of clutter, over its area (Loos 2015, section
-// 5.3.2, T_d->c). Lights and their shadows, and the environment by direction, are those of a few
-// texels of the face; light of emissive surfaces and the share of the environment are means of the
-// table. A workgroup has whole faces.
+// 5.3.2, T_d->c). Lights and their shadows, reflectors, and the environment by direction, are those
+// of a few texels of the face; light of emissive surfaces and the share of the environment are
+// means of the table. A workgroup has whole faces.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#define MRT_REFLECTOR_LIGHT_BINDING  10
+#define MRT_REFLECTOR_SHARES_BINDING 11
 #include "techniques/mrt/gpu/direct.glsl"
+#include "techniques/mrt/gpu/reflectors.glsl"
 
 layout(local_size_x = MRT_LOCAL) in;
 
@@ -37,7 +40,7 @@ void main()
     mrt_gpu_clutter_sample place = sample_table[gl_GlobalInvocationID.x];
     uint lane = gl_LocalInvocationIndex;
     mrt_texel texel = texel_table[place.texel];
-    vec3 irradiance = vec3(0.0);
+    vec3 irradiance = reflected_irradiance(texel.reflected);
     add_lights(texel, irradiance);
     vec3 unoccluded = place.share * environment_irradiance_at(texel.normal);
     for (uint c = 0u; c < 3u; c++) {

@@ -1,6 +1,6 @@
 // The light map of clutter, in the atlas of its charts: the texels' own, and those of gutters and
-// of texels inside objects, which have others' light. Light of emissive surfaces and the sky is
-// added. A layer for each of red, green, blue of a side.
+// of texels inside objects, which have others' light. Light of emissive surfaces, the sky
+// and reflectors is added. A layer for each of red, green, blue of a side.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -8,7 +8,9 @@
 #include "core/half.glsl"
 #include "core/sh.glsl"
 #include "techniques/common/light_map/place.glsl"
-#include "techniques/mrt/mrt_shared.h"
+#define MRT_REFLECTOR_LIGHT_BINDING  4
+#define MRT_REFLECTOR_SHARES_BINDING 5
+#include "techniques/mrt/gpu/reflectors.glsl"
 
 layout(local_size_x = MRT_LOCAL) in;
 
@@ -47,6 +49,7 @@ void main()
     mrt_gpu_clutter_place place = place_table[i];
     vec3 area_light = texel_table[place.texel].emitted * push.emitted;
     area_light += texel_table[place.texel].sky * environment_at(texel_table[place.texel].normal);
+    area_light += reflected_irradiance(texel_table[place.texel].reflected);
     vec3 values[4];
     for (uint v = 0u; v < 4u; v++) values[v] = light_table[place.light * 4u + v];
     values[0] += area_light / SH_Y0;

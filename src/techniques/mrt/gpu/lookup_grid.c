@@ -3,23 +3,10 @@
 
 #include "techniques/mrt/level/block_grid.h"
 
-#include <math.h>
-
 // Margin of a block over its bounds: surfaces outside still belong to the nearest block (MRT_BEYOND
 // in locate.glsl).
 static const float MARGIN = 1.0f;
 static const float OFFSET = 0.01f; // of the shortest edge: lookups along the normal
-
-// The shortest distance from the middle of a block to that of a wall, twice.
-static float shortest_edge(const struct mrt_block_map *map)
-{
-    float least = INFINITY;
-    for (int b = 0; b < map->count; b++) {
-        mat3s j = mrt_warp_jacobian(map->blocks[b].corner, vec3_of(0, 0, 0));
-        for (int a = 0; a < 3; a++) least = fminf(least, glms_vec3_norm(j.col[a]));
-    }
-    return least;
-}
 
 static void set_params(struct mrt_level_params *level, const struct mrt_block_grid *grid,
                        const struct mrt_block_map *map)
@@ -29,7 +16,7 @@ static void set_params(struct mrt_level_params *level, const struct mrt_block_gr
     level->cells_x = grid->cells[0];
     level->cells_y = grid->cells[1];
     level->cells_z = grid->cells[2];
-    level->offset_m = OFFSET * shortest_edge(map);
+    level->offset_m = OFFSET * mrt_shortest_edge(map);
 }
 
 bool mrt_lookup_grid_upload(struct mrt_runtime *runtime, const struct mrt_block_map *map)

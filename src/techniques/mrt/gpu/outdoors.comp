@@ -1,5 +1,6 @@
-// The grid of outdoor probes: irradiance by normal of emitters and the sky, in the format of
-// frame/probes.glsl. Premultiplied by `open`, which is the component that the format leaves free.
+// The grid of outdoor probes: irradiance by normal of emitters, the sky and reflectors, in the
+// format of frame/probes.glsl. Premultiplied by `open`, which is the component that the format
+// leaves free.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -9,7 +10,10 @@
 #include "frame/environment.glsl"
 #include "frame/frame.glsl"
 #include "frame/probes.glsl"
+#define MRT_REFLECTOR_LIGHT_BINDING  4
+#define MRT_REFLECTOR_SHARES_BINDING 5
 #include "techniques/mrt/gpu/level.glsl"
+#include "techniques/mrt/gpu/reflectors.glsl"
 
 layout(local_size_x = MRT_LOCAL) in;
 
@@ -29,10 +33,12 @@ void main()
     for (int k = 0; k < 9; k++) sky[k] = PI * probe_table[i].light.sky[k];
     environment_through(sky, environment);
     for (int k = 0; k < 9; k++) {
-        vec3 light = probe_table[i].light.emitted[k] * (frame.radiance_scale * level.emitters) +
-                     environment[k];
-        coefficients[k] = clamp(light, -HALF_MAX, HALF_MAX);
+        coefficients[k] =
+            probe_table[i].light.emitted[k] * (frame.radiance_scale * level.emitters) +
+            environment[k];
     }
+    add_reflected(probe_table[i].light.reflected, coefficients);
+    for (int k = 0; k < 9; k++) coefficients[k] = clamp(coefficients[k], -HALF_MAX, HALF_MAX);
     for (int s = 0; s < FRAME_PROBE_SLABS; s++) {
         vec4 slab = probes_slab(coefficients, s);
         if (s == FRAME_PROBE_SLABS - 1) slab.w = probe_table[i].open;

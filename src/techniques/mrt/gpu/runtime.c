@@ -124,10 +124,11 @@ static bool make_pipelines(struct mrt_runtime *runtime)
 static bool make_all(struct mrt_runtime *out, const struct mrt_runtime_input *input)
 {
     fill_constants(out, input);
-    return mrt_tables_upload(out, input) && mrt_lookup_grid_upload(out, input->map) &&
-           mrt_probes_upload(out, input) && mrt_outdoors_upload(out, input) &&
-           mrt_operators_upload(out, input) && make_buffers(out, input->operators) &&
-           make_images(out) && make_pipelines(out) && mrt_clutter_upload(out, input);
+    return mrt_tables_upload(out, input) && mrt_reflectors_upload(out, input) &&
+           mrt_lookup_grid_upload(out, input->map) && mrt_probes_upload(out, input) &&
+           mrt_outdoors_upload(out, input) && mrt_operators_upload(out, input) &&
+           make_buffers(out, input->operators) && make_images(out) && make_pipelines(out) &&
+           mrt_clutter_upload(out, input);
 }
 
 bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gpu,

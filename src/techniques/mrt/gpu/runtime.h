@@ -16,6 +16,7 @@ struct mrt_runtime_input {
     const struct mrt_block_map *map;
     const struct mrt_atlas *atlas;
     const struct mrt_scene_images *images;
+    const struct mrt_reflectors *reflectors; // NULL: none
     const struct mrt_operators *operators;
     const struct mrt_published *published; // NULL: none
     // Clutter of the openings that are clutter; NULL where there are none.
@@ -32,7 +33,7 @@ struct mrt_runtime_options {
 };
 
 struct mrt_runtime_pipelines {
-    gpu_pipeline direct, project, bounce, couple;
+    gpu_pipeline reflectors, reflectors_bounce, direct, project, bounce, couple;
     gpu_pipeline reconstruct, reconstruct_vector;
     gpu_pipeline fill, fill_vector;
     gpu_pipeline apply, debug;

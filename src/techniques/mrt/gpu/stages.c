@@ -6,6 +6,7 @@ void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 {
     runtime->level.shadow_radius = view->shadow_radius;
     runtime->level.emitters = emitters ? 1.0f : 0.0f;
+    mrt_record_reflectors(runtime, cmd, view);
     gpu_scope_begin(cmd, "direct");
     mrt_dispatch(runtime, cmd, runtime->pipelines.direct, GPU_BIND(FRAME_LIGHT_BINDINGS(view)),
                  NULL, 0, gpu_groups(runtime->level.texels, MRT_LOCAL), 1, 1);

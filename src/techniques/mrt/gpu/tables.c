@@ -11,13 +11,15 @@ static uint32_t texels_of_tile(const struct mrt_runtime_input *input)
 void mrt_fill_texels(const struct mrt_geometry_texel *from, size_t count, struct mrt_texel *out)
 {
     for (size_t i = 0; i < count; i++)
-        out[i] = (struct mrt_texel){ .position = from[i].position,
-                                     .area_m2 = from[i].area_m2,
-                                     .normal = from[i].normal,
-                                     .found = from[i].found,
-                                     .reflectance = from[i].reflectance,
-                                     .sky = from[i].sky,
-                                     .emitted = from[i].emitted };
+        out[i] =
+            (struct mrt_texel){ .position = from[i].position,
+                                .area_m2 = from[i].area_m2,
+                                .normal = from[i].normal,
+                                .found = from[i].found,
+                                .reflectance = from[i].reflectance,
+                                .sky = from[i].sky,
+                                .emitted = from[i].emitted,
+                                .reflected = { from[i].reflected.first, from[i].reflected.count } };
 }
 
 static void fill_texels(const struct mrt_runtime_input *input, void *items)

@@ -83,6 +83,11 @@ bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inp
 bool mrt_probes_make_empty(struct mrt_runtime *runtime);
 // MRT_CONSTANT_SIGHT.
 uint32_t mrt_sight_voxels(const struct mrt_operators *operators);
+// Reflectors and the shares of them.
+bool mrt_reflectors_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
+// Their light, before all that has shares of it.
+void mrt_record_reflectors(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                           const struct frame_view *view);
 // The grid of outdoor probes (light/area_light.h).
 bool mrt_outdoors_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
 // All operators as the shaders read them (operators.glsl): rows of four numbers at a time, half

@@ -129,3 +129,13 @@ struct mrt_block_list mrt_blocks_near(const struct mrt_block_grid *grid, vec3s p
     }
     return grid->lists[(at[2] * grid->cells[1] + at[1]) * grid->cells[0] + at[0]];
 }
+
+float mrt_shortest_edge(const struct mrt_block_map *map)
+{
+    float least = INFINITY;
+    for (int b = 0; b < map->count; b++) {
+        mat3s j = mrt_warp_jacobian(map->blocks[b].corner, vec3_of(0, 0, 0));
+        for (int a = 0; a < 3; a++) least = fminf(least, glms_vec3_norm(j.col[a]));
+    }
+    return least;
+}

@@ -23,5 +23,8 @@ bool mrt_block_grid_init(struct host *host, const struct mrt_block_map *map, flo
                          int cells, struct mrt_block_grid *out);
 void mrt_block_grid_finish(struct mrt_block_grid *grid); // accepts zero
 
+// The shortest distance from the middle of a block to that of a wall, twice, in metres.
+float mrt_shortest_edge(const struct mrt_block_map *map);
+
 // An empty list outside of the grid.
 struct mrt_block_list mrt_blocks_near(const struct mrt_block_grid *grid, vec3s point);

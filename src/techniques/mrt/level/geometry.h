@@ -6,6 +6,11 @@
 
 #include "techniques/mrt/level/atlas.h"
 
+// Shares of reflectors: those of light that surfaces in no block send (light/reflectors.h).
+struct mrt_reflector_row {
+    uint32_t first, count;
+};
+
 struct mrt_geometry_texel {
     vec3s position;    // world
     vec3s normal;      // unit, towards the middle of the block
@@ -15,6 +20,7 @@ struct mrt_geometry_texel {
     float area_m2;     // of the wall, or of the surface of clutter
     vec3s emitted;     // irradiance of emissive surfaces, lux (area_light.h)
     float sky;         // irradiance of a sky of radiance 1/π
+    struct mrt_reflector_row reflected;
 };
 
 // One for each texel of the level, without light. The caller frees it with host_free.

@@ -7,8 +7,10 @@
 #include <string.h>
 
 enum {
-    PROBES = 8, // rays per texel that find out whether the sky is seen at all
-    RAYS = 64,
+    PROBES = 8,
+    LEAST_RAYS = 64,
+    MOST_RAYS = 1024,
+    ALL_RAYS = 1 << 22, // of all texels, while each has LEAST_RAYS
     LIGHT_SAMPLES = 128,
 };
 
@@ -20,11 +22,26 @@ struct job {
     int rays;
 };
 
-static void gather(void *user, size_t i)
+struct view {
+    const struct trace_scene *scene;
+    struct mrt_reflector_hits *hits;
+};
+
+static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit, vec3s local,
+                    const struct texel_hit *at_hit)
+{
+    const struct view *view = user;
+    (void)local;
+    mrt_reflectors_add_hit(view->hits, view->scene, ray, hit, at_hit);
+}
+
+static void gather(void *user, size_t i, struct mrt_reflector_hits *hits)
 {
     const struct job *job = user;
     struct mrt_geometry_texel *at = &job->texels[i];
+    struct view view = { job->scene, hits };
     struct texel_lights light;
+    at->reflected = (struct mrt_reflector_row){ 0 };
     if (!at->found) return;
     const struct texel_receiver receiver = {
         .position = glms_vec3_muladds(at->normal, RAY_OFFSET, at->position),
@@ -33,23 +50,48 @@ static void gather(void *user, size_t i)
         .light_samples = job->scene->lights.has_emitters ? LIGHT_SAMPLES : 0,
         .seed = pcg_hash((uint32_t)i) | 1u,
     };
-    texel_gather_light(job->scene, &receiver, NULL, NULL, &light);
+    texel_gather_light(job->scene, &receiver, add_hit, &view, &light);
     at->sky = light.sky.irradiance / GLM_PIf;
     for (int c = 0; c < 3; c++) at->emitted.raw[c] = light.emitted[c].irradiance;
 }
 
-bool mrt_area_light_texels(const struct trace_scene *scene, struct mrt_geometry_texel *texels,
-                           size_t count)
+static struct mrt_reflector_row *row_of(void *user, size_t i)
 {
-    const bool emitters = scene->lights.has_emitters;
-    struct job job = { scene, texels, emitters ? RAYS : PROBES };
-    bool sky = false;
-    parallel_for(count, 64, gather, &job);
-    for (size_t i = 0; i < count; i++) sky = sky || texels[i].sky > 0.0f;
-    if (emitters || !sky) return emitters;
-    job.rays = RAYS;
-    parallel_for(count, 64, gather, &job);
-    return true;
+    const struct job *job = user;
+    return &job->texels[i].reflected;
+}
+
+static bool gather_all(struct job *job, struct mrt_reflectors *reflectors, size_t count, int rays)
+{
+    job->rays = rays;
+    return mrt_reflectors_gather(reflectors,
+                                 &(struct mrt_reflector_gather){ .gather = gather,
+                                                                 .row_of = row_of,
+                                                                 .user = job,
+                                                                 .count = count,
+                                                                 .rays = rays,
+                                                                 .weight = 1.0f / (float)rays });
+}
+
+// A power of two, for which points of the Sobol sequence are spread most evenly.
+static int rays_of(size_t texels)
+{
+    int rays = LEAST_RAYS;
+    while (rays < MOST_RAYS && 2 * (size_t)rays * texels <= ALL_RAYS) rays *= 2;
+    return rays;
+}
+
+// Without emitters a few rays tell whether the sky is seen at all.
+bool mrt_area_light_texels(const struct trace_scene *scene, struct mrt_reflectors *reflectors,
+                           struct mrt_geometry_texel *texels, size_t count, bool *lit)
+{
+    struct job job = { .scene = scene, .texels = texels };
+    *lit = scene->lights.has_emitters;
+    if (!*lit) {
+        if (!gather_all(&job, NULL, count, PROBES)) return false;
+        for (size_t i = 0; i < count; i++) *lit = *lit || texels[i].sky > 0.0f;
+    }
+    return !*lit || gather_all(&job, reflectors, count, rays_of(count));
 }
 
 static struct mrt_geometry_texel *geometry_of(struct host *host, const struct scene_pose *walls,
@@ -72,20 +114,48 @@ static struct mrt_geometry_texel *copy_of(struct host *host, const struct mrt_ge
 
 // Without emitters and sky all probes are dark.
 static bool light_probes(struct mrt_scene_images *images, const struct trace_scene *scene,
-                         const struct mrt_block_map *map, int probes, bool any_light)
+                         struct mrt_reflectors *reflectors, int probes, bool lit)
 {
-    const size_t count = (size_t)map->count * (size_t)mrt_probes_of_block(probes);
+    const size_t count = (size_t)reflectors->map->count * (size_t)mrt_probes_of_block(probes);
     if (probes == 0) return true;
-    images->area_light = any_light ? mrt_area_light_probes_create(images->host, map, probes, scene)
-                                   : host_alloc(images->host, count, sizeof *images->area_light);
+    images->area_light = lit ? mrt_area_light_probes_create(scene, reflectors, probes)
+                             : host_alloc(images->host, count, sizeof *images->area_light);
     return images->area_light;
 }
 
-bool mrt_scene_images_init(struct host *host, const struct scene_pose *pose,
-                           const struct scene_pose *walls, const struct mrt_block_map *map,
-                           const struct mrt_atlas *atlas, int probes,
-                           const struct mrt_geometry_texel *kept, struct mrt_scene_images *out)
+// Those which reflectors see are added to them, and receive direct light alone.
+static bool light_reflectors(const struct trace_scene *scene, struct mrt_reflectors *reflectors)
 {
+    const size_t count = reflectors->count;
+    struct mrt_geometry_texel *texels = copy_of(reflectors->host, reflectors->at, count);
+    bool lit, ok = texels && mrt_area_light_texels(scene, reflectors, texels, count, &lit);
+    if (ok) {
+        memcpy(reflectors->at, texels, count * sizeof *texels);
+        ok = mrt_area_light_texels(scene, NULL, reflectors->at + count, reflectors->count - count,
+                                   &lit);
+    }
+    host_free(reflectors->host, texels);
+    return ok;
+}
+
+static bool light_all(struct mrt_scene_images *images, const struct trace_scene *scene,
+                      const struct scene_pose *pose, struct mrt_reflectors *reflectors,
+                      size_t texels, int probes)
+{
+    bool lit;
+    return mrt_area_light_texels(scene, reflectors, images->geometry, texels, &lit) &&
+           light_probes(images, scene, reflectors, probes, lit) &&
+           mrt_outdoors_init(scene, reflectors, pose->bounds, &images->outdoors) &&
+           light_reflectors(scene, reflectors);
+}
+
+bool mrt_scene_images_init(struct mrt_reflectors *reflectors, const struct scene_pose *pose,
+                           const struct scene_pose *walls, const struct mrt_atlas *atlas,
+                           int probes, const struct mrt_geometry_texel *kept,
+                           struct mrt_scene_images *out)
+{
+    struct host *host = reflectors->host;
+    const struct mrt_block_map *map = reflectors->map;
     const size_t texels = (size_t)atlas->texels;
     *out = (struct mrt_scene_images){ .host = host };
     struct trace_scene *scene = trace_scene_create(host, pose);
@@ -93,12 +163,8 @@ bool mrt_scene_images_init(struct host *host, const struct scene_pose *pose,
         out->geometry = kept            ? copy_of(host, kept, texels)
                         : walls == pose ? mrt_geometry_create(host, map, atlas, scene)
                                         : geometry_of(host, walls, map, atlas);
-    bool ok = scene && out->geometry;
-    if (ok) {
-        const bool any_light = mrt_area_light_texels(scene, out->geometry, texels);
-        ok = light_probes(out, scene, map, probes, any_light) &&
-             mrt_outdoors_init(host, map, pose->bounds, scene, &out->outdoors);
-    }
+    const bool ok =
+        scene && out->geometry && light_all(out, scene, pose, reflectors, texels, probes);
     trace_scene_destroy(scene);
     return ok;
 }

@@ -3,9 +3,8 @@
 #pragma once
 
 #include "techniques/common/probes/grid.h"
-#include "techniques/mrt/level/geometry.h"
+#include "techniques/mrt/light/reflectors.h"
 #include "techniques/mrt/level/probes.h"
-#include "trace/texels/light.h"
 
 // ---- area_light_points.c: by uniform rays and samples of the emitters
 
@@ -13,6 +12,7 @@
 struct mrt_area_light_probe {
     vec3s emitted[MRT_PROBE_VALUES]; // of emissive surfaces, lux
     float sky[MRT_PROBE_VALUES];     // of a sky of radiance 1/π
+    struct mrt_reflector_row reflected;
 };
 
 struct mrt_lit_point {
@@ -21,15 +21,14 @@ struct mrt_lit_point {
     bool solid;                        // result: inside a solid
 };
 
-// rays: a power of two. false: out of memory.
-bool mrt_area_light_points(struct host *host, const struct trace_scene *scene, int rays,
-                           struct mrt_lit_point *points, size_t count);
+// rays: a power of two. reflectors: which get shares of the points. false: out of memory.
+bool mrt_area_light_points(const struct trace_scene *scene, struct mrt_reflectors *reflectors,
+                           int rays, struct mrt_lit_point *points, size_t count);
 
 // Direct light of area lights at all probes. A probe inside a solid has that of the nearest probe
 // of its block outside.
-struct mrt_area_light_probe *mrt_area_light_probes_create(struct host *host,
-                                                          const struct mrt_block_map *map, int p,
-                                                          const struct trace_scene *scene);
+struct mrt_area_light_probe *mrt_area_light_probes_create(const struct trace_scene *scene,
+                                                          struct mrt_reflectors *reflectors, int p);
 
 // ---- area_light_outdoors.c: probes outside of all blocks, on a grid over the scene, for surfaces
 // that belong to no room
@@ -47,8 +46,8 @@ struct mrt_outdoors {
     struct mrt_outdoor_probe *probes; // [z][y][x]; NULL: all places are enclosed
 };
 
-bool mrt_outdoors_init(struct host *host, const struct mrt_block_map *map, struct box3 bounds,
-                       const struct trace_scene *scene, struct mrt_outdoors *out);
+bool mrt_outdoors_init(const struct trace_scene *scene, struct mrt_reflectors *reflectors,
+                       struct box3 bounds, struct mrt_outdoors *out);
 void mrt_outdoors_finish(struct mrt_outdoors *outdoors); // accepts zero
 
 // ---- area_light.c
@@ -60,13 +59,15 @@ struct mrt_scene_images {
     struct mrt_outdoors outdoors;
 };
 
-// walls: the part of the pose that texels stand for; it may be the pose itself. probes: p, along an
-// edge of a block; 0: none. kept: the geometry of the same walls, NULL: it is traced.
-bool mrt_scene_images_init(struct host *host, const struct scene_pose *pose,
-                           const struct scene_pose *walls, const struct mrt_block_map *map,
-                           const struct mrt_atlas *atlas, int probes,
-                           const struct mrt_geometry_texel *kept, struct mrt_scene_images *out);
-// Light at texels. Returns whether there are emitters or sky.
-bool mrt_area_light_texels(const struct trace_scene *scene, struct mrt_geometry_texel *texels,
-                           size_t count);
+// The reflectors get shares of texels and probes, then their own light. walls: the part of the pose
+// that texels stand for; it may be the pose itself. probes: p, along an edge of a block; 0: none.
+// kept: the geometry of the same walls, NULL: it is traced.
+bool mrt_scene_images_init(struct mrt_reflectors *reflectors, const struct scene_pose *pose,
+                           const struct scene_pose *walls, const struct mrt_atlas *atlas,
+                           int probes, const struct mrt_geometry_texel *kept,
+                           struct mrt_scene_images *out);
+// Light at texels. lit: whether there are emitters or sky. reflectors: NULL for their own light.
+// false: out of memory.
+bool mrt_area_light_texels(const struct trace_scene *scene, struct mrt_reflectors *reflectors,
+                           struct mrt_geometry_texel *texels, size_t count, bool *lit);
 void mrt_scene_images_finish(struct mrt_scene_images *images); // accepts zero

@@ -43,20 +43,25 @@ static float sky_share(const struct mrt_area_light_probe *probe)
 }
 
 // Premultiplied. Returns whether the point is outdoors.
-static bool place_point(const struct mrt_lit_point *point, struct mrt_outdoor_probe *out)
+static bool place_point(const struct mrt_lit_point *point, struct mrt_reflectors *reflectors,
+                        struct mrt_outdoor_probe *out)
 {
+    const struct mrt_reflector_row row = point->light.reflected;
     out->light = point->light;
     out->open = point->solid ? 0.0f : fminf(sky_share(&point->light) / OUTSIDE, 1.0f);
     for (int k = 0; k < MRT_PROBE_VALUES; k++) {
         out->light.emitted[k] = glms_vec3_scale(out->light.emitted[k], out->open);
         out->light.sky[k] *= out->open;
     }
+    for (uint32_t k = row.first; k < row.first + row.count; k++)
+        reflectors->shares[k].weight *= out->open;
     return out->open > 0.0f;
 }
 
-bool mrt_outdoors_init(struct host *host, const struct mrt_block_map *map, struct box3 bounds,
-                       const struct trace_scene *scene, struct mrt_outdoors *out)
+bool mrt_outdoors_init(const struct trace_scene *scene, struct mrt_reflectors *reflectors,
+                       struct box3 bounds, struct mrt_outdoors *out)
 {
+    struct host *host = reflectors->host;
     *out = (struct mrt_outdoors){ .host = host, .grid = grid_of(bounds) };
     const int count = (int)probe_grid_count(out->grid);
     struct mrt_lit_point *points = host_alloc(host, (size_t)count, sizeof *points);
@@ -66,13 +71,13 @@ bool mrt_outdoors_init(struct host *host, const struct mrt_block_map *map, struc
     bool ok = out->probes && points && probe_of, any = false;
     for (int i = 0; ok && i < count; i++) {
         const vec3s position = probe_grid_point(out->grid, (uint32_t)i);
-        if (is_in_block(map, position)) continue;
+        if (is_in_block(reflectors->map, position)) continue;
         probe_of[outside] = i;
         points[outside++].position = position;
     }
-    ok = ok && mrt_area_light_points(host, scene, RAYS, points, (size_t)outside);
+    ok = ok && mrt_area_light_points(scene, reflectors, RAYS, points, (size_t)outside);
     for (int k = 0; ok && k < outside; k++)
-        any |= place_point(&points[k], &out->probes[probe_of[k]]);
+        any |= place_point(&points[k], reflectors, &out->probes[probe_of[k]]);
     if (ok && !any) mrt_outdoors_finish(out);
     host_free(host, points);
     host_free(host, probe_of);

@@ -1,7 +1,6 @@
 // Light of emitters and the sky at points: any, and the probes of blocks.
 #include "techniques/mrt/light/area_light.h"
 
-#include "core/parallel.h"
 #include "core/rng.h"
 #include "core/sh.h"
 
@@ -24,7 +23,7 @@ static void add(vec3s light, const float weight[MRT_PROBE_VALUES], struct mrt_ar
 
 // Whether the point is inside a solid.
 static bool gather_rays(const struct job *job, const struct texel_receiver *at,
-                        struct mrt_area_light_probe *out)
+                        struct mrt_area_light_probe *out, struct mrt_reflector_hits *hits)
 {
     const float per_sr = (float)job->rays.count / (4.0f * GLM_PIf);
     int backs = 0;
@@ -39,6 +38,7 @@ static bool gather_rays(const struct job *job, const struct texel_receiver *at,
         const struct texel_hit at_hit = texel_hit_at(job->scene, &ray, &hit);
         const float density = texel_sample_density(at, ray.direction, at_hit.pdf);
         backs += at_hit.back;
+        mrt_reflectors_add_hit(hits, job->scene, &ray, &hit, &at_hit);
         add(glms_vec3_scale(at_hit.emission, GLM_PIf * per_sr / density), weight, out);
     }
     return is_inside(backs, job->rays.count);
@@ -58,7 +58,7 @@ static void sample_emitters(const struct job *job, const struct texel_receiver *
     }
 }
 
-static void gather(void *user, size_t i)
+static void gather(void *user, size_t i, struct mrt_reflector_hits *hits)
 {
     const struct job *job = user;
     struct mrt_lit_point *point = &job->points[i];
@@ -68,18 +68,31 @@ static void gather(void *user, size_t i)
         .light_samples = texel_light_samples(job->scene, job->rays.count),
         .seed = pcg_hash((uint32_t)i) | 1u,
     };
-    point->solid = gather_rays(job, &at, &point->light);
+    point->solid = gather_rays(job, &at, &point->light, hits);
     sample_emitters(job, &at, &point->light);
 }
 
-bool mrt_area_light_points(struct host *host, const struct trace_scene *scene, int rays,
-                           struct mrt_lit_point *points, size_t count)
+static struct mrt_reflector_row *row_of(void *user, size_t i)
 {
+    const struct job *job = user;
+    return &job->points[i].light.reflected;
+}
+
+bool mrt_area_light_points(const struct trace_scene *scene, struct mrt_reflectors *reflectors,
+                           int rays, struct mrt_lit_point *points, size_t count)
+{
+    struct host *host = reflectors->host;
     struct job job = { .scene = scene, .points = points };
     if (!mrt_rays_init(host, MRT_PROBE, rays, &job.rays)) return false;
-    parallel_for(count, 8, gather, &job);
+    const bool ok = mrt_reflectors_gather(
+        reflectors, &(struct mrt_reflector_gather){ .gather = gather,
+                                                    .row_of = row_of,
+                                                    .user = &job,
+                                                    .count = count,
+                                                    .rays = rays,
+                                                    .weight = 4.0f / (float)rays });
     mrt_rays_finish(host, &job.rays);
-    return true;
+    return ok;
 }
 
 // ---- probes of blocks
@@ -101,17 +114,18 @@ static int nearest_outside(const struct mrt_lit_point *points, int per_block, in
     return nearest;
 }
 
-struct mrt_area_light_probe *mrt_area_light_probes_create(struct host *host,
-                                                          const struct mrt_block_map *map, int p,
-                                                          const struct trace_scene *scene)
+struct mrt_area_light_probe *mrt_area_light_probes_create(const struct trace_scene *scene,
+                                                          struct mrt_reflectors *reflectors, int p)
 {
+    struct host *host = reflectors->host;
+    const struct mrt_block_map *map = reflectors->map;
     const int per_block = mrt_probes_of_block(p), count = map->count * per_block;
     struct mrt_area_light_probe *out = host_alloc(host, (size_t)count, sizeof *out);
     struct mrt_lit_point *points = host_alloc(host, (size_t)count, sizeof *points);
     bool ok = out && points;
     for (int i = 0; ok && i < count; i++)
         points[i].position = mrt_probe_position(&map->blocks[i / per_block], p, i % per_block);
-    ok = ok && mrt_area_light_points(host, scene, PROBE_RAYS, points, (size_t)count);
+    ok = ok && mrt_area_light_points(scene, reflectors, PROBE_RAYS, points, (size_t)count);
     for (int i = 0; ok && i < count; i++)
         out[i] = points[nearest_outside(points, per_block, i)].light;
     host_free(host, points);

@@ -96,9 +96,11 @@ bool mrt_make_clutter_faces(struct mrt_clutter *clutter, const struct mrt_block_
 
 // ---- clutter_light.c
 
-// Points of clutter where a frame computes direct light, and their light of emitters and the sky:
-// one for each of clutter->texels, in their order. The caller frees it with host_free; NULL without
-// memory.
+struct mrt_reflectors;
+// Points of clutter where a frame computes direct light, and their light of emitters, the sky and
+// reflectors: one for each of clutter->texels, in their order. The caller frees it with host_free;
+// NULL without memory.
 struct mrt_geometry_texel *mrt_clutter_light_create(struct host *host,
                                                     const struct scene_pose *pose,
-                                                    const struct mrt_clutter *clutter);
+                                                    const struct mrt_clutter *clutter,
+                                                    struct mrt_reflectors *reflectors);

@@ -23,15 +23,16 @@ static struct mrt_geometry_texel look_at(const struct trace_scene *objects,
 
 struct mrt_geometry_texel *mrt_clutter_light_create(struct host *host,
                                                     const struct scene_pose *pose,
-                                                    const struct mrt_clutter *clutter)
+                                                    const struct mrt_clutter *clutter,
+                                                    struct mrt_reflectors *reflectors)
 {
     const size_t count = clutter->charts.side_texel_count;
     struct mrt_geometry_texel *out = host_alloc(host, count, sizeof *out);
     struct trace_scene *objects = trace_scene_create(host, &clutter->objects.pose);
     struct trace_scene *scene = trace_scene_create(host, pose);
-    const bool ok = out && objects && scene;
+    bool ok = out && objects && scene, lit;
     for (size_t i = 0; ok && i < count; i++) out[i] = look_at(objects, clutter, clutter->texels[i]);
-    if (ok) mrt_area_light_texels(scene, out, count);
+    ok = ok && mrt_area_light_texels(scene, reflectors, out, count, &lit);
     trace_scene_destroy(objects);
     trace_scene_destroy(scene);
     if (ok) return out;

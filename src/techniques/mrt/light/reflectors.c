@@ -1,0 +1,226 @@
+#include "techniques/mrt/light/reflectors.h"
+
+#include "core/parallel.h"
+
+#include "frame/octahedral.h"
+#include "trace/reflectance.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { GRID_CELLS = 32, SLOTS_PER_REFLECTOR = 2, FIRST_ROOM = 256 };
+
+static const float IN_CELL = 0.5f + 1e-3f; // points on a wall are the room's
+// Surfaces behind a wall that its texels may stand for: as far as their rays (geometry.c).
+static const float BEHIND_WALL = 0.75f;
+static const float FACING = 0.5f;        // cosine
+static const float TEXELS = 1.0f / 16;   // smallest places, of the shortest edge of a block
+static const float PER_DISTANCE = 0.125; // edge of a place over its distance, at most
+
+// ---- which surfaces
+
+static bool is_of_block(const struct mrt_block *block, vec3s point, vec3s normal)
+{
+    vec3s cell;
+    if (!mrt_warp_inverse(block->corner, point, &cell)) return false;
+    const vec3s out = glms_vec3_abs(cell);
+    const float most = glms_vec3_max(out);
+    if (!(most <= BEHIND_WALL)) return false;
+    if (most <= IN_CELL) return true;
+    const int axis = most == out.x ? 0 : most == out.y ? 1 : 2;
+    const mat3s jacobian = mrt_warp_jacobian(block->corner, cell);
+    const vec3s across = vec3_unit(jacobian.col[axis]);
+    return copysignf(1.0f, -cell.raw[axis]) * glms_vec3_dot(across, normal) > FACING;
+}
+
+static bool is_of_a_block(const struct mrt_reflectors *r, vec3s point, vec3s normal)
+{
+    const struct mrt_block_list list = mrt_blocks_near(&r->grid, point);
+    for (uint32_t k = 0; k < list.count; k++)
+        if (is_of_block(&r->map->blocks[r->grid.candidates[list.first + k]], point, normal))
+            return true;
+    return false;
+}
+
+// A place: a cube of a grid whose size is about an eighth of the distance, and a direction of six.
+static uint64_t key_of(const struct mrt_reflectors *r, vec3s point, vec3s normal, float distance,
+                       float *edge_m)
+{
+    enum { BITS = 18 };
+    const float wanted = distance * PER_DISTANCE / r->least_m;
+    const int level = wanted >= 2.0f ? ilogbf(fminf(wanted, 0x1p20f)) : 0;
+    const vec3s way = glms_vec3_abs(normal);
+    const int axis = way.x >= way.y && way.x >= way.z ? 0 : way.y >= way.z ? 1 : 2;
+    uint64_t key = (uint64_t)level * 6 + 2 * (uint64_t)axis + (normal.raw[axis] > 0.0f);
+    *edge_m = ldexpf(r->least_m, level);
+    for (int a = 0; a < 3; a++) {
+        const float cell = floorf(point.raw[a] / *edge_m);
+        key = key << BITS | ((uint64_t)(int64_t)cell & ((UINT64_C(1) << BITS) - 1));
+    }
+    return key;
+}
+
+void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_scene *scene,
+                            const struct ray *ray, const struct ray_hit *hit,
+                            const struct texel_hit *at_hit)
+{
+    struct surface surface;
+    float edge_m;
+    if (!hits->of || at_hit->inside) return;
+    surface_at(scene, ray, hit, NULL, &surface);
+    if (is_of_a_block(hits->of, surface.position, surface.geometric)) return;
+    const uint64_t key =
+        key_of(hits->of, surface.position, surface.geometric, hit->distance, &edge_m);
+    hits->at[hits->count++] = (struct mrt_reflector_hit){
+        .key = key,
+        .position = surface.position,
+        .normal = surface.normal,
+        .reflectance = surface_reflectance(&surface),
+        .direction = ray->direction,
+        .area_m2 = edge_m * edge_m,
+    };
+}
+
+// ---- reflectors of hits
+
+bool mrt_reflectors_init(struct host *host, const struct mrt_block_map *map,
+                         struct mrt_reflectors *out)
+{
+    *out = (struct mrt_reflectors){ .host = host,
+                                    .map = map,
+                                    .least_m = TEXELS * mrt_shortest_edge(map) };
+    return mrt_block_grid_init(host, map, BEHIND_WALL - 0.5f, GRID_CELLS, &out->grid);
+}
+
+void mrt_reflectors_finish(struct mrt_reflectors *r)
+{
+    if (!r->host) return;
+    mrt_block_grid_finish(&r->grid);
+    host_free(r->host, r->at);
+    host_free(r->host, r->keys);
+    host_free(r->host, r->shares);
+    host_free(r->host, r->slots);
+    *r = (struct mrt_reflectors){ 0 };
+}
+
+static bool grow(struct host *host, void *array, uint32_t room, size_t size)
+{
+    void **at = array, *more = host_realloc(host, *at, room, size);
+    if (more) *at = more;
+    return more;
+}
+
+static uint32_t slot_of(const struct mrt_reflectors *r, uint64_t key)
+{
+    uint64_t mixed = key * UINT64_C(0x9E3779B97F4A7C15);
+    uint32_t slot = (uint32_t)(mixed >> 32) & (r->slot_count - 1);
+    while (r->slots[slot] && r->keys[r->slots[slot] - 1] != key)
+        slot = (slot + 1) & (r->slot_count - 1);
+    return slot;
+}
+
+static bool make_room(struct mrt_reflectors *r)
+{
+    const uint32_t room = r->room ? 2 * r->room : FIRST_ROOM;
+    if (r->count < r->room) return true;
+    if (!grow(r->host, &r->at, room, sizeof *r->at) ||
+        !grow(r->host, &r->keys, room, sizeof *r->keys))
+        return false;
+    host_free(r->host, r->slots);
+    r->room = room;
+    r->slot_count = SLOTS_PER_REFLECTOR * room;
+    r->slots = host_alloc(r->host, r->slot_count, sizeof *r->slots);
+    for (uint32_t i = 0; r->slots && i < r->count; i++) r->slots[slot_of(r, r->keys[i])] = i + 1;
+    return r->slots;
+}
+
+// The first hit of a place is the reflector.
+static bool find(struct mrt_reflectors *r, const struct mrt_reflector_hit *hit, uint32_t *out)
+{
+    if (!make_room(r)) return false;
+    const uint32_t slot = slot_of(r, hit->key);
+    if (!r->slots[slot]) {
+        r->keys[r->count] = hit->key;
+        r->at[r->count] = (struct mrt_geometry_texel){ .position = hit->position,
+                                                       .normal = hit->normal,
+                                                       .reflectance = hit->reflectance,
+                                                       .found = true,
+                                                       .area_m2 = hit->area_m2 };
+        r->slots[slot] = ++r->count;
+    }
+    *out = r->slots[slot] - 1;
+    return true;
+}
+
+static bool add_share(struct mrt_reflectors *r, const struct mrt_reflector_hit *hit, float weight)
+{
+    uint32_t reflector;
+    if (!find(r, hit, &reflector)) return false;
+    if (r->share_count == r->share_room) {
+        const uint32_t room = r->share_room ? 2 * r->share_room : FIRST_ROOM;
+        if (!grow(r->host, &r->shares, room, sizeof *r->shares)) return false;
+        r->share_room = room;
+    }
+    r->shares[r->share_count++] =
+        (struct mrt_reflector_share){ reflector, octahedral_pack(hit->direction), weight };
+    return true;
+}
+
+// ---- gathering, in parts, so that few hits are kept at a time
+
+enum { MOST_HITS = 1 << 17 };
+
+struct part {
+    const struct mrt_reflector_gather *gather;
+    struct mrt_reflector_hits *hits; // of each receiver
+    size_t first;
+};
+
+static void gather_one(void *user, size_t i)
+{
+    const struct part *part = user;
+    struct mrt_reflector_hits none = { 0 };
+    part->gather->gather(part->gather->user, part->first + i, part->hits ? &part->hits[i] : &none);
+}
+
+static bool add_row(struct mrt_reflectors *r, const struct part *part, size_t i)
+{
+    const struct mrt_reflector_gather *g = part->gather;
+    const struct mrt_reflector_hits *hits = &part->hits[i];
+    *g->row_of(g->user, part->first + i) =
+        (struct mrt_reflector_row){ r->share_count, hits->count };
+    for (uint32_t k = 0; k < hits->count; k++)
+        if (!add_share(r, &hits->at[k], g->weight)) return false;
+    return true;
+}
+
+static bool gather_part(struct mrt_reflectors *r, struct part *part, size_t count,
+                        struct mrt_reflector_hit *hits)
+{
+    for (size_t i = 0; i < count; i++)
+        part->hits[i] = (struct mrt_reflector_hits){ r, hits + i * (size_t)part->gather->rays, 0 };
+    parallel_for(count, 8, gather_one, part);
+    for (size_t i = 0; i < count; i++)
+        if (!add_row(r, part, i)) return false;
+    return true;
+}
+
+bool mrt_reflectors_gather(struct mrt_reflectors *r, const struct mrt_reflector_gather *gather)
+{
+    struct part part = { .gather = gather };
+    if (!r) {
+        parallel_for(gather->count, 8, gather_one, &part);
+        return true;
+    }
+    const size_t most = MOST_HITS / (size_t)gather->rays;
+    struct mrt_reflector_hit *hits = host_alloc(r->host, most * (size_t)gather->rays, sizeof *hits);
+    part.hits = host_alloc(r->host, most, sizeof *part.hits);
+    bool ok = hits && part.hits;
+    for (; ok && part.first < gather->count; part.first += most) {
+        const size_t rest = gather->count - part.first;
+        ok = gather_part(r, &part, rest < most ? rest : most, hits);
+    }
+    host_free(r->host, hits);
+    host_free(r->host, part.hits);
+    return ok;
+}

@@ -1,0 +1,71 @@
+// Reflectors: places of surfaces that are in no block, such as ground outdoors or the reveals of a
+// window. Each stands for the surface around it and reflects light of the sky, the sun, other
+// lights and emissive surfaces, and what other reflectors send of that, towards the texels and
+// points whose rays end there.
+#pragma once
+
+#include "techniques/mrt/level/block_grid.h"
+#include "techniques/mrt/level/geometry.h"
+#include "trace/texels/light.h"
+
+// A reflector's share of the light of a texel or a point. weight: at a texel, irradiance over the
+// reflector's radiosity; at a point, its solid angle over π.
+struct mrt_reflector_share {
+    uint32_t reflector;
+    uint32_t direction; // towards it: octahedral_pack
+    float weight;
+};
+
+struct mrt_reflectors {
+    struct host *host;
+    struct mrt_block_grid grid;
+    const struct mrt_block_map *map;
+    float least_m; // edge of the smallest place
+    // Texels without a wall; area_m2 is that of the place.
+    struct mrt_geometry_texel *at;
+    uint64_t *keys;
+    uint32_t count, room;
+    struct mrt_reflector_share *shares;
+    uint32_t share_count, share_room;
+    uint32_t *slots; // a hash table with open addressing: reflector + 1, 0: none
+    uint32_t slot_count;
+};
+
+// The map must outlive it. false: out of memory.
+bool mrt_reflectors_init(struct host *host, const struct mrt_block_map *map,
+                         struct mrt_reflectors *out);
+void mrt_reflectors_finish(struct mrt_reflectors *reflectors); // accepts zero
+
+// ---- gathering
+
+struct mrt_reflector_hit {
+    uint64_t key;
+    vec3s position, normal, reflectance, direction;
+    float area_m2;
+};
+
+// The hits of one receiver.
+struct mrt_reflector_hits {
+    const struct mrt_reflectors *of; // NULL: none are wanted
+    struct mrt_reflector_hit *at;
+    uint32_t count;
+};
+
+// Adds the hit unless a block has the surface, or it is seen from inside a solid.
+void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_scene *scene,
+                            const struct ray *ray, const struct ray_hit *hit,
+                            const struct texel_hit *at_hit);
+
+// Calls `gather` for each receiver, on all cores, and keeps what it adds: at most `rays` hits, each
+// of this weight. Afterwards *row_of(user, i) has the receiver's shares. reflectors NULL: it
+// gathers alone. false: out of memory.
+struct mrt_reflector_gather {
+    void (*gather)(void *user, size_t i, struct mrt_reflector_hits *hits);
+    struct mrt_reflector_row *(*row_of)(void *user, size_t i);
+    void *user;
+    size_t count;
+    int rays;
+    float weight;
+};
+bool mrt_reflectors_gather(struct mrt_reflectors *reflectors,
+                           const struct mrt_reflector_gather *gather);

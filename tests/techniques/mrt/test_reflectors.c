@@ -1,0 +1,151 @@
+// Light of surfaces in no block, at points and texels of a block beside them.
+#include "framework/test.h"
+#include "techniques/mrt/mrt_map_fixture.h"
+
+#include "core/sh.h"
+#include "frame/octahedral.h"
+
+#include "techniques/mrt/light/area_light.h"
+
+#include <math.h>
+
+static const float ALBEDO = 0.5f;
+
+// A block of edge 2 around the origin, and a square of 800 with its normal up.
+struct place {
+    struct scene *scene;
+    struct scene_pose pose;
+    struct mrt_block_map map;
+    struct trace_scene *trace;
+    struct mrt_reflectors reflectors;
+};
+
+static void open_place(struct place *p, float height, vec3s across, vec3s along)
+{
+    static uint32_t indices[6] = { 0, 1, 2, 0, 2, 3 };
+    const vec3s middle = vec3_of(0, height, 0);
+    vec3s positions[4];
+    for (int i = 0; i < 4; i++) {
+        positions[i] = glms_vec3_muladds(across, i == 1 || i == 2 ? 1.0f : -1.0f, middle);
+        positions[i] = glms_vec3_muladds(along, i >= 2 ? 1.0f : -1.0f, positions[i]);
+    }
+    struct material matte = material_default();
+    matte.base_color = vec4_of(vec3_of(ALBEDO, ALBEDO, ALBEDO), 1);
+    matte.metallic = 0;
+    matte.specular = 0;
+    *p = (struct place){ .scene = scene_create(test_host(), "place") };
+    const int mesh = scene_add_mesh(
+        p->scene, &(struct mesh){ .name = "square",
+                                  .vertex_count = 4,
+                                  .index_count = 6,
+                                  .positions = positions,
+                                  .indices = indices,
+                                  .material = scene_add_material(p->scene, &matte) });
+    assert_true(mesh >= 0);
+    const struct node identity = node_default();
+    const int node = scene_add_node(p->scene, &identity);
+    const struct instance instance = { .node = node, .mesh = mesh, .skin = -1 };
+    assert_true(scene_add_instance(p->scene, &instance) >= 0);
+    assert_true(pose_init(&p->pose, p->scene, -1, 0));
+    assert_true(mrt_block_map_init(test_host(), "place", 1, &p->map));
+    mrt_block_init(&p->map.blocks[0], "block", MRT_BLOCK_CUBE);
+    mrt_block_set_box(&p->map.blocks[0], (struct box3){ vec3_of(-1, -1, -1), vec3_of(1, 1, 1) });
+    assert_non_null(p->trace = trace_scene_create(test_host(), &p->pose));
+    assert_true(mrt_reflectors_init(test_host(), &p->map, &p->reflectors));
+}
+
+static void close_place(struct place *p)
+{
+    mrt_reflectors_finish(&p->reflectors);
+    trace_scene_destroy(p->trace);
+    mrt_block_map_finish(&p->map);
+    pose_finish(&p->pose);
+    scene_destroy(p->scene);
+}
+
+static void open_ground(struct place *p, float height)
+{
+    open_place(p, height, vec3_of(0, 0, 400), vec3_of(400, 0, 0));
+}
+
+// Irradiance by normal of reflectors of radiosity 1.
+static float irradiance(const struct place *p, const struct mrt_reflector_row *row, vec3s normal)
+{
+    float sum = 0.0f;
+    for (uint32_t k = row->first; k < row->first + row->count; k++) {
+        const struct mrt_reflector_share *share = &p->reflectors.shares[k];
+        const int x = (int16_t)(share->direction & 0xffffu), y = (int16_t)(share->direction >> 16);
+        float basis[9], weight[9];
+        sh_eval(3, octahedral_decode((vec2s){ { (float)x / 32767, (float)y / 32767 } }), basis);
+        sh_irradiance(3, basis, weight);
+        sum += share->weight * sh_dot(3, weight, normal);
+    }
+    return sum;
+}
+
+// Radiosity 1 is radiance 1/π, whose irradiance of a hemisphere is 1. Beyond the square's edge, 0.4
+// degrees of the sky are seen.
+TEST(a_point_above_ground_receives_its_radiosity)
+{
+    struct place p;
+    struct mrt_lit_point point = { .position = vec3_of(0.1f, 0.2f, 0.3f) };
+    open_ground(&p, -3);
+    assert_true(mrt_area_light_points(p.trace, &p.reflectors, 256, &point, 1));
+    const struct mrt_reflector_row *row = &point.light.reflected;
+    CHECK(row->count > 100);
+    CHECK_NEAR(irradiance(&p, row, vec3_of(0, -1, 0)), 1, 0.02);
+    CHECK_NEAR(irradiance(&p, row, vec3_of(1, 0, 0)), 0.5, 0.02);
+    CHECK_NEAR(irradiance(&p, row, vec3_of(0, 1, 0)), 0, 0.02);
+    for (uint32_t i = 0; i < p.reflectors.count; i++) {
+        CHECK_NEAR(p.reflectors.at[i].position.y, -3, 1e-4);
+        CHECK_NEAR(p.reflectors.at[i].reflectance.x, ALBEDO, 1e-5);
+        CHECK(p.reflectors.at[i].normal.y > 0.999f);
+    }
+    close_place(&p);
+}
+
+// A texel that faces the ground sees no sky, one that is upright as much as ground.
+TEST(a_texel_receives_the_share_of_its_rays)
+{
+    struct place p;
+    struct mrt_geometry_texel texels[2] = {
+        { .position = vec3_of(0, 1, 0), .normal = vec3_of(0, -1, 0), .found = true },
+        { .position = vec3_of(1, 0, 0), .normal = vec3_of(-1, 0, 0), .found = true },
+    };
+    bool lit;
+    open_ground(&p, -3);
+    assert_true(mrt_area_light_texels(p.trace, &p.reflectors, texels, 2, &lit));
+    CHECK(lit);
+    for (int i = 0; i < 2; i++) {
+        float sum = 0.0f;
+        const struct mrt_reflector_row row = texels[i].reflected;
+        for (uint32_t k = row.first; k < row.first + row.count; k++)
+            sum += p.reflectors.shares[k].weight;
+        CHECK_NEAR(sum + texels[i].sky, 1, 1e-5);
+        CHECK_NEAR(sum, i == 0 ? 1 : 0.5, 0.04);
+    }
+    close_place(&p);
+}
+
+static uint32_t reflectors_seen(float height, vec3s across, vec3s along)
+{
+    struct place p;
+    struct mrt_lit_point point = { .position = vec3_of(0.1f, 0.2f, 0.3f) };
+    open_place(&p, height, across, along);
+    assert_true(mrt_area_light_points(p.trace, &p.reflectors, 8192, &point, 1));
+    const uint32_t count = p.reflectors.count;
+    close_place(&p);
+    return count;
+}
+
+// A wall's texels stand for surfaces behind it, but not for those that stand on its plane, as the
+// reveals of a window do.
+TEST(surfaces_of_a_block_are_no_reflectors)
+{
+    const vec3s across = vec3_of(0, 0, 0.9f), along = vec3_of(0.9f, 0, 0);
+    CHECK(reflectors_seen(-0.7f, across, along) == 0);
+    CHECK(reflectors_seen(-1, across, along) == 0);
+    CHECK(reflectors_seen(-1.2f, across, along) == 0);
+    CHECK(reflectors_seen(-1.6f, across, along) > 0);
+    CHECK(reflectors_seen(-1.2f, across, vec3_of(0, -0.15f, 0)) > 0);
+}
