@@ -65,8 +65,8 @@ static vec4s transform_tangent(mat4s world_from_mesh, vec4s tangent, vec3s norma
     return vec4_of(unit_or(transformed, any_tangent), tangent.w);
 }
 
-static void deform_vertices(const struct mesh *mesh, const float *weights, const mat4s *joints,
-                            mat4s world_from_node, struct deformed_mesh *out)
+void deform_vertices(const struct mesh *mesh, const float *weights, const mat4s *joints,
+                     mat4s world_from_node, const struct deformed_mesh *out)
 {
     mat3s node_normals = mat4_normal_transform(world_from_node);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {

@@ -12,5 +12,10 @@ struct deformer {
 
 bool deformer_init(struct deformer *deformer, struct arena *arena, const struct scene *scene);
 
+// Morphs a mesh by weights [morph_count], then transforms its vertices by the matrices of its
+// joints, which may be NULL: by world_from_node. out: arrays of vertex_count; tangents may be NULL.
+void deform_vertices(const struct mesh *mesh, const float *weights, const mat4s *joints,
+                     mat4s world_from_node, const struct deformed_mesh *out);
+
 // Fills pose->deformed from the pose's nodes and morph weights. Allocates nothing.
 void deform(struct deformer *deformer, struct scene_pose *pose);

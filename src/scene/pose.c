@@ -144,19 +144,24 @@ static mat4s matrix_of_local(const struct node_local *local)
     return matrix;
 }
 
-// Parents come before their children, so one pass is enough. Animation replaces a node's matrix by
-// translation, rotation and scale (glTF 2.0, 3.6.2: nodes with a matrix are not animated).
+// Animation replaces a node's matrix by translation, rotation and scale (glTF 2.0, 3.6.2: nodes
+// with a matrix are not animated).
+static mat4s parent_from_node(const struct scene_pose *pose, int node)
+{
+    const struct node_local *local = &pose->workspace->local[node];
+    return pose->scene->nodes[node].has_matrix && !local->animated ? pose->scene->nodes[node].matrix
+                                                                   : matrix_of_local(local);
+}
+
+// Parents come before their children, so one pass is enough.
 static void update_nodes(struct scene_pose *pose)
 {
     const struct scene *scene = pose->scene;
     for (int i = 0; i < scene->node_count; i++) {
-        const struct node *node = &scene->nodes[i];
-        const struct node_local *local = &pose->workspace->local[i];
-        mat4s parent_from_node =
-            node->has_matrix && !local->animated ? node->matrix : matrix_of_local(local);
+        const int parent = scene->nodes[i].parent;
+        const mat4s local = parent_from_node(pose, i);
         pose->world_from_node[i] =
-            node->parent < 0 ? parent_from_node
-                             : glms_mat4_mul(pose->world_from_node[node->parent], parent_from_node);
+            parent < 0 ? local : glms_mat4_mul(pose->world_from_node[parent], local);
     }
 }
 
@@ -247,6 +252,14 @@ uint64_t pose_surfaces_hash(const struct scene_pose *pose)
                         : hash_bytes(&world_from_mesh, sizeof world_from_mesh, hash);
     }
     return hash;
+}
+
+mat4s pose_ancestor_from_node(const struct scene_pose *pose, int ancestor, int node)
+{
+    mat4s m = glms_mat4_identity();
+    for (int n = node; n >= 0 && n != ancestor; n = pose->scene->nodes[n].parent)
+        m = glms_mat4_mul(parent_from_node(pose, n), m);
+    return m;
 }
 
 static bool is_mirroring(mat4s m)

@@ -35,6 +35,9 @@ void pose_finish(struct scene_pose *pose);
 
 // World transform of an instance; identity for deformed ones, whose vertices are in world space.
 mat4s pose_world_from_instance(const struct scene_pose *pose, int instance);
+// The transform from a node to one of its ancestors, -1 for the world: free of the rounding of what
+// is above that.
+mat4s pose_ancestor_from_node(const struct scene_pose *pose, int ancestor, int node);
 // Whether the instance's transform mirrors it (negative determinant); for a skin, that of its first
 // joint.
 bool pose_is_mirrored(const struct scene_pose *pose, int instance);

@@ -18,16 +18,20 @@ static bool joins(const struct dnrt_objects *out, const struct scene_pose *pose,
            last->node == pose->scene->instances[instance].node;
 }
 
-static void add_instance(struct dnrt_objects *out, const struct scene_pose *pose, int instance,
+static bool add_instance(struct dnrt_objects *out, const struct scene_pose *pose, int instance,
                          int *instances)
 {
-    if (!joins(out, pose, instance))
-        out->at[out->count++] =
-            (struct dnrt_object){ .node = pose->scene->instances[instance].node,
-                                  .deformed = pose->deformed[instance].positions != NULL,
-                                  .first = *instances };
+    if (!joins(out, pose, instance)) {
+        struct dnrt_object *object = &out->at[out->count++];
+        *object = (struct dnrt_object){ .node = pose->scene->instances[instance].node,
+                                        .deformed = pose->deformed[instance].positions != NULL,
+                                        .first = *instances };
+        if (object->deformed && !dnrt_find_root(out->host, pose->scene, instance, &object->root))
+            return false;
+    }
     out->at[out->count - 1].count++;
     out->instances[(*instances)++] = instance;
+    return true;
 }
 
 static bool find_objects(struct dnrt_objects *out, const struct scene_pose *pose)
@@ -35,38 +39,29 @@ static bool find_objects(struct dnrt_objects *out, const struct scene_pose *pose
     const struct scene *scene = pose->scene;
     bool *dynamic = scene_dynamic_instances(out->host, scene);
     int instances = 0;
-    for (int i = 0; dynamic && i < scene->instance_count; i++)
+    bool ok = dynamic != NULL;
+    for (int i = 0; ok && i < scene->instance_count; i++)
         if (dynamic[i] && scene_mesh_of(scene, i)->index_count > 0)
-            add_instance(out, pose, i, &instances);
+            ok = add_instance(out, pose, i, &instances);
     host_free(out->host, dynamic);
-    return dynamic != NULL;
+    return ok;
 }
 
 // ---- frames
-
-static struct box3 deformed_bounds(const struct scene_pose *pose, int instance)
-{
-    struct box3 box = box3_empty();
-    for (uint32_t v = 0; v < scene_mesh_of(pose->scene, instance)->vertex_count; v++)
-        box = box3_add_point(box, pose->deformed[instance].positions[v]);
-    return box;
-}
 
 bool dnrt_object_frame(const struct dnrt_objects *objects, const struct scene_pose *pose,
                        int object, struct dnrt_frame *frame, mat3s *stretch)
 {
     const struct dnrt_object *of = &objects->at[object];
     const int first = objects->instances[of->first];
-    if (!of->deformed) return dnrt_frame_of(pose_world_from_instance(pose, first), frame, stretch);
-    const struct box3 box = deformed_bounds(pose, first);
-    *frame = (struct dnrt_frame){ box3_centre(box), glms_mat3_identity(), 1.0f };
-    *stretch = glms_mat3_identity();
-    return !box3_is_empty(box);
+    const mat4s world_from_mesh = of->deformed ? dnrt_world_from_deformed(pose, first, &of->root)
+                                               : pose_world_from_instance(pose, first);
+    return dnrt_frame_of(world_from_mesh, frame, stretch);
 }
 
 // ---- shapes
 
-// Within two steps of its rounding.
+// Within two steps of its rounding. That of a deformed object is part of its deformation.
 static bool same_stretch(mat3s a, mat3s b)
 {
     for (int i = 0; i < 9; i++)
@@ -94,7 +89,7 @@ int dnrt_find_shape(const struct dnrt_objects *of, const struct dnrt_objects *ob
     if (!dnrt_object_frame(objects, pose, object, &frame, &stretch)) return -1;
     for (int s = 0; s < of->shape_count; s++)
         if (has_meshes(of, &of->shapes[s], objects, pose, &objects->at[object]) &&
-            same_stretch(of->shapes[s].stretch, stretch))
+            (of->shapes[s].deformed || same_stretch(of->shapes[s].stretch, stretch)))
             return s;
     return -1;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "scene/pose.h"
+#include "techniques/dnrt/dnrt_deformed.h"
 
 // world_from_object = translation · rotation · scale.
 struct dnrt_frame {
@@ -20,9 +21,10 @@ bool dnrt_frame_of(mat4s world_from_mesh, struct dnrt_frame *frame, mat3s *stret
 // Instances at a node, numbered one after another.
 struct dnrt_object {
     int node;
-    bool deformed; // skinned or morphed: its frame is the world's axes at the middle of its bounds
-    int first, count; // in dnrt_objects.instances
-    int shape;        // in dnrt_objects.shapes
+    bool deformed;         // skinned or morphed
+    struct dnrt_root root; // of a deformed one
+    int first, count;      // in dnrt_objects.instances
+    int shape;             // in dnrt_objects.shapes
 };
 
 // The unit of the bake: all objects of these meshes and this stretch share it.
@@ -58,7 +60,7 @@ int dnrt_find_shape(const struct dnrt_objects *of, const struct dnrt_objects *ob
 // The shape that has a volume.
 int dnrt_shape_of_volume(const struct dnrt_objects *objects, int volume);
 
-// The frame of an object in a pose, and its stretch: the identity for deformed ones. False: its
+// The frame of an object in a pose, and its stretch. A deformed one turns with its root. False: its
 // matrix has no inverse.
 bool dnrt_object_frame(const struct dnrt_objects *objects, const struct scene_pose *pose,
                        int object, struct dnrt_frame *frame, mat3s *stretch);

@@ -27,27 +27,24 @@ static void copy_material(struct dnrt_part *part, const struct scene *from, int 
     to->normal_map = texture_use_none();
 }
 
-// Deformed vertices are in world space: a copy of them is the mesh.
-static bool copy_deformed(struct dnrt_part *part, const struct deformed_mesh *from, vec3s origin,
-                          struct mesh *mesh)
+// The deformed vertices are the mesh.
+static bool copy_deformed(struct dnrt_part *part, const struct scene_pose *pose, int instance,
+                          const struct dnrt_root *root, struct mesh *mesh)
 {
-    vec3s *positions = host_alloc(part->host, mesh->vertex_count, sizeof *positions);
-    vec3s *normals = host_alloc(part->host, mesh->vertex_count, sizeof *normals);
-    mesh->positions = positions;
-    mesh->normals = normals;
+    const struct deformed_mesh to = {
+        .positions = host_alloc(part->host, mesh->vertex_count, sizeof *to.positions),
+        .normals = host_alloc(part->host, mesh->vertex_count, sizeof *to.normals),
+    };
+    mesh->positions = to.positions;
+    mesh->normals = to.normals;
     mesh->tangents = NULL;
     mesh->morph_count = 0;
     mesh->own_arrays = true;
-    if (!positions || !normals) return false;
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        positions[v] = glms_vec3_sub(from->positions[v], origin);
-        normals[v] = from->normals[v]; // the frame has the axes of the world
-    }
-    return true;
+    return to.positions && to.normals && dnrt_deformed_mesh(part->host, pose, instance, root, &to);
 }
 
 static bool add_instance(struct dnrt_part *part, const struct scene_pose *pose, int instance,
-                         vec3s origin, mat3s stretch, int k)
+                         const struct dnrt_root *root, mat3s stretch, int k)
 {
     const struct scene *from = pose->scene;
     struct mesh *mesh = &part->scene.meshes[k];
@@ -58,8 +55,7 @@ static bool add_instance(struct dnrt_part *part, const struct scene_pose *pose, 
     for (int i = 0; i < 3; i++) part->pose.world_from_node[k].col[i] = vec4_of(stretch.col[i], 0);
     part->pose.world_from_node[k].raw[3][3] = 1.0f;
     copy_material(part, from, mesh->material);
-    return !pose->deformed[instance].positions ||
-           copy_deformed(part, &pose->deformed[instance], origin, mesh);
+    return !pose->deformed[instance].positions || copy_deformed(part, pose, instance, root, mesh);
 }
 
 // ---- the bounding sphere
@@ -133,7 +129,7 @@ bool dnrt_part_init(struct dnrt_part *out, struct host *host, const struct scene
     scene->instance_count = scene->mesh_count = scene->node_count = of->count;
     if (!dnrt_object_frame(objects, pose, object, &frame, &stretch)) return true; // radius 0
     for (int k = 0; k < of->count; k++)
-        if (!add_instance(out, pose, objects->instances[of->first + k], frame.origin, stretch, k))
+        if (!add_instance(out, pose, objects->instances[of->first + k], &of->root, stretch, k))
             return false;
     find_sphere(out);
     return true;
