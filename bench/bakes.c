@@ -34,30 +34,47 @@ static void make_folders(const char *path)
     }
 }
 
-static bool find_path(const struct ag_bake *bake, char out[PATH_SIZE])
+static bool find_path(const struct ag_bake *bake, int index, char out[PATH_SIZE])
 {
     char folder[PATH_SIZE];
-    struct ag_bake_info info;
-    if (!find_folder(folder) || ag_bake_get_info(bake, &info) != AG_OK) return false;
-    const int wrote = snprintf(out, PATH_SIZE, "%s/%s.safetensors", folder, info.key);
+    struct ag_bake_part part;
+    if (!find_folder(folder) || ag_bake_get_part(bake, index, &part) != AG_OK) return false;
+    const int wrote = snprintf(out, PATH_SIZE, "%s/%s.safetensors", folder, part.key);
     return wrote > 0 && wrote < PATH_SIZE;
+}
+
+static void load_parts(struct ag_bake *bake, int count)
+{
+    char path[PATH_SIZE];
+    for (int i = 0; i < count; i++)
+        if (find_path(bake, i, path) && access(path, R_OK) == 0) ag_bake_load_part(bake, i, path);
+}
+
+static void save_parts(struct ag_bake *bake, int count)
+{
+    for (int i = 0; i < count; i++) {
+        struct ag_bake_part part;
+        char path[PATH_SIZE];
+        if (!find_path(bake, i, path) || ag_bake_get_part(bake, i, &part) != AG_OK || part.loaded)
+            continue;
+        make_folders(path);
+        ag_bake_save_part(bake, i, path, true);
+    }
 }
 
 // A cache that cannot be used costs time; it is not an error.
 static enum ag_result complete(struct ag_bake *bake, bool *run)
 {
-    char path[PATH_SIZE];
     struct ag_bake_info info;
-    const bool has_path = find_path(bake, path);
-    if (has_path && access(path, R_OK) == 0 && ag_bake_load(bake, path) == AG_OK) return AG_OK;
     ag_bake_get_info(bake, &info);
+    load_parts(bake, info.part_count);
+    ag_bake_get_info(bake, &info);
+    if (info.complete) return AG_OK;
     fprintf(stderr, "baking %s:%s …\n", info.technique, info.options);
     *run = true;
     const enum ag_result result = ag_bake_run(bake, NULL, NULL);
-    if (result != AG_OK || !has_path) return result;
-    make_folders(path);
-    ag_bake_save(bake, path, true);
-    return AG_OK;
+    if (result == AG_OK) save_parts(bake, info.part_count);
+    return result;
 }
 
 enum ag_result bench_bakes_prepare(struct bench_bakes *bakes, struct ag_context *context,

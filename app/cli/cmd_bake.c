@@ -78,6 +78,7 @@ static enum status begin(struct job *job)
     desc.shard_count = a->shard_count;
     desc.max_memory_bytes = (uint64_t)a->max_memory_mib << 20;
     desc.full_report = a->report_full;
+    desc.all_objects = a->all_objects;
     enum status status = baking_begin(&job->baking, &job->session,
                                       a->merge ? job->origin.gi : a->gi, &desc, a->output);
     job->baking.must_keep = true;
@@ -100,7 +101,7 @@ static enum status use_baked(struct job *job)
     if (status != DONE) return status;
     note(copied ? "%s is already baked, in the cache; written: %s (--force bakes again)"
                 : "%s is already baked: %s (--force bakes again)",
-         b->technique, b->path);
+         b->technique, b->kept);
     return DONE;
 }
 
@@ -123,7 +124,7 @@ static json_t *report_json(struct job *job)
     if (!report) return NULL;
     json_object_set_new(report, "estimate_seconds", json_double(job->baking.estimate_seconds));
     json_object_set_new(report, "cached", json_boolean(job->baking.loaded));
-    json_object_set_new(report, "output", json_text(job->baking.path));
+    json_object_set_new(report, "output", json_text(job->baking.kept));
     if (job->exported.facts) json_object_set(report, "export", job->exported.facts);
     return report;
 }
@@ -159,7 +160,7 @@ static enum status publish(struct job *job, json_t *report)
     const struct arguments *a = job->arguments;
     if (!job->baking.loaded) describe(report);
     if (!a->output && !job->baking.loaded && job->baking.path[0])
-        note("written: %s", job->baking.path);
+        note("written: %s", job->baking.kept);
     enum status status = a->report ? json_write(report, a->report) : DONE;
     return status == DONE && a->json ? json_print(json_incref(report)) : status;
 }
@@ -245,6 +246,8 @@ const struct command command_bake = {
         "  afterglow bake --merge part0.safetensors part1.safetensors --shard 0/2 -o "
         "next0.safetensors\n"
         "      joined, and half of the next work that is worth splitting\n"
+        "  afterglow bake chair.glb --gi dnrt --all-objects\n"
+        "      into the cache, for all scenes that have the chair as an object\n"
         "  afterglow bake head.glb --gi ort:offsets=100 --export bins\n"
         "      into the cache, and its maps for other programs: bins/index.json\n"
         "  afterglow bake house.glb --lightmap maps\n"

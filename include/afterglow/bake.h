@@ -26,7 +26,10 @@ struct ag_bake_desc {
     /// Paths of a texel, 1 to 1000000: bakes not the data of the technique, but its light map
     /// (lightmap.h). Lights and sky are those at ag_bake_create. Default 0: the data
     int lightmap_samples;
-    uint64_t reserved[8]; ///< 0; see ABI in types.h
+    /// For dnrt: all instances of the scene are objects, as those of an asset that scenes will have
+    /// as movable ones; default false: those that are dynamic.
+    bool all_objects;
+    uint64_t reserved[7]; ///< 0; see ABI in types.h
 };
 /// Thread: any.
 AG_API void ag_bake_desc_default(struct ag_bake_desc *desc);
@@ -102,7 +105,9 @@ AG_API enum ag_result ag_bake_save(struct ag_bake *bake, const char *path, bool 
 /// Thread: the context's.
 AG_API enum ag_result ag_bake_export(const struct ag_bake *bake, const char *folder);
 /// Reads a file, untrusted, instead of a run. AG_ERROR_FORMAT if it is damaged or of another
-/// technique, version, scene or options; its seed may be any. Thread: the context's.
+/// technique, version, scene or options; its seed may be any. A bake of several parts takes those
+/// that it lacks from a bake of any scene. AG_ERROR_FORMAT where some are still missing: those of
+/// the file stay, and ag_bake_run does the others alone. Thread: the context's.
 AG_API enum ag_result ag_bake_load(struct ag_bake *bake, const char *path);
 /// Writes the finished tasks of a shard. A shard runs its part of the first tasks of the bake; with
 /// all parts merged, its part of the next tasks that are worth splitting, and so on until
@@ -134,10 +139,30 @@ struct ag_bake_info {
     /// The costliest stage of those that a run with a shard would split now; NULL: what is left
     /// is not worth splitting.
     const char *split_stage;
-    uint64_t reserved[3]; ///< 0; see ABI in types.h
+    int part_count;       ///< see ag_bake_get_part; at least 1
+    uint64_t reserved[2]; ///< 0; see ABI in types.h
 };
 /// Thread: the context's.
 AG_API enum ag_result ag_bake_get_info(const struct ag_bake *bake, struct ag_bake_info *out);
+/// A part of a bake that bakes of other scenes share: of dnrt that of a mesh with its material, its
+/// stretch and its pose, which does not depend on the scene. A bake of another technique is one
+/// part, whose key is that of the bake. A cache keeps a file for each part.
+struct ag_bake_part {
+    char key[33];         ///< names what it depends on: a file KEY.safetensors in a cache
+    bool complete;        ///< run to its end, or loaded
+    bool loaded;          ///< from a file
+    uint64_t reserved[2]; ///< 0; see ABI in types.h
+};
+/// index: 0 to ag_bake_info.part_count − 1. Thread: the context's.
+AG_API enum ag_result ag_bake_get_part(const struct ag_bake *bake, int index,
+                                       struct ag_bake_part *out);
+/// Reads a part, and others that the file has, untrusted; ag_bake_run does the rest.
+/// AG_ERROR_FORMAT as for ag_bake_load, or where the file lacks the part. Thread: the context's.
+AG_API enum ag_result ag_bake_load_part(struct ag_bake *bake, int index, const char *path);
+/// As ag_bake_save, of a part of a complete bake: the same bytes whatever the other parts.
+/// Thread: the context's.
+AG_API enum ag_result ag_bake_save_part(struct ag_bake *bake, int index, const char *path,
+                                        bool record_seconds);
 /// The report as a JSON document: technique, options, stages with their seconds, seconds,
 /// peak_memory_bytes of the process, bytes, and more members of some techniques. Owned by the bake,
 /// valid until the next call with it. Requires a complete bake. Thread: the context's.

@@ -61,7 +61,7 @@ struct ag_renderer_desc {
     /// Complete bakes for the techniques that need one; needed only during the call. Default none.
     const struct ag_bake *const *bakes;
     int bake_count;
-    /// Without one in `bakes`: folder with files KEY.safetensors (ag_bake_info.key with seed 0).
+    /// Without one in `bakes`: folder with files KEY.safetensors (ag_bake_part.key with seed 0).
     /// Default NULL: none.
     const char *bake_folder;
     bool id_layer; ///< keep the layer "id"; default false
@@ -103,7 +103,8 @@ AG_API enum ag_result ag_renderer_resize(struct ag_renderer *renderer, int width
 /// Techniques go on if only their options of effect "live" or "invalidate" differ (see
 /// ag_option_info): nothing is created. Others are created again beside the old ones, which are
 /// destroyed afterwards. The scene, the frame's images and maps stay. `bakes` as in
-/// ag_renderer_desc, for techniques created again. A debug view ends with its technique. After a
+/// ag_renderer_desc, for techniques created again; dnrt, where objects have come that its bake
+/// lacks, is created again with a bake that has them. A debug view ends with its technique. After a
 /// failure nothing has changed. Thread: the context's.
 AG_API enum ag_result ag_renderer_set_gi(struct ag_renderer *renderer, const char *gi,
                                          const struct ag_bake *const *bakes, int bake_count);

@@ -138,13 +138,17 @@ static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *
     if (b->lightmap_samples > 0 &&
         !technique_has_light_map(b->spec.technique[b->term], b->spec.options[b->term]))
         return host_fail(host, FAIL_ARGUMENT, "cannot bake %s: it has no light map", gi);
+    if (desc->all_objects && b->spec.technique[b->term]->role != ROLE_DELTA)
+        return host_fail(host, FAIL_ARGUMENT, "cannot bake objects of %s: it bakes none",
+                         b->spec.technique[b->term]->name);
     b->options = run_options(desc);
     if (!api_pose_at(b->scene, &b->pose, desc->animation, desc->time_s)) return false;
     if (!gi_bake_resolve(host, b->spec.technique[b->term], &b->pose, b->spec.options[b->term]))
         return false;
     b->how = (struct technique_bake){ .pose = &b->pose,
                                       .options = b->spec.options[b->term],
-                                      .full_report = desc->full_report };
+                                      .full_report = desc->full_report,
+                                      .all_objects = desc->all_objects };
     char *text = gi_spec_print(&b->spec);
     const struct bake_identity identity = { .seed = desc->seed,
                                             .program = api_program(),
@@ -293,6 +297,30 @@ enum ag_result ag_bake_load(struct ag_bake *b, const char *path)
     return api_done(context, bake_load(b->bake, path));
 }
 
+static bool is_part(const struct ag_bake *b, int index)
+{
+    return index >= 0 && index < bake_part_count(b->bake);
+}
+
+enum ag_result ag_bake_load_part(struct ag_bake *b, int index, const char *path)
+{
+    struct ag_context *context = context_of(b);
+    AG_REQUIRE(context, b, "bake is NULL");
+    AG_REQUIRE(context, path && path[0], "path is empty");
+    AG_REQUIRE(context, is_part(b, index), "index %d is no part", index);
+    return api_done(context, bake_load_part(b->bake, index, path));
+}
+
+enum ag_result ag_bake_save_part(struct ag_bake *b, int index, const char *path,
+                                 bool record_seconds)
+{
+    struct ag_context *context = context_of(b);
+    AG_REQUIRE(context, b, "bake is NULL");
+    AG_REQUIRE(context, path && path[0], "path is empty");
+    AG_REQUIRE(context, is_part(b, index), "index %d is no part", index);
+    return api_done(context, bake_save_part(b->bake, index, path, record_seconds));
+}
+
 enum ag_result ag_bake_set_checkpoint(struct ag_bake *b, const char *path)
 {
     struct ag_context *context = context_of(b);
@@ -381,8 +409,21 @@ enum ag_result ag_bake_get_info(const struct ag_bake *b, struct ag_bake_info *ou
                                   .complete = bake_is_complete(b->bake),
                                   .seconds = bake_seconds(b->bake),
                                   .bytes = bake_bytes(b->bake),
-                                  .split_stage = bake_split_stage(b->bake) };
+                                  .split_stage = bake_split_stage(b->bake),
+                                  .part_count = bake_part_count(b->bake) };
     bake_key(b->bake, out->key);
+    return AG_OK;
+}
+
+enum ag_result ag_bake_get_part(const struct ag_bake *b, int index, struct ag_bake_part *out)
+{
+    struct ag_context *context = context_of(b);
+    AG_REQUIRE(context, b, "bake is NULL");
+    AG_REQUIRE_POINTER(context, out);
+    AG_REQUIRE(context, is_part(b, index), "index %d is no part", index);
+    *out = (struct ag_bake_part){ .complete = bake_part_is_complete(b->bake, index),
+                                  .loaded = bake_part_is_loaded(b->bake, index) };
+    bake_part_key(b->bake, index, out->key);
     return AG_OK;
 }
 

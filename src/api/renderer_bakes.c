@@ -24,14 +24,21 @@ static const struct bake *find_given(const struct ag_renderer_desc *desc, const 
     return NULL;
 }
 
-static bool load_from_folder(struct host *host, const char *folder, struct bake *bake)
+static bool load_part(struct host *host, const char *folder, struct bake *bake, int part)
 {
     char key[HASH128_TEXT];
-    if (!folder) return false;
-    bake_key(bake, key);
+    bake_part_key(bake, part, key);
     char *path = host_sprintf(host, "%s/%s.safetensors", folder, key);
-    const bool ok = path && access(path, R_OK) == 0 && bake_load(bake, path);
+    const bool ok = path && access(path, R_OK) == 0 && bake_load_part(bake, part, path);
     host_free(host, path);
+    return ok;
+}
+
+static bool load_from_folder(struct host *host, const char *folder, struct bake *bake)
+{
+    bool ok = folder != NULL;
+    for (int part = 0; ok && part < bake_part_count(bake); part++)
+        ok = load_part(host, folder, bake, part);
     return ok;
 }
 
@@ -51,9 +58,10 @@ static bool fail_missing(struct host *host, const struct ag_renderer_desc *desc,
                      technique);
 }
 
+// may_lack: the technique goes on with the bake that it has.
 static bool find_one(struct renderer_bakes *bakes, struct host *host,
                      const struct ag_renderer_desc *desc, const struct gi_spec *spec,
-                     const struct scene_pose *pose, int term)
+                     const struct scene_pose *pose, int term, bool may_lack)
 {
     const struct technique *technique = spec->technique[term];
     bakes->how[term] = (struct technique_bake){ .pose = pose, .options = spec->options[term] };
@@ -65,7 +73,7 @@ static bool find_one(struct renderer_bakes *bakes, struct host *host,
     const struct bake *given = find_given(desc, wanted, technique, &of_technique);
     if (!given && !of_technique && load_from_folder(host, desc->bake_folder, wanted))
         given = wanted;
-    if (!given) return fail_missing(host, desc, technique->name, of_technique);
+    if (!given) return may_lack || fail_missing(host, desc, technique->name, of_technique);
     bakes->found.of_term[term] = bake_tensors(given);
     return true;
 }
@@ -75,9 +83,9 @@ bool renderer_bakes_find(struct renderer_bakes *bakes, struct host *host,
                          const struct gi *running, const struct scene_pose *pose)
 {
     for (int i = 0; i < spec->count; i++) {
-        const bool continues = running && gi_continues(running, spec, i) >= 0;
-        if (spec->technique[i]->bake_version != 0 && !continues &&
-            !find_one(bakes, host, desc, spec, pose, i))
+        const int from = running ? gi_continues(running, spec, i) : -1;
+        if (spec->technique[i]->bake_version != 0 && (from < 0 || gi_lacks_bake(running, from)) &&
+            !find_one(bakes, host, desc, spec, pose, i, from >= 0))
             return false;
     }
     return true;

@@ -36,6 +36,7 @@ void bake_destroy(struct bake *bake)
     results_free(bake);
     safetensors_finish(bake->host, &bake->file);
     host_free(bake->host, bake->plan.stages);
+    host_free(bake->host, bake->plan.parts);
     host_free(bake->host, bake->checkpoint);
     arena_finish(&bake->plan.arena);
     pthread_mutex_destroy(&bake->mutex);

@@ -28,8 +28,9 @@ struct bake_plan *bake_plan_of(struct bake *bake);
 // The hash of technique, version, options, scene and seed: the file's name in a cache.
 void bake_key(const struct bake *bake, char out[HASH128_TEXT]);
 
-// Are files of b fit for a? All of the identity but the seed and the program.
-bool bake_fits(const struct bake *a, const struct bake *b);
+// Does a bake serve where another one is wanted? All of the identity but the seed and the program;
+// of parts it may have more.
+bool bake_fits(const struct bake *bake, const struct bake *wanted);
 
 // ---- before
 
@@ -97,8 +98,22 @@ const struct tensors *bake_reported(const struct bake *bake);
 // afterglow.seconds and those of the stages to its metadata, which differ from run to run, and the
 // scene's name, which differs from caller to caller.
 bool bake_save(struct bake *bake, const char *path, bool record_run);
-// Reads a file of this identity; otherwise FAIL_FORMAT and one sentence with the difference.
+// Reads a file of this identity; otherwise FAIL_FORMAT and one sentence with the difference. Parts
+// are taken from a bake of any scene; FAIL_FORMAT until all are there, and those that the file has
+// are kept: bake_run does the others.
 bool bake_load(struct bake *bake, const char *path);
+
+// ---- parts: what other scenes may have, too, each a file of a cache (bake_plan_part). A bake
+// without parts has one, all of it.
+
+int bake_part_count(const struct bake *bake);
+void bake_part_key(const struct bake *bake, int part, char out[HASH128_TEXT]); // from 0
+bool bake_part_is_complete(const struct bake *bake, int part);
+bool bake_part_is_loaded(const struct bake *bake, int part); // from a file
+// Reads the file of a part, or one that has it. FAIL_FORMAT, and nothing is taken: it has not.
+bool bake_load_part(struct bake *bake, int part, const char *path);
+// As bake_save, of the part alone; its bytes do not depend on the other parts.
+bool bake_save_part(struct bake *bake, int part, const char *path, bool record_run);
 
 // The technique that a bake file names.
 bool bake_file_technique(struct host *host, const char *path, char *out, size_t size);

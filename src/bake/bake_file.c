@@ -1,233 +1,11 @@
-// Bake files: identity in the metadata, and a hash of the whole content. Numbers are those of the C
-// locale, so that a file serves in every one.
+// Bake files: the whole bake, or one of its parts.
 #include "bake/bake_state.h"
 
-#include "core/c_locale.h"
-
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-static const char KIND[] = "afterglow.kind", TECHNIQUE[] = "afterglow.technique",
-                  VERSION[] = "afterglow.bake_version", OPTIONS[] = "afterglow.options",
-                  SCENE[] = "afterglow.scene", SEED[] = "afterglow.seed",
-                  PROGRAM[] = "afterglow.program", SECONDS[] = "afterglow.seconds",
-                  STAGE_SECONDS[] = "afterglow.stage_seconds", CONTENT[] = "afterglow.content",
-                  GI[] = "afterglow.gi", SCENE_NAME[] = "afterglow.scene_name",
-                  SCENE_SCALE[] = "afterglow.scene_scale";
-static const char BAKE[] = "bake", PARTIAL[] = "partial", ANY_SCENE[] = "any";
-
-// ---- metadata
-
-static void add_metadata(struct identity_text *text, const char *key, const char *value)
-{
-    text->metadata[text->count++] = (struct tensor_metadata){ key, value };
-}
-
-static void add_scene(struct identity_text *text, const struct bake_identity *id)
-{
-    if (id->scene_name) add_metadata(text, SCENE_NAME, id->scene_name);
-    if (!(id->scene_scale > 0.0f) || id->scene_scale == 1.0f) return;
-    c_locale_print(text->scale, sizeof text->scale, "%.9g", (double)id->scene_scale);
-    add_metadata(text, SCENE_SCALE, text->scale);
-}
-
-void identity_print(const struct bake *bake, const char *kind, double seconds,
-                    struct identity_text *out)
-{
-    const struct bake_identity *id = &bake->identity;
-    *out = (struct identity_text){ 0 };
-    snprintf(out->version, sizeof out->version, "%d", id->version);
-    snprintf(out->seed, sizeof out->seed, "%" PRIu64, id->seed);
-    snprintf(out->scene, sizeof out->scene, "%s", ANY_SCENE);
-    if (bake->plan.depends_on_scene) hash128_print(bake->plan.scene, out->scene);
-    add_metadata(out, KIND, kind);
-    add_metadata(out, TECHNIQUE, id->technique);
-    add_metadata(out, VERSION, out->version);
-    add_metadata(out, OPTIONS, id->options);
-    add_metadata(out, SCENE, out->scene);
-    add_metadata(out, SEED, out->seed);
-    add_metadata(out, PROGRAM, id->program);
-    if (strcmp(kind, PARTIAL) == 0 && id->gi) add_metadata(out, GI, id->gi);
-    if (strcmp(kind, PARTIAL) == 0) add_scene(out, id);
-    if (isnan(seconds)) return;
-    c_locale_print(out->seconds, sizeof out->seconds, "%.3f", seconds);
-    add_metadata(out, SECONDS, out->seconds);
-}
-
-void bake_key(const struct bake *bake, char out[HASH128_TEXT])
-{
-    struct identity_text text;
-    struct hash128 key = { 0 };
-    identity_print(bake, BAKE, (double)NAN, &text);
-    for (size_t i = 0; i < text.count; i++)
-        if (strcmp(text.metadata[i].key, PROGRAM) != 0)
-            key = hash128_add_text(hash128_add_text(key, text.metadata[i].key),
-                                   text.metadata[i].value);
-    hash128_print(key, out);
-}
-
-bool bake_fits(const struct bake *a, const struct bake *b)
-{
-    const struct bake_identity *of_a = &a->identity, *of_b = &b->identity;
-    return strcmp(of_a->technique, of_b->technique) == 0 && of_a->version == of_b->version &&
-           strcmp(of_a->options, of_b->options) == 0 &&
-           a->plan.depends_on_scene == b->plan.depends_on_scene &&
-           hash128_same(a->plan.scene, b->plan.scene);
-}
-
-static struct hash128 content_hash(const struct tensor_metadata *metadata, size_t metadata_count,
-                                   const struct tensor *at, size_t count)
-{
-    struct hash128 hash = { 0 };
-    for (size_t i = 0; i < metadata_count; i++) {
-        if (strcmp(metadata[i].key, CONTENT) == 0) continue;
-        hash = hash128_add_text(hash, metadata[i].key);
-        hash = hash128_add_text(hash, metadata[i].value);
-    }
-    // By element size, as in the file.
-    for (size_t size = 4; size > 0; size /= 2)
-        for (size_t i = 0; i < count; i++) {
-            if (tensor_type_bytes(at[i].type) != size) continue;
-            hash = hash128_add_text(hash, at[i].name);
-            hash = hash128_add_text(hash, tensor_type_name(at[i].type));
-            hash = hash128_add(hash, at[i].shape, (size_t)at[i].rank * sizeof at[i].shape[0]);
-            hash = hash128_add(hash, at[i].data, at[i].bytes);
-        }
-    return hash;
-}
-
-bool identity_write(struct host *host, const char *path, struct identity_text *text,
-                    const struct tensor *at, size_t count)
-{
-    hash128_print(content_hash(text->metadata, text->count, at, count), text->content);
-    add_metadata(text, CONTENT, text->content);
-    const struct tensors set = { at, count, text->metadata, text->count };
-    return safetensors_write(host, path, &set);
-}
-
-// ---- checks
-
-static bool fail_use(struct host *host, const char *path, const char *why)
-{
-    return host_fail(host, FAIL_FORMAT, "cannot use %s: %s", path, why);
-}
-
-static bool check_content(struct host *host, const char *path, const struct tensors *set)
-{
-    char text[HASH128_TEXT];
-    const char *written = tensors_metadata(set, CONTENT);
-    hash128_print(content_hash(set->metadata, set->metadata_count, set->at, set->count), text);
-    return (written && strcmp(written, text) == 0) ||
-           fail_use(host, path, "it is damaged: its content differs from its checksum");
-}
-
-static bool differs(const struct tensors *set, const char *key, const char *wanted)
-{
-    const char *value = tensors_metadata(set, key);
-    return !value || strcmp(value, wanted) != 0;
-}
-
-static bool fail_value(struct host *host, const char *path, const char *what,
-                       const struct tensors *set, const char *key, const char *wanted)
-{
-    const char *value = tensors_metadata(set, key);
-    return host_fail(host, FAIL_FORMAT, "cannot use %s: its %s is %.200s, not %.200s", path, what,
-                     value ? value : "not stated", wanted);
-}
-
-static bool fail_options(struct host *host, const char *path, const struct tensors *set,
-                         const char *wanted)
-{
-    char differences[600];
-    const char *value = tensors_metadata(set, OPTIONS);
-    if (!value) return fail_use(host, path, "it does not state its options");
-    option_differences(value, wanted, differences, sizeof differences);
-    if (!differences[0]) return fail_use(host, path, "its list of options is wrong");
-    return host_fail(host, FAIL_FORMAT, "cannot use %s: it has other options: %s", path,
-                     differences);
-}
-
-bool identity_check(struct host *host, const struct bake *bake, const char *kind, const char *path,
-                    const struct tensors *set)
-{
-    struct identity_text text;
-    identity_print(bake, kind, (double)NAN, &text);
-    if (!tensors_metadata(set, KIND))
-        return fail_use(host, path, "it is not a bake of this program");
-    if (differs(set, KIND, kind)) return fail_value(host, path, "kind", set, KIND, kind);
-    if (differs(set, TECHNIQUE, bake->identity.technique))
-        return fail_value(host, path, "technique", set, TECHNIQUE, bake->identity.technique);
-    if (differs(set, VERSION, text.version))
-        return fail_value(host, path, "bake version", set, VERSION, text.version);
-    if (differs(set, OPTIONS, bake->identity.options))
-        return fail_options(host, path, set, bake->identity.options);
-    if (differs(set, SCENE, text.scene))
-        return fail_use(host, path,
-                        bake->identity.of_light ? "it is of another scene or of other light"
-                                                : "it is of another scene");
-    // Partial results of two seeds are no bake of either.
-    if (strcmp(kind, BAKE) != 0 && differs(set, SEED, text.seed))
-        return fail_value(host, path, "seed", set, SEED, text.seed);
-    return check_content(host, path, set);
-}
-
-double identity_seconds(const struct tensors *set)
-{
-    const char *text = tensors_metadata(set, SECONDS);
-    char *end = NULL;
-    const double seconds = text ? c_locale_parse(text, &end) : (double)NAN;
-    return text && *end == 0 && seconds >= 0.0 && isfinite(seconds) ? seconds : (double)NAN;
-}
-
-// ---- seconds by stage, as "name=1.25;name=…"
-
-// In the arena of the plan; NULL: out of memory.
-static const char *print_stage_seconds(struct bake *bake)
-{
-    enum { NUMBER = 32 };
-    const struct bake_plan *plan = &bake->plan;
-    size_t size = 1, used = 0;
-    for (int s = 0; s < plan->stage_count; s++) size += strlen(plan->stages[s].what.name) + NUMBER;
-    char *text = arena_alloc(&bake->plan.arena, size, 1);
-    for (int s = 0; text && s < plan->stage_count; s++)
-        used += (size_t)c_locale_print(text + used, size - used, "%s%s=%.4g", s > 0 ? ";" : "",
-                                       plan->stages[s].what.name, plan->stages[s].seconds);
-    return text;
-}
-
-// NaN: not stated.
-static double parse_stage_seconds(const char *text, const char *name)
-{
-    const size_t length = strlen(name);
-    for (const char *at = text; at; at = strchr(at, ';'), at = at ? at + 1 : NULL) {
-        if (strncmp(at, name, length) != 0 || at[length] != '=') continue;
-        const double seconds = c_locale_parse(at + length + 1, NULL);
-        return seconds >= 0.0 && isfinite(seconds) ? seconds : (double)NAN;
-    }
-    return (double)NAN;
-}
-
-static void read_seconds(struct bake *bake, const struct tensors *set)
-{
-    const char *stages = tensors_metadata(set, STAGE_SECONDS);
-    bake->seconds = identity_seconds(set);
-    for (int s = 0; s < bake->plan.stage_count; s++)
-        bake->plan.stages[s].seconds = parse_stage_seconds(stages, bake->plan.stages[s].what.name);
-}
-
-// ---- bake_save, bake_load
-
-// They are known after a run, not after reading a file without them.
-static bool add_stage_seconds(struct bake *bake, struct identity_text *text)
-{
-    if (isnan(bake->seconds)) return true;
-    const char *stages = print_stage_seconds(bake);
-    if (stages) add_metadata(text, STAGE_SECONDS, stages);
-    return stages != NULL;
-}
+// ---- writing
 
 bool bake_save(struct bake *bake, const char *path, bool record_run)
 {
@@ -236,19 +14,48 @@ bool bake_save(struct bake *bake, const char *path, bool record_run)
     if (!tensors)
         return host_fail(bake->host, FAIL_ARGUMENT,
                          "cannot write %s: the bake is incomplete; run it first", path);
-    identity_print(bake, BAKE, record_run ? bake->seconds : (double)NAN, &text);
-    if (record_run) add_scene(&text, &bake->identity);
-    if (record_run && !add_stage_seconds(bake, &text)) return false;
+    identity_print(bake, IDENTITY_BAKE, record_run ? bake->seconds : (double)NAN, &text);
+    if (record_run && !identity_add_run(bake, 0, &text)) return false;
     const size_t count = bake->file.memory ? tensors->count : bake->saved_count;
     if (!identity_write(bake->host, path, &text, tensors->at, count)) return false;
     if (bake->checkpoint) remove(bake->checkpoint);
     return true;
 }
 
-static bool same_tensor(const struct tensor *a, const struct tensor *b)
+bool bake_save_part(struct bake *bake, int part, const char *path, bool record_run)
 {
-    return a && a->type == b->type && a->rank == b->rank &&
-           memcmp(a->shape, b->shape, sizeof a->shape) == 0;
+    struct identity_text text;
+    size_t count = 0;
+    if (bake->plan.part_count == 0 || !bake_is_complete(bake))
+        return bake_save(bake, path, record_run);
+    identity_print_part(bake, part + 1, record_run ? part_seconds(bake, part + 1) : (double)NAN,
+                        &text);
+    if (record_run && !identity_add_run(bake, part + 1, &text)) return false;
+    struct tensor *tensors = part_tensors(bake, part + 1, &count);
+    const bool ok = tensors && identity_write(bake->host, path, &text, tensors, count);
+    host_free(bake->host, tensors);
+    if (ok && bake->checkpoint) remove(bake->checkpoint);
+    return ok;
+}
+
+// ---- reading
+
+bool bake_fits(const struct bake *bake, const struct bake *wanted)
+{
+    const struct bake_identity *is = &bake->identity, *want = &wanted->identity;
+    if (strcmp(is->technique, want->technique) != 0 || is->version != want->version ||
+        strcmp(is->options, want->options) != 0)
+        return false;
+    if (wanted->plan.part_count > 0) return parts_fit(bake, wanted);
+    return bake->plan.depends_on_scene == wanted->plan.depends_on_scene &&
+           hash128_same(bake->plan.scene, wanted->plan.scene);
+}
+
+static void read_seconds(struct bake *bake, const struct tensors *set)
+{
+    bake->seconds = identity_seconds(set);
+    for (int s = 0; s < bake->plan.stage_count; s++)
+        bake->plan.stages[s].seconds = identity_stage_seconds(set, bake->plan.stages[s].what.name);
 }
 
 // The file has exactly the tensors that the plan saves.
@@ -260,22 +67,36 @@ static bool check_tensors(const struct bake *bake, const char *path, const struc
             const struct planned_output *output = &bake->plan.stages[s].outputs[i];
             if (output->what.keep != BAKE_SAVED) continue;
             count++;
-            if (!same_tensor(tensors_find(set, output->what.name), &output->view))
+            if (!tensor_is_same(tensors_find(set, output->what.name), &output->view))
                 return host_fail(bake->host, FAIL_FORMAT,
                                  "cannot use %s: it lacks the tensor %s, or its shape differs",
                                  path, output->what.name);
         }
-    return count == set->count || fail_use(bake->host, path, "it has tensors of no stage");
+    return count == set->count || identity_fail(bake->host, path, "it has tensors of no stage");
+}
+
+static bool take_all(struct bake *bake, const char *path, const struct tensors *set)
+{
+    if (!parts_take(bake, set)) return false;
+    int missing = 0;
+    for (int p = 0; p < bake->plan.part_count; p++) missing += !bake_part_is_complete(bake, p);
+    return missing == 0 ||
+           host_fail(bake->host, FAIL_FORMAT,
+                     "cannot use %s alone: of the scene's %d objects, %d are in no file that was "
+                     "read; bake them",
+                     path, bake->plan.part_count, missing);
 }
 
 bool bake_load(struct bake *bake, const char *path)
 {
     struct safetensors file;
     if (!safetensors_read(bake->host, path, &file)) return false;
-    if (!identity_check(bake->host, bake, BAKE, path, &file.set) ||
-        !check_tensors(bake, path, &file.set)) {
+    bool ok = identity_check(bake->host, bake, IDENTITY_BAKE, path, &file.set);
+    const bool of_parts = bake->plan.part_count > 0;
+    if (ok) ok = of_parts ? take_all(bake, path, &file.set) : check_tensors(bake, path, &file.set);
+    if (!ok || of_parts) {
         safetensors_finish(bake->host, &file);
-        return false;
+        return ok;
     }
     safetensors_finish(bake->host, &bake->file);
     bake->file = file;
@@ -283,59 +104,19 @@ bool bake_load(struct bake *bake, const char *path)
     return true;
 }
 
-bool bake_file_technique(struct host *host, const char *path, char *out, size_t size)
+static bool take_part(struct bake *bake, int part, const char *path, const struct tensors *set)
+{
+    if (!identity_check(bake->host, bake, IDENTITY_BAKE, path, set)) return false;
+    return part_is_in(bake, part, set) ? parts_take(bake, set)
+                                       : identity_fail(bake->host, path, "it is of another object");
+}
+
+bool bake_load_part(struct bake *bake, int part, const char *path)
 {
     struct safetensors file;
-    if (!safetensors_read(host, path, &file)) return false;
-    const char *name = tensors_metadata(&file.set, TECHNIQUE);
-    if (name) snprintf(out, size, "%s", name);
-    safetensors_finish(host, &file);
-    return name || fail_use(host, path, "it is not a bake of this program");
-}
-
-// 1 in a file without the entry, NaN for a text that is no number.
-static float scale_of(const struct tensors *set)
-{
-    const char *text = tensors_metadata(set, SCENE_SCALE);
-    char *end = NULL;
-    if (!text) return 1.0f;
-    const float scale = (float)c_locale_parse(text, &end);
-    return end != text && *end == 0 ? scale : NAN;
-}
-
-static bool read_origin(struct host *host, const char *path, const struct tensors *set,
-                        struct bake_origin *out)
-{
-    const char *gi = tensors_metadata(set, GI), *name = tensors_metadata(set, SCENE_NAME);
-    const char *seed = tensors_metadata(set, SEED), *options = tensors_metadata(set, OPTIONS);
-    const char *technique = tensors_metadata(set, TECHNIQUE);
-    if (differs(set, KIND, PARTIAL) || !gi || !name || !seed || !options || !technique)
-        return fail_use(host, path, "it is not part of a bake, as --shard writes it");
-    out->technique = host_strdup(host, technique);
-    out->options = host_strdup(host, options);
-    out->gi = host_strdup(host, gi);
-    out->scene_name = host_strdup(host, name);
-    out->seed = strtoull(seed, NULL, 10);
-    out->scene_scale = scale_of(set);
-    return out->technique && out->options && out->gi && out->scene_name;
-}
-
-void bake_origin_finish(struct host *host, struct bake_origin *origin)
-{
-    host_free(host, origin->technique);
-    host_free(host, origin->options);
-    host_free(host, origin->gi);
-    host_free(host, origin->scene_name);
-    *origin = (struct bake_origin){ 0 };
-}
-
-bool bake_partial_origin(struct host *host, const char *path, struct bake_origin *out)
-{
-    struct safetensors file;
-    *out = (struct bake_origin){ 0 };
-    if (!safetensors_read(host, path, &file)) return false;
-    const bool ok = read_origin(host, path, &file.set, out);
-    safetensors_finish(host, &file);
-    if (!ok) bake_origin_finish(host, out);
+    if (bake->plan.part_count == 0) return bake_load(bake, path);
+    if (!safetensors_read(bake->host, path, &file)) return false;
+    const bool ok = take_part(bake, part + 1, path, &file.set);
+    safetensors_finish(bake->host, &file);
     return ok;
 }

@@ -15,6 +15,12 @@ struct planned_output {
     char *parts;        // BAKE_SUM: the tensor of each task, until they are added up
 };
 
+// A part that other scenes may have, too (plan.h).
+struct planned_part {
+    struct hash128 key;
+    bool loaded; // its stages are done, without the tensors that no file has
+};
+
 struct planned_stage {
     struct bake_stage what; // outputs: NULL, see below
     struct planned_output *outputs;
@@ -30,6 +36,8 @@ struct bake_plan {
     struct arena arena;
     struct planned_stage *stages;
     int stage_count, capacity;
+    struct planned_part *parts; // [part_count]; the number of a part is from 1
+    int part_count, part_capacity;
     int waves;      // number of waves
     int waves_done; // whose results are complete and reduced
     struct bake_job job;
@@ -75,6 +83,11 @@ bool results_wave_is_done(const struct bake *bake, int wave);
 void results_free(struct bake *bake);
 // Makes bake->saved and bake->all, after the last wave.
 bool results_collect(struct bake *bake);
+// As a run leaves it, after tasks have been taken from a file: reduces waves whose tasks are all
+// there, and collects the tensors after the last.
+bool results_complete_waves(struct bake *bake);
+// Whether it was loaded with its part.
+bool results_are_loaded(const struct bake *bake, const struct planned_stage *stage);
 // A complete tensor; NULL: none of this name.
 const struct tensor *results_find(const struct bake *bake, const char *name);
 
@@ -130,7 +143,20 @@ bool partial_write(struct host *host, const struct bake *bake, const char *path,
 // Takes the finished tasks of a partial file; messages and memory by `host`.
 bool partial_read(struct host *host, struct bake *bake, const char *path);
 
-// ---- bake_file.c: identity in metadata
+// ---- parts.c; parts are numbered from 1
+
+// Takes the parts that a checked file has and no file before. False: out of memory.
+bool parts_take(struct bake *bake, const struct tensors *set);
+// Whether a bake has all tensors that the parts of another one save.
+bool parts_fit(const struct bake *bake, const struct bake *wanted);
+// Whether these are all tensors that a part saves; 0: all parts.
+bool part_is_in(const struct bake *bake, int part, const struct tensors *set);
+// Its share of the wall time, by the times of the stages; NaN: unknown.
+double part_seconds(const struct bake *bake, int part);
+// Its saved tensors, of a complete bake; the caller frees them. NULL: out of memory.
+struct tensor *part_tensors(const struct bake *bake, int part, size_t *count);
+
+// ---- identity.c: identity in metadata
 
 enum { BAKE_MAX_METADATA = 16, BAKE_TEXT = 64 };
 struct identity_text {
@@ -139,9 +165,20 @@ struct identity_text {
     struct tensor_metadata metadata[BAKE_MAX_METADATA];
     size_t count;
 };
-// The metadata of a file of this bake. seconds NaN: not recorded. kind: "bake" or "partial".
+#define IDENTITY_BAKE "bake"
+// The metadata of a file of this bake. seconds NaN: not recorded. kind: IDENTITY_BAKE, "partial".
 void identity_print(const struct bake *bake, const char *kind, double seconds,
                     struct identity_text *out);
+// With the key of a part in place of the scene's.
+void identity_print_part(const struct bake *bake, int part, double seconds,
+                         struct identity_text *out);
+// Adds seconds of the stages: of a part, 0: of all, and the scene's name. False: out of memory.
+bool identity_add_run(struct bake *bake, int part, struct identity_text *text);
+void identity_key(const struct identity_text *text, char out[HASH128_TEXT]);
+// The seconds of a stage that the file states; NaN: none.
+double identity_stage_seconds(const struct tensors *set, const char *stage);
+// "cannot use PATH: " and why.
+bool identity_fail(struct host *host, const char *path, const char *why);
 // Adds the hash of all metadata and tensors, and writes.
 bool identity_write(struct host *host, const char *path, struct identity_text *text,
                     const struct tensor *at, size_t count);

@@ -49,6 +49,7 @@ static void add_stages(const struct bake *bake, const struct bake_run_options *o
         const struct planned_stage *stage = &bake->plan.stages[s];
         size_t tasks = 0;
         run_tasks(bake, &stage->what, options, &tasks);
+        if (results_are_loaded(bake, stage)) tasks = 0;
         out->rays += stage->what.rays * (double)tasks;
         out->texels += stage->what.texels * (double)tasks;
         for (int i = 0; i < stage->what.output_count; i++)

@@ -102,6 +102,7 @@ static bool add_stages(struct list *list, const struct bake *bake,
 {
     for (int s = 0; s < bake->plan.stage_count; s++) {
         const struct planned_stage *stage = &bake->plan.stages[s];
+        if (results_are_loaded(bake, stage)) continue; // again, next time
         if (!add_tasks(list, stage, &stages[s])) return false;
         for (int i = 0; i < stage->what.output_count; i++)
             if (!add_output(list, stage, &stage->outputs[i], stages[s].done)) return false;
@@ -204,7 +205,7 @@ static bool may_be_absent(const struct reading *r, const struct planned_output *
     const struct bake_plan *plan = &r->bake->plan;
     for (int s = 0; s < plan->stage_count; s++) {
         const struct planned_stage *stage = &plan->stages[s];
-        if (stage->what.wave > output->what.keep) continue;
+        if (stage->what.wave > output->what.keep || results_are_loaded(r->bake, stage)) continue;
         const struct tensor *tasks = find_in(r, "tasks", stage->what.name);
         if (!tasks || tasks->bytes / sizeof(uint32_t) != stage->what.task_count) return false;
     }
@@ -245,7 +246,8 @@ static bool read_stage(const struct reading *r, struct planned_stage *stage)
     if (!tasks) return true;
     if (!tasks_are_ascending(tasks, stage->what.task_count)) return fail_part(r, stage->what.name);
     // Its results are complete: reduced, and freed where no later wave reads them.
-    if (stage->what.wave < r->bake->plan.waves_done) return true;
+    if (stage->what.wave < r->bake->plan.waves_done || results_are_loaded(r->bake, stage))
+        return true;
     for (int i = 0; i < stage->what.output_count; i++)
         if (!read_output(r, stage, &stage->outputs[i], tasks)) return false;
     if (r->commit) mark_done(r, stage, tasks);
@@ -259,6 +261,7 @@ static bool waves_fit(const struct reading *r)
     int last = -1, complete = plan->waves;
     for (int s = 0; s < plan->stage_count; s++) {
         const struct planned_stage *stage = &plan->stages[s];
+        if (results_are_loaded(r->bake, stage)) continue;
         const struct tensor *tasks = find_in(r, "tasks", stage->what.name);
         const size_t count = tasks ? tasks->bytes / sizeof(uint32_t) : 0;
         if (tasks) last = stage->what.wave;
@@ -273,18 +276,6 @@ static bool read_stages(const struct reading *r)
     for (int s = 0; s < r->bake->plan.stage_count; s++)
         if (!read_stage(r, &r->bake->plan.stages[s])) return false;
     return true;
-}
-
-// After all tasks of a wave are there: as run.c leaves it.
-static bool complete_waves(struct bake *bake)
-{
-    struct bake_plan *plan = &bake->plan;
-    for (int wave = plan->waves_done; wave < plan->waves; wave++) {
-        if (!results_wave_is_done(bake, wave)) return true;
-        if (!results_reduce(bake, wave)) return false;
-        plan->waves_done = wave + 1;
-    }
-    return bake->tensors || results_collect(bake);
 }
 
 static bool begin_waves(const struct reading *r)
@@ -306,7 +297,7 @@ static bool restore(struct host *host, struct bake *bake, const char *path,
     if (!identity_check(host, bake, KIND, path, set) || !waves_fit(&r) || !read_stages(&r))
         return false;
     r.commit = true;
-    if (!begin_waves(&r) || !read_stages(&r) || !complete_waves(bake)) return false;
+    if (!begin_waves(&r) || !read_stages(&r) || !results_complete_waves(bake)) return false;
     if (isfinite(seconds)) bake->seconds += seconds;
     return true;
 }

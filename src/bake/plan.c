@@ -46,6 +46,8 @@ static bool check_stage(struct bake_plan *plan, const struct bake_stage *stage)
     if (stage->wave < 0 || stage->wave > plan->waves || stage->wave < plan->waves - 1 ||
         stage->wave >= MAX_WAVES)
         return fail_stage(plan, stage, "its wave is neither that of the stage before nor the next");
+    if (stage->part < 0 || stage->part > plan->part_count || (stage->part == 0 && plan->part_count))
+        return fail_stage(plan, stage, "it is of no part");
     if (stage->output_count < 0 || stage->output_count > BAKE_MAX_OUTPUTS)
         return fail_stage(plan, stage, "it has more than 16 outputs");
     for (int i = 0; i < stage->output_count; i++)
@@ -129,6 +131,34 @@ void bake_plan_depends(struct bake_plan *plan, struct hash128 key)
 {
     plan->depends_on_scene = true;
     plan->scene = key;
+}
+
+static bool grow_parts(struct bake_plan *plan)
+{
+    if (plan->part_count < plan->part_capacity) return true;
+    const int capacity = plan->part_capacity ? 2 * plan->part_capacity : FIRST_CAPACITY;
+    struct planned_part *parts =
+        host_realloc(plan->host, plan->parts, (size_t)capacity, sizeof *parts);
+    if (!parts) return false;
+    plan->parts = parts;
+    plan->part_capacity = capacity;
+    return true;
+}
+
+int bake_plan_part(struct bake_plan *plan, struct hash128 key, bool *exists)
+{
+    *exists = true;
+    for (int p = 0; p < plan->part_count; p++)
+        if (hash128_same(plan->parts[p].key, key)) return p + 1;
+    *exists = false;
+    if (!grow_parts(plan)) return 0;
+    plan->parts[plan->part_count++] = (struct planned_part){ .key = key };
+    return plan->part_count;
+}
+
+bool bake_plan_part_is_loaded(const struct bake_plan *plan, int part)
+{
+    return part > 0 && plan->parts[part - 1].loaded;
 }
 
 void bake_plan_set_light_map(struct bake_plan *plan, struct bake_light_map map)

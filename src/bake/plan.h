@@ -50,6 +50,7 @@ struct bake_output {
 struct bake_stage {
     const char *name; // unique in the plan, shown to the user: "cube/1 gather"
     int wave;         // not below that of the stage before
+    int part;         // of bake_plan_part; 0: without parts
     size_t task_count;
     // Fills the outputs of one task. false: host_fail(task->host, …), or cancelled. Deterministic:
     // the result depends on the arguments of the bake, task->seed and earlier waves alone.
@@ -78,6 +79,15 @@ char *bake_plan_name(struct bake_plan *plan, const char *format, ...)
 // The hash of what the bake depends on besides the options of effect REBAKE and the seed: see
 // bake/scene_key.h. Without a call the bake is independent of the scene.
 void bake_plan_depends(struct bake_plan *plan, struct hash128 key);
+
+// A part of the bake that other scenes may have, too, as a mesh: all stages of a plan with parts
+// are of one, and read tensors of the same part alone. key: what the part depends on besides the
+// options of effect REBAKE and the seed; names of its stages and tensors follow from it, so that
+// they are the same in every plan, and of this part alone. Each part is a file of a cache. Returns
+// its number, from 1; that of the same key where it exists, *exists; 0 without memory.
+int bake_plan_part(struct bake_plan *plan, struct hash128 key, bool *exists);
+// Whether its tensors are there, from a file: `prepare` need not prepare it.
+bool bake_plan_part_is_loaded(const struct bake_plan *plan, int part);
 
 // A light map that the bake is for, so that estimates can say how fine it is.
 struct bake_light_map {

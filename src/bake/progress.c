@@ -41,7 +41,7 @@ struct prediction prediction_now(const struct bake *bake, double per_flop_s)
     double rays = 0.0, seconds = 0.0;
     for (int s = 0; s < bake->plan.stage_count; s++) {
         const struct planned_stage *stage = &bake->plan.stages[s];
-        if (stage->what.rays <= 0.0) continue;
+        if (stage->what.rays <= 0.0 || results_are_loaded(bake, stage)) continue;
         rays += stage->what.rays * (double)stage->done_count;
         seconds += stage->seconds;
     }

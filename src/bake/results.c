@@ -40,7 +40,7 @@ bool results_begin(struct bake *bake, int wave)
 {
     for (int s = 0; s < bake->plan.stage_count; s++) {
         struct planned_stage *stage = &bake->plan.stages[s];
-        if (stage->what.wave != wave) continue;
+        if (stage->what.wave != wave || results_are_loaded(bake, stage)) continue;
         for (int i = 0; i < stage->what.output_count; i++)
             if (!begin_output(bake, stage, &stage->outputs[i])) return false;
     }
@@ -61,7 +61,7 @@ static void add_parts(struct planned_output *output, size_t task_count)
 static bool reduce_output(struct bake *bake, const struct planned_stage *stage,
                           struct planned_output *output)
 {
-    if (output->what.reduction != BAKE_SUM) return true;
+    if (output->what.reduction != BAKE_SUM || results_are_loaded(bake, stage)) return true;
     if (!output->data) {
         output->data = host_alloc(bake->host, output->bytes, 1);
         if (!output->data) return false;
@@ -98,6 +98,22 @@ bool results_wave_is_done(const struct bake *bake, int wave)
         if (stage->what.wave == wave && stage->done_count < stage->what.task_count) return false;
     }
     return true;
+}
+
+bool results_are_loaded(const struct bake *bake, const struct planned_stage *stage)
+{
+    return bake_plan_part_is_loaded(&bake->plan, stage->what.part);
+}
+
+bool results_complete_waves(struct bake *bake)
+{
+    struct bake_plan *plan = &bake->plan;
+    for (int wave = plan->waves_done; wave < plan->waves; wave++) {
+        if (!results_wave_is_done(bake, wave)) return true;
+        if (!results_reduce(bake, wave)) return false;
+        plan->waves_done = wave + 1;
+    }
+    return bake->tensors || results_collect(bake);
 }
 
 void results_free(struct bake *bake)

@@ -59,6 +59,12 @@ bool tensor_is_finite(const struct tensor *tensor)
     return tensor->type != TENSOR_F16 || halves_are_finite(tensor->data, count);
 }
 
+bool tensor_is_same(const struct tensor *a, const struct tensor *b)
+{
+    return a && a->type == b->type && a->rank == b->rank &&
+           memcmp(a->shape, b->shape, sizeof a->shape) == 0;
+}
+
 const struct tensor *tensors_find(const struct tensors *set, const char *name)
 {
     for (size_t i = 0; i < set->count; i++)

@@ -35,6 +35,8 @@ bool tensor_extent(enum tensor_type type, int rank, const uint64_t *shape, size_
 // F32 and F16: has no NaN and no infinity. Other types are always finite.
 bool tensor_is_finite(const struct tensor *tensor);
 
+bool tensor_is_same(const struct tensor *a, const struct tensor *b); // type and shape; NULL: no
+
 // NULL: none.
 const struct tensor *tensors_find(const struct tensors *set, const char *name);
 const char *tensors_metadata(const struct tensors *set, const char *key);

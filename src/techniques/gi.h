@@ -54,8 +54,11 @@ bool gi_set_options(struct gi *gi, const struct gi_spec *spec);
 // The running term that continues as this one of another spec, since set_options suffices; -1: the
 // technique is created again.
 int gi_continues(const struct gi *gi, const struct gi_spec *spec, int term);
+// Whether the bake of a running term lacks what the scene now has (technique.lacks_bake).
+bool gi_lacks_bake(const struct gi *gi, int term);
 // Exchanges the running stack for that of another spec; `bakes` has those of the terms created
-// again. A debug view ends unless its technique stays. false: nothing changed.
+// again. A term that lacks a bake is created again if there is one. A debug view ends unless its
+// technique stays. false: nothing changed.
 bool gi_change(struct gi *gi, const struct gi_spec *spec, const struct gi_bakes *bakes,
                const struct scene_pose *pose);
 struct frame_indirect gi_hook(struct gi *gi); // refers to gi

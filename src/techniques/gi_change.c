@@ -35,6 +35,27 @@ int gi_continues(const struct gi *gi, const struct gi_spec *spec, int term)
     return -1;
 }
 
+bool gi_lacks_bake(const struct gi *gi, int term)
+{
+    const struct technique *technique = gi->spec.technique[term];
+    return technique->lacks_bake && technique->lacks_bake(gi->state[term]);
+}
+
+// The running term that stays; -1: it is created.
+static int stays(const struct gi *gi, const struct gi_spec *next, const struct gi_bakes *bakes,
+                 int term)
+{
+    const int from = gi_continues(gi, next, term);
+    return from >= 0 && bakes->of_term[term] && gi_lacks_bake(gi, from) ? -1 : from;
+}
+
+static bool all_stay(const struct gi *gi, const struct gi_spec *next, const struct gi_bakes *bakes)
+{
+    for (int i = 0; i < next->count; i++)
+        if (stays(gi, next, bakes, i) < 0) return false;
+    return true;
+}
+
 bool gi_set_options(struct gi *gi, const struct gi_spec *spec)
 {
     if (spec->count != gi->spec.count) return false;
@@ -66,12 +87,13 @@ static void **state_of(struct gi *gi, int view, int term)
 }
 
 // Takes over `next` and `created`.
-static void exchange(struct gi *gi, struct gi_spec *next, const struct created *created)
+static void exchange(struct gi *gi, struct gi_spec *next, const struct gi_bakes *bakes,
+                     const struct created *created)
 {
     struct gi before = *gi;
     gi->spec = *next;
     for (int i = 0; i < next->count; i++) {
-        const int from = gi_continues(&before, next, i);
+        const int from = stays(&before, next, bakes, i);
         for (int v = 0; v < FRAME_MAX_VIEWS; v++) {
             *state_of(gi, v, i) = from < 0 ? created->state[v][i] : *state_of(&before, v, from);
             if (from >= 0) *state_of(&before, v, from) = NULL;
@@ -115,13 +137,13 @@ bool gi_change(struct gi *gi, const struct gi_spec *spec, const struct gi_bakes 
 {
     struct gi_spec next;
     struct created created = { { { NULL } } };
-    if (gi_set_options(gi, spec)) return true;
+    if (all_stay(gi, spec, bakes) && gi_set_options(gi, spec)) return true;
     if (!gi_spec_copy(&next, spec)) return false;
     for (int i = 0; i < next.count; i++)
-        if (gi_continues(gi, &next, i) < 0 &&
+        if (stays(gi, &next, bakes, i) < 0 &&
             !create_term(gi, &next, i, bakes->of_term[i], pose, &created))
             goto fail;
-    exchange(gi, &next, &created);
+    exchange(gi, &next, bakes, &created);
     return true;
 fail:
     destroy_created(gi, &next, &created);

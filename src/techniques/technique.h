@@ -60,6 +60,7 @@ struct technique_bake {
     const struct scene_pose *pose; // outlives the bake
     const void *options;
     bool full_report; // add stages whose tensors are BAKE_REPORTED
+    bool all_objects; // of a delta: all instances count as movable, as those of an asset
 };
 
 struct technique {
@@ -123,6 +124,8 @@ struct technique {
     // which techniques without it or CAN_MOVE_GEOMETRY do not, with a warning of gi.c. `wait`: the
     // frame shows them, however long it takes.
     void (*follow)(void *state, const struct scene_pose *pose, bool wait);
+    // Whether its bake lacks what `follow` has found, which another bake has. NULL: never.
+    bool (*lacks_bake)(const void *state);
     // Whether the light of the newest frame is older than what it shows, and further frames bring
     // it. NULL: never.
     bool (*is_updating)(const void *state);

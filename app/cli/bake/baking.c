@@ -40,6 +40,8 @@ static enum status find_path(struct baking *b, const char *path)
         snprintf(b->path, sizeof b->path, "%s", path);
     else if (!cache_file(CACHE_BAKE, info.key, b->path, b->no_cache))
         b->path[0] = 0;
+    if (!b->in_cache || info.part_count < 2 || !cache_folder(CACHE_BAKE, b->kept, NULL))
+        snprintf(b->kept, sizeof b->kept, "%s", b->path);
     return DONE;
 }
 
@@ -73,21 +75,36 @@ static bool load_from(struct baking *b, const char *path)
     return b->loaded;
 }
 
-bool baking_load(struct baking *b)
+// False: there is no file of it, or it does not fit, which a note says.
+static bool load_part(struct baking *b, int index)
+{
+    struct ag_bake_part part;
+    char path[PATH_SIZE];
+    if (ag_bake_get_part(b->bake, index, &part) != AG_OK ||
+        !cache_file(CACHE_BAKE, part.key, path, NULL) || access(path, F_OK) != 0)
+        return false;
+    if (!part.complete && ag_bake_load_part(b->bake, index, path) != AG_OK) {
+        note("warning: %s is baked again: %s", b->technique,
+             ag_context_last_error(b->session->context));
+        return false;
+    }
+    cache_touch(path);
+    return true;
+}
+
+static bool load_from_cache(struct baking *b)
 {
     struct ag_bake_info info;
-    char cached[PATH_SIZE];
     ag_bake_get_info(b->bake, &info);
-    if (load_from(b, b->path)) {
-        b->from_cache = b->in_cache;
-        if (b->in_cache) cache_touch(b->path);
-        return true;
-    }
-    if (b->in_cache || !cache_file(CACHE_BAKE, info.key, cached, NULL) || !load_from(b, cached))
-        return false;
-    b->from_cache = true;
-    cache_touch(cached);
-    return true;
+    bool all = true;
+    for (int i = 0; i < info.part_count; i++) all = load_part(b, i) && all;
+    b->loaded = b->from_cache = all;
+    return all;
+}
+
+bool baking_load(struct baking *b)
+{
+    return (!b->in_cache && load_from(b, b->path)) || load_from_cache(b);
 }
 
 // ---- parts
@@ -226,14 +243,31 @@ static enum status run(struct baking *b)
     return result == AG_OK ? DONE : fail_bake(b, result);
 }
 
+// Those that are not there yet.
+static enum ag_result write_parts(struct baking *b)
+{
+    struct ag_bake_info info;
+    struct ag_bake_part part;
+    char path[PATH_SIZE];
+    enum ag_result result = ag_bake_get_info(b->bake, &info);
+    for (int i = 0; result == AG_OK && i < info.part_count; i++) {
+        result = ag_bake_get_part(b->bake, i, &part);
+        if (result != AG_OK || part.loaded || !cache_file(CACHE_BAKE, part.key, path, NULL))
+            continue;
+        result = ag_bake_save_part(b->bake, i, path, true);
+        if (result == AG_OK) cache_trim(path);
+    }
+    return result;
+}
+
 static enum status write_file(struct baking *b, bool shard)
 {
     if (!b->path[0]) return DONE;
     interrupt_hold();
-    enum ag_result result = shard ? ag_bake_save_partial(b->bake, b->path)
-                                  : ag_bake_save(b->bake, b->path, b->in_cache);
+    enum ag_result result = shard         ? ag_bake_save_partial(b->bake, b->path)
+                            : b->in_cache ? write_parts(b)
+                                          : ag_bake_save(b->bake, b->path, false);
     interrupt_release();
-    if (result == AG_OK && b->in_cache) cache_trim(b->path);
     if (result == AG_OK) return DONE;
     if (!b->in_cache) return fail_bake(b, result);
     note("warning: the bake of %s is not cached: %s", b->technique,

@@ -11,7 +11,8 @@ struct baking {
     struct ag_bake *bake;
     const char *technique;         // owned by the bake
     char path[PATH_SIZE];          // of its file; "": kept in memory only
-    bool in_cache;                 // the path is in the cache
+    char kept[PATH_SIZE];          // the same for messages: of several parts their folder
+    bool in_cache;                 // the path is in the cache; each part has a file of its own
     bool must_keep;                // fail where the cache has no room for it
     char no_cache[CACHE_WHY_SIZE]; // why the path is ""
     bool loaded;                   // from a file, not run

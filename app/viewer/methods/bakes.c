@@ -46,16 +46,48 @@ static bool fail(struct bake_job *job, const struct ag_context *context)
     return false;
 }
 
+// The file of a part. False: there is no cache, as `error` says.
+static bool part_path(const struct viewer_desc *desc, const struct ag_bake *bake, int index,
+                      struct ag_bake_part *part, char path[4096], char error[512])
+{
+    return ag_bake_get_part(bake, index, part) == AG_OK &&
+           desc->bake_path(desc->user, part->key, path, error);
+}
+
+// As far as there are files; true: all.
+static bool load_parts(const struct viewer_desc *desc, struct ag_bake *bake, int count)
+{
+    bool all = true;
+    for (int i = 0; i < count; i++) {
+        struct ag_bake_part part;
+        char path[4096], why[512];
+        all = part_path(desc, bake, i, &part, path, why) &&
+              (part.complete || ag_bake_load_part(bake, i, path) == AG_OK) && all;
+    }
+    return all;
+}
+
+static bool save_parts(struct bake_job *job, struct ag_bake *bake, int count)
+{
+    bool all = true;
+    for (int i = 0; all && i < count; i++) {
+        struct ag_bake_part part;
+        char path[4096];
+        all = part_path(job->desc, bake, i, &part, path, job->error) &&
+              (part.loaded || ag_bake_save_part(bake, i, path, true) == AG_OK);
+    }
+    return all;
+}
+
 // Runs it, or goes on with the checkpoint that render and bake leave, too.
 static bool make(struct bake_job *job, struct ag_context *context, struct ag_bake *bake,
-                 const char *path)
+                 const char *path, int parts)
 {
     char checkpoint[4096 + 16];
     snprintf(checkpoint, sizeof checkpoint, "%s.checkpoint", path);
-    const bool done =
-        ag_bake_load(bake, path) == AG_OK ||
-        (ag_bake_set_checkpoint(bake, checkpoint) == AG_OK &&
-         ag_bake_run(bake, progress, job) == AG_OK && ag_bake_save(bake, path, true) == AG_OK);
+    const bool done = load_parts(job->desc, bake, parts) ||
+                      (ag_bake_set_checkpoint(bake, checkpoint) == AG_OK &&
+                       ag_bake_run(bake, progress, job) == AG_OK && save_parts(job, bake, parts));
     return done || fail(job, context);
 }
 
@@ -72,7 +104,7 @@ static bool run_one(struct bake_job *job, struct ag_context *context, struct ag_
         ag_bake_get_info(bake, &info) != AG_OK)
         return fail(job, context);
     const bool done = job->desc->bake_path(job->desc->user, info.key, path, job->error) &&
-                      make(job, context, bake, path);
+                      make(job, context, bake, path, info.part_count);
     ag_bake_destroy(bake);
     return done;
 }
@@ -145,15 +177,13 @@ static bool load(struct viewer *v, const char *gi, struct ag_bake *bakes[VIEWER_
         const char *technique = NULL;
         struct ag_bake_desc desc;
         struct ag_bake_info info;
-        char path[4096], why[512];
         if (ag_bake_technique(v->desc->context, gi, i, &technique) != AG_OK || !technique) break;
         ag_bake_desc_default(&desc);
         desc.technique = technique;
         const int at = (*count)++;
         all = ag_bake_create(v->desc->scene, gi, &desc, &bakes[at]) == AG_OK &&
               ag_bake_get_info(bakes[at], &info) == AG_OK &&
-              v->desc->bake_path(v->desc->user, info.key, path, why) &&
-              ag_bake_load(bakes[at], path) == AG_OK && all;
+              load_parts(v->desc, bakes[at], info.part_count) && all;
     }
     return all;
 }

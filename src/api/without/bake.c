@@ -128,6 +128,28 @@ enum ag_result ag_bake_get_info(const struct ag_bake *bake, struct ag_bake_info 
     return absent(NULL, __func__);
 }
 
+enum ag_result ag_bake_get_part(const struct ag_bake *bake, int index, struct ag_bake_part *out)
+{
+    (void)bake;
+    (void)index;
+    (void)out;
+    return absent(NULL, __func__);
+}
+
+enum ag_result ag_bake_load_part(struct ag_bake *bake, int index, const char *path)
+{
+    (void)index;
+    return ag_bake_set_checkpoint(bake, path);
+}
+
+enum ag_result ag_bake_save_part(struct ag_bake *bake, int index, const char *path,
+                                 bool record_seconds)
+{
+    (void)index;
+    (void)record_seconds;
+    return ag_bake_set_checkpoint(bake, path);
+}
+
 enum ag_result ag_bake_report(struct ag_bake *bake, const char **json)
 {
     (void)bake;

@@ -6,6 +6,7 @@
 
 #include "techniques/dnrt/dnrt_bake.h"
 #include "techniques/dnrt/dnrt_keys.h"
+#include "techniques/dnrt/dnrt_part.h"
 #include "techniques/dnrt/dnrt_state.h"
 
 #include "technique_shaders.h"
@@ -56,14 +57,15 @@ static bool create(void *state, const struct technique_create *how)
     s->gpu = how->gpu;
     if (!how->pose) return true;
     s->animation = how->pose->animation;
-    if (!dnrt_objects_init(&s->baked, s->host, how->pose, s->options.keys)) return false;
+    if (!dnrt_objects_init(&s->baked, s->host, how->pose, s->options.keys, false)) return false;
+    s->keys = dnrt_volume_keys(s->host, &s->baked, how->pose, s->options.keys);
     s->volumes = host_alloc(s->host, (size_t)s->baked.volume_count, sizeof *s->volumes);
     if (s->baked.count == 0)
         host_log(s->host, LOG_WARNING,
                  "dnrt: %s has no dynamic objects: it changes nothing (docs/library.md: mobility)",
                  how->pose->scene->name);
-    return s->volumes && find_frames(s, how->pose) && resize(s, 0, how->width, how->height) &&
-           dnrt_find_objects(s, how->pose);
+    return s->keys && s->volumes && find_frames(s, how->pose) &&
+           resize(s, 0, how->width, how->height) && dnrt_find_objects(s, how->pose);
 }
 
 #define MEMBER(thing) offsetof(struct dnrt, thing)
@@ -342,6 +344,7 @@ static void destroy(void *state)
     host_free(s->host, s->patches);
     host_free(s->host, s->own);
     host_free(s->host, s->gpu_objects);
+    host_free(s->host, s->keys);
     host_free(s->host, s->volumes);
     host_free(s->host, s->frames);
     host_free(s->host, s->tiles);
@@ -369,7 +372,7 @@ const struct technique technique_dnrt = {
     .role = ROLE_DELTA,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | NEEDS_BAKE,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID | FRAME_LEAVES_DYNAMIC,
-    .bake_version = 6,
+    .bake_version = 7,
     .options = OPTION_TABLE(struct dnrt_options, option_rows, NULL),
     .presets = presets,
     .state_size = sizeof(struct dnrt),
@@ -379,6 +382,7 @@ const struct technique technique_dnrt = {
     .load = load,
     .resize = resize,
     .follow = dnrt_follow,
+    .lacks_bake = dnrt_lacks_bake,
     .set_probes = set_probes,
     .update = update,
     .record = record,

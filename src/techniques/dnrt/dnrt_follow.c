@@ -1,5 +1,5 @@
 // Objects that come, go, or get another shape while frames are rendered. An object whose mesh and
-// stretch are in the bake has that volume; others need another bake.
+// stretch are in the bake has that volume; others need another bake, of their meshes alone.
 #include "techniques/dnrt/dnrt_state.h"
 
 // Room for objects along the edges of a cube of volumes; those of an object lie along x.
@@ -55,10 +55,12 @@ static void warn(struct dnrt *s, int without)
     if (s->warned || (without == 0 && s->objects.count <= DNRT_MAX_OBJECTS)) return;
     s->warned = true;
     if (without > 0)
-        host_log(s->host, LOG_WARNING,
-                 "dnrt: %d dynamic objects are not in the bake and change no light until another "
-                 "one",
-                 without);
+        host_log(
+            s->host, LOG_WARNING,
+            "dnrt: %d dynamic objects are not in its bake and change no light; bake again, which "
+            "takes their meshes alone, and give the bake to the renderer "
+            "(docs/techniques/dnrt.md#objects-that-come-later)",
+            without);
     else
         host_log(s->host, LOG_WARNING, "dnrt: of %d dynamic objects the first %d change the light",
                  s->objects.count, DNRT_MAX_OBJECTS);
@@ -80,7 +82,7 @@ bool dnrt_find_objects(struct dnrt *s, const struct scene_pose *pose)
 {
     struct dnrt_objects found;
     int without = 0;
-    if (!dnrt_objects_init(&found, s->host, pose, s->options.keys)) {
+    if (!dnrt_objects_init(&found, s->host, pose, s->options.keys, false)) {
         dnrt_objects_finish(&found);
         s->objects.count = 0;
         return false;
@@ -91,10 +93,17 @@ bool dnrt_find_objects(struct dnrt *s, const struct scene_pose *pose)
         found.at[i].shape = dnrt_find_shape(&s->baked, &found, pose, i);
         without += found.at[i].shape < 0;
     }
-    if (s->baked.count > 0) warn(s, without);
+    s->without = without;
+    warn(s, without);
     if (s->objects.count > DNRT_MAX_OBJECTS) s->objects.count = DNRT_MAX_OBJECTS;
     s->revisions = pose->scene->revisions;
     return make_images(s, pose->scene);
+}
+
+bool dnrt_lacks_bake(const void *state)
+{
+    const struct dnrt *s = state;
+    return s->without > 0;
 }
 
 void dnrt_follow(void *state, const struct scene_pose *pose, bool wait)
@@ -102,7 +111,6 @@ void dnrt_follow(void *state, const struct scene_pose *pose, bool wait)
     struct dnrt *s = state;
     const struct scene_revisions *now = &pose->scene->revisions;
     (void)wait;
-    if (s->baked.count == 0) return;
     if (now->layout != s->revisions.layout || now->instances != s->revisions.instances ||
         now->transforms != s->revisions.transforms)
         dnrt_find_objects(s, pose);

@@ -34,14 +34,14 @@ static bool add_instance(struct dnrt_objects *out, const struct scene_pose *pose
     return true;
 }
 
-static bool find_objects(struct dnrt_objects *out, const struct scene_pose *pose)
+static bool find_objects(struct dnrt_objects *out, const struct scene_pose *pose, bool all)
 {
     const struct scene *scene = pose->scene;
     bool *dynamic = scene_dynamic_instances(out->host, scene);
     int instances = 0;
     bool ok = dynamic != NULL;
     for (int i = 0; ok && i < scene->instance_count; i++)
-        if (dynamic[i] && scene_mesh_of(scene, i)->index_count > 0)
+        if ((all || dynamic[i]) && scene_mesh_of(scene, i)->index_count > 0)
             ok = add_instance(out, pose, i, &instances);
     host_free(out->host, dynamic);
     return ok;
@@ -132,7 +132,7 @@ int dnrt_shape_of_volume(const struct dnrt_objects *objects, int volume)
 }
 
 bool dnrt_objects_init(struct dnrt_objects *out, struct host *host, const struct scene_pose *pose,
-                       int keys)
+                       int keys, bool all)
 {
     const size_t most = (size_t)pose->scene->instance_count;
     *out = (struct dnrt_objects){ .host = host };
@@ -140,7 +140,8 @@ bool dnrt_objects_init(struct dnrt_objects *out, struct host *host, const struct
     out->meshes = host_alloc(host, most, sizeof *out->meshes);
     out->at = host_alloc(host, most, sizeof *out->at);
     out->shapes = host_alloc(host, most, sizeof *out->shapes);
-    if (!out->instances || !out->meshes || !out->at || !out->shapes || !find_objects(out, pose))
+    if (!out->instances || !out->meshes || !out->at || !out->shapes ||
+        !find_objects(out, pose, all))
         return false;
     find_shapes(out, pose, keys);
     return true;

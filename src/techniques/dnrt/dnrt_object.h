@@ -48,10 +48,10 @@ struct dnrt_objects {
 };
 
 // The objects of a scene: instances that are movable, or that an animation moves or deforms. The
-// same scene gives the same objects and shapes wherever they are. keys: of dnrt_keys.h.
-// dnrt_objects_finish accepts zero.
+// same scene gives the same objects and shapes wherever they are. keys: of dnrt_keys.h. all: all
+// instances, as of an asset. dnrt_objects_finish accepts zero.
 bool dnrt_objects_init(struct dnrt_objects *out, struct host *host, const struct scene_pose *pose,
-                       int keys);
+                       int keys, bool all);
 void dnrt_objects_finish(struct dnrt_objects *objects);
 // The shape of `of` that another scene's, or a later pose's, object has; −1: none.
 int dnrt_find_shape(const struct dnrt_objects *of, const struct dnrt_objects *objects,

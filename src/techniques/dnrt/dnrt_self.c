@@ -2,12 +2,10 @@
 // triangles, which pixels find by FRAME_ID.
 #include "techniques/dnrt/dnrt_state.h"
 
+#include "techniques/dnrt/dnrt_part.h"
 #include "techniques/dnrt/dnrt_tensors.h"
 
-#include <stdio.h>
 #include <string.h>
-
-enum { NAME_SIZE = 32 };
 
 // ---- from a bake, which is untrusted
 
@@ -22,8 +20,8 @@ struct part_of_bake {
 static bool find_tensor(struct dnrt *s, const struct tensors *bake, const char *format, int volume,
                         enum tensor_type type, int rank, uint64_t shape[3], const void **out)
 {
-    char name[NAME_SIZE];
-    snprintf(name, sizeof name, format, volume);
+    char name[DNRT_NAME_SIZE];
+    dnrt_tensor_name(format, s->keys[volume], name);
     const struct tensor *tensor = tensors_find(bake, name);
     if (tensor) shape[0] = tensor->shape[0];
     *out = tensors_expect(s->host, bake, name, type, rank, shape);

@@ -6,6 +6,7 @@
 #include "techniques/dnrt/dnrt_object.h"
 #include "techniques/dnrt/dnrt_options.h"
 
+#include "core/hash.h"
 #include "frame/frame_shared.h"
 #include "frame/shadow/shadow_casters.h"
 #include "techniques/dnrt/dnrt_shared.h"
@@ -40,9 +41,11 @@ struct dnrt {
     struct dnrt_objects baked;        // of the pose of `create`: their shapes are in the bake
     struct dnrt_objects objects;      // of the newest pose; shape: in `baked`, −1: none
     struct scene_revisions revisions; // of the scene when `objects` were found
-    bool warned;                      // of objects without a volume
+    int without;                      // a volume, of the objects
+    bool warned;                      // of them
     int animation;                    // of the key frames
     struct dnrt_volume *volumes;      // [baked.volume_count]
+    struct hash128 *keys;             // [baked.volume_count], of their tensors
     struct dnrt_frame *frames; // [baked.shape_count] of their objects in the pose of `create`
     int slots[3];              // of objects along x, y, z of the image
     gpu_buffer shapes, samples, light, changed;
@@ -81,6 +84,7 @@ bool dnrt_upload(struct dnrt *s, const struct tensors *bake);
 bool dnrt_find_objects(struct dnrt *s, const struct scene_pose *pose);
 bool dnrt_make_tiles(struct dnrt *s);
 void dnrt_follow(void *state, const struct scene_pose *pose, bool wait);
+bool dnrt_lacks_bake(const void *state);
 
 // ---- dnrt_intrusion.c
 

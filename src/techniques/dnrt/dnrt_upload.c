@@ -1,15 +1,13 @@
 // From a bake, which is untrusted, to buffers on the GPU.
 #include "techniques/dnrt/dnrt_state.h"
 
+#include "techniques/dnrt/dnrt_part.h"
 #include "techniques/dnrt/dnrt_tensors.h"
 
 #include "scene/limits.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
-
-enum { NAME_SIZE = 32 };
 
 struct content {
     struct dnrt_gpu_shape *shapes;
@@ -20,8 +18,8 @@ struct content {
 static const void *expect(struct dnrt *s, const struct tensors *bake, const char *format, int shape,
                           enum tensor_type type, int rank, const uint64_t *extent)
 {
-    char name[NAME_SIZE];
-    snprintf(name, sizeof name, format, shape);
+    char name[DNRT_NAME_SIZE];
+    dnrt_tensor_name(format, s->keys[shape], name);
     return tensors_expect(s->host, bake, name, type, rank, extent);
 }
 

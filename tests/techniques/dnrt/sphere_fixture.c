@@ -130,3 +130,12 @@ void traced_shape_close(struct traced_shape *shape)
     pose_finish(&shape->pose);
     scene_destroy(shape->scene);
 }
+
+const struct tensor *baked_tensor(const struct tensors *bake, const char *name)
+{
+    for (size_t i = 0; i < bake->count; i++) {
+        const char *last = strrchr(bake->at[i].name, '/');
+        if (last && strcmp(last + 1, name) == 0) return &bake->at[i];
+    }
+    return NULL;
+}

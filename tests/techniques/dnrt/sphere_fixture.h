@@ -1,6 +1,7 @@
 // Meshes of unit size at the origin; each returns the mesh.
 #pragma once
 
+#include "bake/tensors.h"
 #include "scene/pose.h"
 #include "trace/trace.h"
 
@@ -20,3 +21,6 @@ struct traced_shape {
 void traced_shape_open(struct traced_shape *shape, const struct material *material,
                        int (*add)(struct scene *, int material));
 void traced_shape_close(struct traced_shape *shape);
+
+// The tensor of this name of a bake of one object: its names have the key of the mesh.
+const struct tensor *baked_tensor(const struct tensors *bake, const char *name);

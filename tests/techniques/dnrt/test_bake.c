@@ -65,7 +65,7 @@ static void check_bytes(const char *options, size_t bytes)
     const char *path = write_bake(options, 0);
     ball_open(&b, options);
     CHECK(bake_load(b.bake, path) && bake_is_complete(b.bake)); // without a ray
-    const struct tensor *volume = tensors_find(bake_tensors(b.bake), "shape/0/volume");
+    const struct tensor *volume = baked_tensor(bake_tensors(b.bake), "volume");
     assert_non_null(volume);
     print_message("dnrt:%s: %zu bytes\n", options, volume->bytes);
     assert_int_equal(volume->bytes, bytes);

@@ -96,8 +96,8 @@ static struct ball_volume volume_of(struct dnrt_scene *d, int ball, bool quadrat
         .half = REACH * RADIUS[ball],
         .quadratic = quadratic,
         .object_from_world = glms_mat3_transpose(glms_quat_mat3(turn_of(ball))),
-        .scale = tensors_find(bake, "shape/0/scale")->data,
-        .volume = tensors_find(bake, "shape/0/volume"),
+        .scale = baked_tensor(bake, "scale")->data,
+        .volume = baked_tensor(bake, "volume"),
     };
     float c[3][9];
     probe_fixture_at(&d->run, &d->fixture, v.centre, c);

@@ -138,9 +138,9 @@ static void check_pixels(struct gpu *gpu, const char *options)
     snprintf(gi, sizeof gi, "%s+dnrt:size=16,rays=64,self=true%s", SOURCE, options);
     open_scene(&s, &run, gpu, gi);
     const struct tensors *bake = run.baked.bakes.of_term[1];
-    struct crate crate = { .corners = tensors_find(bake, "shape/0/corners"),
-                           .patches = tensors_find(bake, "shape/0/patches"),
-                           .self = tensors_find(bake, "shape/0/self") };
+    struct crate crate = { .corners = baked_tensor(bake, "corners"),
+                           .patches = baked_tensor(bake, "patches"),
+                           .self = baked_tensor(bake, "self") };
     float *after = fixture_read(&s, READ_IRRADIANCE), *position = fixture_read(&s, READ_POSITION);
     float *id = fixture_read(&s, READ_ID);
     take_light(&crate, &run, &s, direct);

@@ -58,7 +58,7 @@ static void make_board(struct board *b, int material)
 }
 
 // Nodes of a character: an armature where it stands, a joint that moves nothing and turns with
-// nothing, the body, and its arm. The mesh is where the body's joint is at rest.
+// nothing, the body, and its arm. Its skin's bind pose is the rest pose.
 struct character {
     int armature, handle, body, arm, instance;
     int joints[JOINTS + 1];
@@ -245,7 +245,7 @@ static struct dnrt_frame frame_at(const struct scene *scene, float time)
     struct dnrt_frame frame;
     mat3s stretch;
     CHECK(pose_init(&pose, scene, 0, time));
-    CHECK(dnrt_objects_init(&objects, test_host(), &pose, 1) && objects.count == 1);
+    CHECK(dnrt_objects_init(&objects, test_host(), &pose, 1, false) && objects.count == 1);
     CHECK(dnrt_object_frame(&objects, &pose, 0, &frame, &stretch));
     dnrt_objects_finish(&objects);
     pose_finish(&pose);

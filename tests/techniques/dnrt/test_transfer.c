@@ -2,7 +2,7 @@
 #include "framework/test.h"
 #include "techniques/dnrt/sphere_fixture.h"
 
-#include "techniques/dnrt/bake/part.h"
+#include "techniques/dnrt/dnrt_part.h"
 #include "techniques/dnrt/bake/patches.h"
 #include "techniques/dnrt/bake/transfer.h"
 #include "techniques/dnrt/bake/volume.h"
@@ -303,7 +303,7 @@ static void check_points(float albedo, int (*add)(struct scene *, int), float ex
     struct dnrt_patches patches;
     object_open(&bowl, albedo, add);
     bowl.of.scene->instances[0].movable = true;
-    CHECK(dnrt_objects_init(&objects, test_host(), &bowl.of.pose, 1));
+    CHECK(dnrt_objects_init(&objects, test_host(), &bowl.of.pose, 1, false));
     CHECK(dnrt_part_init(&part, test_host(), &bowl.of.pose, &objects, 0));
     CHECK(dnrt_patches_init(&patches, test_host(), &part));
     bowl.how.rays = 1024;

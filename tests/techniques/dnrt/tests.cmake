@@ -7,6 +7,7 @@ ag_test(techniques/dnrt/intrusion USES techniques LIBRARIES ag_test_dnrt ag_test
 ag_test(techniques/dnrt/motion USES techniques LIBRARIES ag_test_dnrt ag_test_techniques ag_test_frame_fixture)
 ag_test(techniques/dnrt/keys USES techniques LIBRARIES ag_test_dnrt ag_test_techniques ag_test_frame_fixture)
 ag_test(techniques/dnrt/skin USES techniques LIBRARIES ag_test_dnrt ag_test_techniques ag_test_frame_fixture)
+ag_test(techniques/dnrt/parts USES techniques LIBRARIES ag_test_dnrt)
 ag_test(techniques/dnrt/self USES techniques LIBRARIES ag_test_dnrt)
 ag_test(techniques/dnrt/normals USES techniques LIBRARIES ag_test_dnrt)
 ag_test(techniques/dnrt/tiles USES techniques LIBRARIES ag_test_dnrt)

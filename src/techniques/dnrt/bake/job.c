@@ -5,9 +5,8 @@ bool dnrt_part_of_volume(struct dnrt_part *out, struct host *host,
                          int volume)
 {
     const struct dnrt_shape *shape = &objects->shapes[dnrt_shape_of_volume(objects, volume)];
-    const struct scene_pose *pose =
-        shape->keys > 1 ? dnrt_key_pose(keys, volume - shape->volume) : keys->pose;
-    return dnrt_part_init(out, host, pose, objects, shape->object);
+    return dnrt_part_init(out, host, dnrt_pose_of_volume(objects, keys, volume), objects,
+                          shape->object);
 }
 
 struct dnrt_sampling dnrt_sampling_of(const struct dnrt_job *job, int volume)

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/rng.h"
-#include "techniques/dnrt/bake/part.h"
+#include "techniques/dnrt/dnrt_part.h"
 #include "techniques/dnrt/bake/patches.h"
 #include "techniques/dnrt/bake/transfer.h"
 #include "techniques/dnrt/dnrt_bake.h"
@@ -15,9 +15,18 @@ struct dnrt_shape_trace {
     struct dnrt_patches patches; // of the first key frame of a shape, with `self`
 };
 
+// A volume in the plan, where it is the part of a mesh.
+struct dnrt_baked {
+    int part; // 0: an equal volume before it has the stages
+    char key[HASH128_TEXT];
+};
+
 struct dnrt_job {
     struct dnrt_options options;
     const struct scene_pose *pose;
+    const struct bake_plan *plan;
+    bool all;                       // instances are objects
+    const struct dnrt_baked *baked; // [objects.volume_count]
     struct dnrt_objects objects;
     struct dnrt_shape_trace *volumes; // [objects.volume_count]: shapes at key frames
     struct host *host;                // of `volumes`
@@ -32,6 +41,13 @@ struct dnrt_sampling dnrt_sampling_of(const struct dnrt_job *job, int volume);
 static inline int dnrt_first_volume(const struct dnrt_objects *objects, int volume)
 {
     return objects->shapes[dnrt_shape_of_volume(objects, volume)].volume;
+}
+
+// "mesh 0123456789ab samples", and a tensor (dnrt_tensors.h). NULL: out of memory.
+static inline char *dnrt_stage_name(struct bake_plan *plan, const struct dnrt_baked *of,
+                                    const char *what)
+{
+    return bake_plan_name(plan, "mesh %.12s %s", of->key, what);
 }
 
 static inline uint32_t dnrt_seed_of(const struct bake_task *task, uint64_t index)

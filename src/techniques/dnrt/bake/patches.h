@@ -3,7 +3,7 @@
 // colours, Yuksel, Keyser & House 2010).
 #pragma once
 
-#include "techniques/dnrt/bake/part.h"
+#include "techniques/dnrt/dnrt_part.h"
 #include "techniques/dnrt/bake/transfer.h"
 
 // Points of a side are those with weights i/n and j/n of the second and third corner, i + j ≤ n,

@@ -45,14 +45,15 @@ static bool add_self(struct bake_plan *plan, const struct dnrt_job *job, const i
 {
     enum { POINTS_PER_TASK = 256 };
     const uint64_t coefficients = (uint64_t)dnrt_coefficients(&job->options);
+    const struct dnrt_baked *of = &job->baked[*volume];
     const struct bake_output corners[] = {
-        { bake_plan_name(plan, DNRT_CORNERS, *volume),
+        { bake_plan_name(plan, DNRT_CORNERS, of->key),
           TENSOR_F32,
           3,
           { patches->count, 3, 3 },
           BAKE_ROWS,
           BAKE_SAVED },
-        { bake_plan_name(plan, DNRT_PATCHES, *volume),
+        { bake_plan_name(plan, DNRT_PATCHES, of->key),
           TENSOR_U32,
           2,
           { patches->count, 2 },
@@ -60,20 +61,22 @@ static bool add_self(struct bake_plan *plan, const struct dnrt_job *job, const i
           BAKE_SAVED },
     };
     const struct bake_output self[] = {
-        { bake_plan_name(plan, DNRT_SELF, *volume),
+        { bake_plan_name(plan, DNRT_SELF, of->key),
           TENSOR_F16,
           3,
           { patches->points, coefficients, 4 },
           BAKE_ROWS,
           BAKE_SAVED },
     };
-    const struct bake_stage geometry = { .name = bake_plan_name(plan, "shape %d patches", *volume),
+    const struct bake_stage geometry = { .name = dnrt_stage_name(plan, of, "patches"),
+                                         .part = of->part,
                                          .task_count = 1,
                                          .run = run_patches,
                                          .argument = volume,
                                          .outputs = corners,
                                          .output_count = 2 };
-    const struct bake_stage transfer = { .name = bake_plan_name(plan, "shape %d self", *volume),
+    const struct bake_stage transfer = { .name = dnrt_stage_name(plan, of, "self"),
+                                         .part = of->part,
                                          .task_count = (patches->points + POINTS_PER_TASK - 1) /
                                                        POINTS_PER_TASK,
                                          .run = run_self,
@@ -97,6 +100,7 @@ bool dnrt_add_self_stages(struct bake_plan *plan, const struct dnrt_job *job,
         ok = dnrt_part_of_volume(&part, bake_plan_host(plan), objects, keys, shape->volume) &&
              dnrt_patches_init(&patches, bake_plan_host(plan), &part);
         for (int v = shape->volume; v < shape->volume + shape->keys && ok; v++) {
+            if (job->baked[v].part == 0) continue;
             int *volume = bake_plan_alloc(plan, 1, sizeof *volume);
             if (volume) *volume = v;
             ok = volume && add_self(plan, job, volume, &patches);

@@ -1,7 +1,6 @@
 // Stages of the bake: samples of every shape by rays, then their volumes.
 #include "techniques/dnrt/dnrt_bake.h"
 
-#include "bake/scene_key.h"
 #include "techniques/dnrt/bake/job.h"
 #include "techniques/dnrt/bake/volume.h"
 #include "techniques/dnrt/dnrt_tensors.h"
@@ -12,17 +11,36 @@
 enum { SAMPLES_PER_TASK = 1024 };
 static const double MOST_BYTES = 2147483648.0; // of all volumes
 
+static bool is_run(const struct dnrt_job *job, int volume)
+{
+    const int part = job->baked[volume].part;
+    return part > 0 && !bake_plan_part_is_loaded(job->plan, part);
+}
+
+// Whether the points of a shape are those of this volume.
+static bool has_patches(const struct dnrt_job *job, int volume)
+{
+    const struct dnrt_shape *shape =
+        &job->objects.shapes[dnrt_shape_of_volume(&job->objects, volume)];
+    bool any = false;
+    for (int v = volume; v < shape->volume + shape->keys; v++) any = any || is_run(job, v);
+    return any && job->options.self && shape->volume == volume;
+}
+
+static bool prepare_volume(struct dnrt_job *job, const struct dnrt_key_poses *keys, int v)
+{
+    struct dnrt_shape_trace *of = &job->volumes[v];
+    const bool run = is_run(job, v), patches = has_patches(job, v);
+    if (!run && !patches) return true;
+    if (!dnrt_part_of_volume(&of->part, job->host, &job->objects, keys, v)) return false;
+    if (run && !(of->trace = trace_scene_create(job->host, &of->part.pose))) return false;
+    return !patches || dnrt_patches_init(&of->patches, job->host, &of->part);
+}
+
 static bool prepare_volumes(struct dnrt_job *job, const struct dnrt_key_poses *keys)
 {
-    for (int v = 0; v < job->objects.volume_count; v++) {
-        struct dnrt_shape_trace *of = &job->volumes[v];
-        if (!dnrt_part_of_volume(&of->part, job->host, &job->objects, keys, v)) return false;
-        of->trace = trace_scene_create(job->host, &of->part.pose);
-        if (!of->trace) return false;
-        if (job->options.self && dnrt_first_volume(&job->objects, v) == v &&
-            !dnrt_patches_init(&of->patches, job->host, &of->part))
-            return false;
-    }
+    for (int v = 0; v < job->objects.volume_count; v++)
+        if (!prepare_volume(job, keys, v)) return false;
     return true;
 }
 
@@ -31,7 +49,8 @@ static bool prepare(void *argument, struct host *host)
     struct dnrt_job *job = argument;
     struct dnrt_key_poses keys = { .host = NULL };
     job->host = host;
-    if (!dnrt_objects_init(&job->objects, host, job->pose, job->options.keys)) return false;
+    if (!dnrt_objects_init(&job->objects, host, job->pose, job->options.keys, job->all))
+        return false;
     job->volumes = host_alloc(host, (size_t)job->objects.volume_count, sizeof *job->volumes);
     const bool ok = job->volumes &&
                     dnrt_key_poses_init(&keys, host, job->pose, job->options.keys) &&
@@ -174,9 +193,11 @@ static bool add_samples(struct bake_plan *plan, const struct dnrt_job *job,
         { of->transfer, TENSOR_F32, 2, { samples, planes_of(&job->options) }, BAKE_ROWS, 1 },
         { of->inside, TENSOR_U8, 1, { samples }, BAKE_ROWS, 1 },
     };
-    const char *name = bake_plan_name(plan, "shape %d samples", of->volume);
+    const struct dnrt_baked *baked = &job->baked[of->volume];
+    const char *name = dnrt_stage_name(plan, baked, "samples");
     return name && bake_plan_add(plan, &(struct bake_stage){ .name = name,
                                                              .wave = 0,
+                                                             .part = baked->part,
                                                              .task_count = tasks,
                                                              .run = run_samples,
                                                              .argument = &of->volume,
@@ -193,37 +214,39 @@ static bool add_volume(struct bake_plan *plan, const struct dnrt_job *job,
     const uint64_t count = (uint64_t)dnrt_coefficients(&job->options);
     const uint64_t normals = (uint64_t)dnrt_normals(&job->options);
     const uint64_t planes = (uint64_t)dnrt_planes(&job->options);
+    const struct dnrt_baked *baked = &job->baked[of->volume];
     const struct bake_output out[] = {
-        { bake_plan_name(plan, DNRT_VOLUME, of->volume),
+        { bake_plan_name(plan, DNRT_VOLUME, baked->key),
           job->options.bits == DNRT_BITS_16 ? TENSOR_F16 : TENSOR_U8,
           6,
           { normals, count, planes, n, n, n },
           BAKE_ROWS,
           BAKE_SAVED },
-        { bake_plan_name(plan, DNRT_SCALE, of->volume),
+        { bake_plan_name(plan, DNRT_SCALE, baked->key),
           TENSOR_F32,
           3,
           { normals, count, planes },
           BAKE_ROWS,
           BAKE_SAVED },
-        { bake_plan_name(plan, DNRT_SPHERE, of->volume),
+        { bake_plan_name(plan, DNRT_SPHERE, baked->key),
           TENSOR_F32,
           1,
           { 4 },
           BAKE_ROWS,
           BAKE_SAVED },
-        { bake_plan_name(plan, DNRT_BOX, of->volume),
+        { bake_plan_name(plan, DNRT_BOX, baked->key),
           TENSOR_F32,
           2,
           { 2, 3 },
           BAKE_ROWS,
           BAKE_SAVED },
     };
-    const char *name = bake_plan_name(plan, "shape %d volume", of->volume);
+    const char *name = dnrt_stage_name(plan, baked, "volume");
     return name && out[0].name && out[1].name && out[2].name && out[3].name &&
            bake_plan_add(plan, &(struct bake_stage){
                                    .name = name,
                                    .wave = 1,
+                                   .part = baked->part,
                                    .task_count = 1,
                                    .run = run_volume,
                                    .argument = of,
@@ -234,13 +257,15 @@ static bool add_volume(struct bake_plan *plan, const struct dnrt_job *job,
                                        (size_t)(n * n * n * (normals * count * planes * 4 + 4)) });
 }
 
-static struct stage_argument *arguments_of(struct bake_plan *plan, int volume)
+static struct stage_argument *arguments_of(struct bake_plan *plan, const struct dnrt_job *job,
+                                           int volume)
 {
+    const char *key = job->baked[volume].key;
     struct stage_argument *of = bake_plan_alloc(plan, 1, sizeof *of);
     if (!of) return NULL;
     of->volume = volume;
-    of->transfer = bake_plan_name(plan, "shape/%d/transfer", volume);
-    of->inside = bake_plan_name(plan, "shape/%d/inside", volume);
+    of->transfer = bake_plan_name(plan, "shape/%s/transfer", key);
+    of->inside = bake_plan_name(plan, "shape/%s/inside", key);
     return of->transfer && of->inside ? of : NULL;
 }
 
@@ -248,29 +273,36 @@ static bool add_stages(struct bake_plan *plan, const struct dnrt_job *job, int v
 {
     for (int wave = 0; wave < 2; wave++)
         for (int v = 0; v < volumes; v++) {
-            const struct stage_argument *of = arguments_of(plan, v);
+            if (job->baked[v].part == 0) continue;
+            const struct stage_argument *of = arguments_of(plan, job, v);
             if (!of || !(wave == 0 ? add_samples : add_volume)(plan, job, of)) return false;
         }
     return true;
 }
 
-// Hashes every shape in its own frame, so that the key does not depend on the objects' poses.
-static bool add_key(struct bake_plan *plan, const struct dnrt_objects *objects,
-                    const struct dnrt_key_poses *keys)
+// A part for each volume of its own. The bake depends on all of them: with one, on that alone, so
+// that the file of a bake of one mesh is that of its part.
+static bool add_parts(struct bake_plan *plan, struct dnrt_job *job,
+                      const struct dnrt_objects *objects)
 {
-    struct hash128 key = hash128_add_text((struct hash128){ 0 }, "dnrt");
-    for (int v = 0; v < objects->volume_count; v++) {
-        struct dnrt_part part;
-        const bool ok = dnrt_part_of_volume(&part, bake_plan_host(plan), objects, keys, v);
-        const struct hash128 of =
-            ok ? scene_key(&part.pose, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS)
-               : (struct hash128){ 0 };
-        key = hash128_add(key, &of, sizeof of);
-        dnrt_part_finish(&part);
-        if (!ok) return false;
+    struct hash128 all = hash128_add_text((struct hash128){ 0 }, "dnrt");
+    struct host *host = bake_plan_host(plan);
+    const int count = objects->volume_count;
+    struct hash128 *keys = dnrt_volume_keys(host, objects, job->pose, job->options.keys);
+    struct dnrt_baked *baked = bake_plan_alloc(plan, (size_t)count, sizeof *baked);
+    bool ok = keys && baked;
+    for (int v = 0; ok && v < count; v++) {
+        bool exists;
+        hash128_print(keys[v], baked[v].key);
+        const int part = bake_plan_part(plan, keys[v], &exists);
+        ok = part > 0;
+        if (!exists) baked[v].part = part;
+        if (!exists) all = part == 1 ? keys[v] : hash128_add(all, &keys[v], sizeof *keys);
     }
-    bake_plan_depends(plan, key);
-    return true;
+    job->baked = baked;
+    bake_plan_depends(plan, all);
+    host_free(host, keys);
+    return ok;
 }
 
 // All volumes are in one buffer of the GPU.
@@ -295,11 +327,12 @@ bool dnrt_bake(struct bake_plan *plan, const struct technique_bake *how)
     if (!job) return false;
     job->pose = how->pose;
     job->options = *(const struct dnrt_options *)how->options;
+    job->plan = plan;
+    job->all = how->all_objects;
     bake_plan_set_job(plan, &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish });
-    const bool ok = dnrt_objects_init(&objects, host, how->pose, job->options.keys) &&
-                    fits(plan, job, objects.volume_count) &&
+    const bool ok = dnrt_objects_init(&objects, host, how->pose, job->options.keys, job->all) &&
+                    fits(plan, job, objects.volume_count) && add_parts(plan, job, &objects) &&
                     dnrt_key_poses_init(&keys, host, how->pose, job->options.keys) &&
-                    add_key(plan, &objects, &keys) &&
                     dnrt_add_self_stages(plan, job, &objects, &keys) &&
                     add_stages(plan, job, objects.volume_count);
     dnrt_key_poses_finish(&keys);

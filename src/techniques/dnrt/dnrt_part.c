@@ -1,6 +1,9 @@
-#include "techniques/dnrt/bake/part.h"
+#include "techniques/dnrt/dnrt_part.h"
+
+#include "bake/scene_key.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static bool make_arrays(struct dnrt_part *part, int instances)
 {
@@ -9,20 +12,21 @@ static bool make_arrays(struct dnrt_part *part, int instances)
     part->scene.instances = host_alloc(part->host, count, sizeof *scene->instances);
     part->scene.meshes = host_alloc(part->host, count, sizeof *scene->meshes);
     part->scene.nodes = host_alloc(part->host, count, sizeof *scene->nodes);
-    part->scene.materials =
-        host_alloc(part->host, (size_t)scene->material_count, sizeof *scene->materials);
+    part->scene.materials = host_alloc(part->host, count, sizeof *scene->materials);
     part->pose.world_from_node = host_alloc(part->host, count, sizeof *part->pose.world_from_node);
     part->pose.deformed = host_alloc(part->host, count, sizeof *part->pose.deformed);
     return part->scene.instances && part->scene.meshes && part->scene.nodes &&
            part->scene.materials && part->pose.world_from_node && part->pose.deformed;
 }
 
-// Others than those of the object have no images, which are then not decoded. Normal maps are finer
-// than a volume, and emission is not reflected.
-static void copy_material(struct dnrt_part *part, const struct scene *from, int material)
+// Normal maps are finer than a volume, and emission is not reflected. Materials are those of the
+// part alone: their numbers in the scene do not matter.
+static void copy_material(struct dnrt_part *part, const struct scene *from, struct mesh *mesh,
+                          int k)
 {
-    struct material *to = &part->scene.materials[material];
-    *to = from->materials[material];
+    struct material *to = &part->scene.materials[k];
+    *to = from->materials[mesh->material];
+    mesh->material = k;
     material_clear_emission(to);
     to->normal_map = texture_use_none();
 }
@@ -54,7 +58,7 @@ static bool add_instance(struct dnrt_part *part, const struct scene_pose *pose, 
     part->scene.instances[k] = (struct instance){ .node = k, .mesh = k, .skin = -1 };
     for (int i = 0; i < 3; i++) part->pose.world_from_node[k].col[i] = vec4_of(stretch.col[i], 0);
     part->pose.world_from_node[k].raw[3][3] = 1.0f;
-    copy_material(part, from, mesh->material);
+    copy_material(part, from, mesh, k);
     return !pose->deformed[instance].positions || copy_deformed(part, pose, instance, root, mesh);
 }
 
@@ -108,8 +112,9 @@ static void find_sphere(struct dnrt_part *part)
 
 // ----
 
-bool dnrt_part_init(struct dnrt_part *out, struct host *host, const struct scene_pose *pose,
-                    const struct dnrt_objects *objects, int object)
+// Without the sphere.
+static bool open_part(struct dnrt_part *out, struct host *host, const struct scene_pose *pose,
+                      const struct dnrt_objects *objects, int object)
 {
     const struct dnrt_object *of = &objects->at[object];
     struct dnrt_frame frame;
@@ -125,12 +130,19 @@ bool dnrt_part_init(struct dnrt_part *out, struct host *host, const struct scene
     scene->materials = NULL;
     out->pose.scene = scene;
     if (!make_arrays(out, of->count)) return false;
-    for (int m = 0; m < scene->material_count; m++) scene->materials[m] = material_default();
-    scene->instance_count = scene->mesh_count = scene->node_count = of->count;
+    scene->instance_count = scene->mesh_count = scene->node_count = scene->material_count =
+        of->count;
     if (!dnrt_object_frame(objects, pose, object, &frame, &stretch)) return true; // radius 0
     for (int k = 0; k < of->count; k++)
         if (!add_instance(out, pose, objects->instances[of->first + k], &of->root, stretch, k))
             return false;
+    return true;
+}
+
+bool dnrt_part_init(struct dnrt_part *out, struct host *host, const struct scene_pose *pose,
+                    const struct dnrt_objects *objects, int object)
+{
+    if (!open_part(out, host, pose, objects, object)) return false;
     find_sphere(out);
     return true;
 }
@@ -150,4 +162,49 @@ void dnrt_part_finish(struct dnrt_part *part)
     host_free(part->host, part->pose.world_from_node);
     host_free(part->host, part->pose.deformed);
     *part = (struct dnrt_part){ 0 };
+}
+
+// ---- keys
+
+const struct scene_pose *dnrt_pose_of_volume(const struct dnrt_objects *objects,
+                                             const struct dnrt_key_poses *keys, int volume)
+{
+    const struct dnrt_shape *shape = &objects->shapes[dnrt_shape_of_volume(objects, volume)];
+    return shape->keys > 1 ? dnrt_key_pose(keys, volume - shape->volume) : keys->pose;
+}
+
+static bool find_key(struct hash128 *out, struct host *host, const struct dnrt_objects *objects,
+                     const struct dnrt_key_poses *keys, int volume)
+{
+    const struct dnrt_shape *shape = &objects->shapes[dnrt_shape_of_volume(objects, volume)];
+    struct dnrt_part part;
+    const bool ok =
+        open_part(&part, host, dnrt_pose_of_volume(objects, keys, volume), objects, shape->object);
+    if (ok) *out = scene_key(&part.pose, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS);
+    // Its points are those of the first key frame.
+    if (ok && volume > shape->volume)
+        *out = hash128_add(*out, &out[shape->volume - volume], sizeof *out);
+    dnrt_part_finish(&part);
+    return ok;
+}
+
+struct hash128 *dnrt_volume_keys(struct host *host, const struct dnrt_objects *objects,
+                                 const struct scene_pose *pose, int keys)
+{
+    const int count = objects->volume_count;
+    struct dnrt_key_poses poses;
+    struct hash128 *out = host_alloc(host, (size_t)count, sizeof *out);
+    bool ok = dnrt_key_poses_init(&poses, host, pose, keys) && out;
+    for (int v = 0; ok && v < count; v++) ok = find_key(&out[v], host, objects, &poses, v);
+    dnrt_key_poses_finish(&poses);
+    if (ok) return out;
+    host_free(host, out);
+    return NULL;
+}
+
+void dnrt_tensor_name(const char *format, struct hash128 key, char out[DNRT_NAME_SIZE])
+{
+    char text[HASH128_TEXT];
+    hash128_print(key, text);
+    snprintf(out, DNRT_NAME_SIZE, format, text);
 }
