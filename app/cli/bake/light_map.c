@@ -64,6 +64,7 @@ static enum status check_usage(const struct arguments *a)
 {
     const char *option = a->report                  ? "--report"
                          : a->report_full           ? "--report-full"
+                         : a->all_objects           ? "--all-objects"
                          : a->exported              ? "--export"
                          : a->output && !is_part(a) ? "-o"
                                                     : NULL;

@@ -173,6 +173,45 @@ TEST(a_mesh_has_one_file_in_all_scenes)
     check_sharing(OPTIONS ",self=true,direct=true");
 }
 
+// The tasks of the crate alone, before and after its last wave.
+TEST(a_checkpoint_beside_a_loaded_part_is_resumed)
+{
+    struct objects_scene ball, pair, again;
+    char alone[512], whole[512], partial[512], resumed[512];
+    path_of("alone.safetensors", alone);
+    path_of("whole.safetensors", whole);
+    path_of("partial.safetensors", partial);
+    path_of("resumed.safetensors", resumed);
+    open_ball(&ball, OPTIONS ",self=true");
+    run(ball.bake);
+    CHECK(bake_save(ball.bake, alone, false));
+    for (int complete = 0; complete < 2; complete++) {
+        const struct bake_run_options one = { .threads = 1 };
+        struct bake_estimate estimate;
+        open_pair(&pair, OPTIONS ",self=true");
+        const int part = find_ball(&ball, &pair);
+        CHECK(bake_load_part(pair.bake, part, alone));
+        CHECK(complete ? bake_run(pair.bake, &one)
+                       : bake_estimate(pair.bake, &one, true, &estimate));
+        CHECK(bake_is_complete(pair.bake) == (complete == 1));
+        CHECK(bake_save_partial(pair.bake, partial));
+        open_pair(&again, OPTIONS ",self=true");
+        CHECK(bake_load_part(again.bake, part, alone) && bake_merge(again.bake, partial));
+        CHECK(bake_is_complete(again.bake) == (complete == 1));
+        run(again.bake);
+        run(pair.bake);
+        CHECK(bake_save(pair.bake, whole, false) && bake_save(again.bake, resumed, false));
+        check_same_files(whole, resumed);
+        close_scene(&again);
+        close_scene(&pair);
+    }
+    // Without the part, tasks of the crate's last wave are before those of the ball's first.
+    open_pair(&pair, OPTIONS ",self=true");
+    CHECK(!bake_merge(pair.bake, partial) && strstr(test_last_message(), "order of its stages"));
+    close_scene(&pair);
+    close_scene(&ball);
+}
+
 TEST(a_file_of_a_scene_serves_another_one_for_what_both_have)
 {
     struct objects_scene ball, pair;
