@@ -57,8 +57,39 @@ bool scene_statics_init(struct scene_statics *out, struct host *host, const stru
     return ok;
 }
 
+static void free_reflectance(struct material *m)
+{
+    const bool opaque = m->alpha_mode == ALPHA_OPAQUE;
+    m->base_color = vec4_of(vec3_of(1, 1, 1), opaque ? 1.0f : m->base_color.w);
+    m->metallic = m->roughness = m->specular = 1.0f;
+    m->ior = 0.0f; // F0 = 1
+    m->specular_color = vec3_of(1, 1, 1);
+    m->unlit = false;
+}
+
+bool scene_statics_free_factors(struct scene_statics *s, bool reflectance)
+{
+    const size_t count = (size_t)s->scene.material_count;
+    struct material *materials = host_alloc(s->host, count, sizeof *materials);
+    if (!materials || !emission_basis_init(&s->emission, s->host, &s->pose)) {
+        host_free(s->host, materials);
+        return false;
+    }
+    if (count > 0) memcpy(materials, s->scene.materials, count * sizeof *materials);
+    for (size_t i = 0; i < count; i++) {
+        materials[i].emissive = emission_basis_unit(&s->emission, &s->scene, (int)i);
+        if (reflectance) free_reflectance(&materials[i]);
+    }
+    s->scene.materials = s->materials = materials;
+    return true;
+}
+
 void scene_statics_finish(struct scene_statics *statics)
 {
-    if (statics->host) host_free(statics->host, statics->scene.instances);
+    if (statics->host) {
+        host_free(statics->host, statics->scene.instances);
+        host_free(statics->host, statics->materials);
+    }
+    emission_basis_finish(&statics->emission);
     *statics = (struct scene_statics){ 0 };
 }

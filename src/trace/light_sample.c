@@ -218,7 +218,7 @@ struct emitter_sample light_sample_emitter(const struct trace_scene *scene, vec3
     p = glms_vec3_muladds(e->edges[1], b.y, p);
     vec3s to_light = glms_vec3_sub(p, from);
     float distance2 = glms_vec3_norm2(to_light);
-    struct emitter_sample s = { .position = p };
+    struct emitter_sample s = { .position = p, .mesh = e->mesh };
     if (!(distance2 > 0.0f)) return s;
     s.to_light = glms_vec3_scale(to_light, 1.0f / sqrtf(distance2));
     float cosine = -glms_vec3_dot(e->normal, s.to_light), side = 1.0f;

@@ -53,6 +53,7 @@ struct emitter_sample {
     vec3s to_light; // unit
     vec3s radiance; // cd/m²; 0 towards a back face
     float pdf;      // of the direction, 1/sr
+    uint32_t mesh;  // of the emitter, in trace_scene.meshes
 };
 struct emitter_sample light_sample_emitter(const struct trace_scene *scene, vec3s from,
                                            float choice, vec2s u);

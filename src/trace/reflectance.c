@@ -27,14 +27,17 @@ static vec3s lobe_albedo(struct ggx_albedo mean, vec3s f0, float f90)
     return albedo;
 }
 
-vec3s surface_reflectance(const struct surface *surface)
+vec3s bsdf_reflectance(const struct bsdf_material *m)
 {
-    if (surface->unlit) return vec3_of(0, 0, 0);
-    const struct bsdf_material *m = &surface->material;
     const struct ggx_albedo mean = mean_albedo(m->roughness);
     const vec3s lobe = lobe_albedo(mean, m->dielectric_f0, m->dielectric_f90);
     const vec3s metal = lobe_albedo(mean, m->albedo, 1.0f);
     const float transmitted = fminf(fmaxf(1.0f - glms_vec3_max(lobe), 0.0f), 1.0f);
     const vec3s dielectric = glms_vec3_muladds(m->albedo, transmitted, lobe);
     return glms_vec3_lerp(dielectric, metal, m->metallic);
+}
+
+vec3s surface_reflectance(const struct surface *surface)
+{
+    return surface->unlit ? vec3_of(0, 0, 0) : bsdf_reflectance(&surface->material);
 }

@@ -50,7 +50,10 @@ static bool create(void *state, const struct technique_create *how)
     struct scene_statics statics;
     const bool ok = scene_statics_init(&statics, s->host, how->pose) &&
                     light_map_followed_init(&s->followed, s->host, "ort", how->pose, &statics) &&
+                    light_map_materials_init(&s->materials, s->host, "ort",
+                                             LIGHT_MAP_FOLLOWS_EMISSION, &statics) &&
                     ort_map_init(&s->map, s->host, &statics.pose, &s->options);
+    if (ok) light_map_emission_set(&s->emission, &s->materials.emission, how->pose->scene);
     scene_statics_finish(&statics);
     return ok;
 }
@@ -125,6 +128,7 @@ static void list(const struct ort *s, struct gpu_objects *out)
     list_tables(s, out);
     list_pipelines(s, out);
     light_map_list(&s->light_map, offsetof(struct ort, light_map), out);
+    light_map_emission_list(offsetof(struct ort, emission), out);
     list_uploads(out);
 }
 
@@ -151,7 +155,7 @@ static bool load(void *state, const struct tensors *bake)
 static void invalidate(void *state, uint32_t changes)
 {
     struct ort *s = state;
-    if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL | CHANGED_OPTIONS)) s->kept.known = false;
+    if (changes & (CHANGED_GEOMETRY | CHANGED_OPTIONS)) s->kept.known = false;
 }
 
 static void follow(void *state, const struct scene_pose *pose, bool wait)
@@ -159,6 +163,8 @@ static void follow(void *state, const struct scene_pose *pose, bool wait)
     struct ort *s = state;
     (void)wait;
     light_map_followed_update(&s->followed, pose);
+    if (light_map_materials_update(&s->materials, pose->scene))
+        light_map_emission_set(&s->emission, &s->materials.emission, pose->scene);
     s->light_map.surfaces.moves = s->followed.any_moved ? s->followed.places.moves : NULL;
 }
 
@@ -166,6 +172,8 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
 {
     struct ort *s = state;
     if (light_map_paint_record(&s->paint, cmd)) s->kept.lit = false;
+    if (s->map.texel_count > 0 && light_map_emission_record(&s->emission, cmd, s->tables.texels))
+        s->kept.lit = false;
     kept_update(&s->kept, view, view->light_hash);
     if (s->map.texel_count > 0 && !(view->keep && s->kept.same)) ort_record_update(s, cmd, view);
 }
@@ -206,6 +214,7 @@ static void destroy(void *state)
     gpu_objects_destroy(s->gpu, &objects, s);
     light_map_paint_finish(&s->paint);
     light_map_followed_finish(&s->followed);
+    light_map_materials_finish(&s->materials);
     ort_map_finish(&s->map);
 }
 
@@ -227,6 +236,7 @@ static uint64_t memory_estimate(const void *options)
     // Levels of light; steps, and light along rows.
     const uint64_t light = o->prefilter ? (16 * ORT_LEVELS + 4 + 8) * places : 16 * places;
     return light_map_table_bytes((TEXEL_PARTS + TEXEL_SKY_WORDS) * texels, 16) +
+           light_map_table_bytes(texels, 16) + // of an emissive material
            light_map_table_bytes(texels, 4) + light_map_bytes(texels) +
            bins * ORT_BIN_SIDE * ORT_BIN_SIDE * weight + light +
            light_map_table_bytes(6 * places / ORT_RUN, 16) + light_map_table_bytes(3 * texels, 8) +
@@ -241,7 +251,7 @@ const struct technique technique_ort = {
     .role = ROLE_SOURCE,
     .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID,
-    .bake_version = 7,
+    .bake_version = 8,
     .options = OPTION_TABLE(struct ort_options, option_rows, NULL),
     .presets = presets,
     .debug_views = debug_views,

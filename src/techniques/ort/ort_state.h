@@ -2,7 +2,9 @@
 #pragma once
 
 #include "techniques/common/kept.h"
+#include "techniques/common/light_map/emission.h"
 #include "techniques/common/light_map/follow.h"
+#include "techniques/common/light_map/materials.h"
 #include "techniques/common/light_map/paint.h"
 #include "techniques/common/light_map/map.h"
 #include "techniques/common/light_map/texels.h"
@@ -33,6 +35,8 @@ struct ort {
     struct ort_tables tables;
     struct ort_pipelines pipelines;
     struct light_map_followed followed;
+    struct light_map_materials materials;
+    struct light_map_emission emission;
     struct kept kept;
 };
 

@@ -29,6 +29,14 @@ static bool find_normals(struct ort *s, const struct tensors *bake, struct light
     return normals != NULL;
 }
 
+static bool find_reflectance(struct ort *s, const struct tensors *bake,
+                             struct light_map_texels *texels)
+{
+    const uint64_t n = light_map_rows(s->map.texel_count);
+    texels->reflectance = TENSORS_EXPECT(s->host, bake, LIGHT_MAP_ALBEDO, TENSOR_F32, n, 4);
+    return texels->reflectance != NULL;
+}
+
 static bool find_tensors(struct ort *s, const struct tensors *bake, struct content *out)
 {
     *out = (struct content){ 0 };
@@ -37,7 +45,7 @@ static bool find_tensors(struct ort *s, const struct tensors *bake, struct conte
                                         light_map_rows(s->map.texel_count))) &&
            ort_maps_find(&out->maps, &s->map, &s->options, bake) &&
            light_map_find_texels(&out->texels, s->host, &s->map.charts, bake) &&
-           find_normals(s, bake, &out->texels);
+           find_reflectance(s, bake, &out->texels) && find_normals(s, bake, &out->texels);
 }
 
 // Steps of 8 bits: the largest weight of a map is 255.
@@ -155,6 +163,8 @@ bool ort_upload(struct ort *s, const struct tensors *bake)
     const bool ok = c.nearest_valid && find_levels(s, &c) && upload_steps(s, &c) &&
                     upload_maps(s, &c) && upload_places(s) &&
                     light_map_upload_texels(&c.texels, s->host, s->gpu, &s->tables.texels) &&
+                    light_map_emission_upload(&s->emission, s->host, s->gpu, &s->materials.emission,
+                                              s->map.texel_count, bake) &&
                     light_map_upload_sky(&c.texels, s->host, s->gpu, bake, &s->tables.sky) &&
                     light_map_upload(&s->light_map, (uint32_t)s->followed.places.count,
                                      c.nearest_valid, c.texels.sky, bake);

@@ -44,6 +44,7 @@ static bool create(void *state, const struct technique_create *how)
     const bool ok =
         scene_statics_init(&statics, s->host, how->pose) &&
         light_map_followed_init(&s->followed, s->host, "prt", how->pose, &statics) &&
+        light_map_materials_init(&s->materials, s->host, "prt", 0, &statics) &&
         prt_receivers_init(&s->receivers, &s->charts, s->host, &statics.pose, &s->options);
     scene_statics_finish(&statics);
     return ok;
@@ -208,6 +209,7 @@ static void follow(void *state, const struct scene_pose *pose, bool wait)
     (void)wait;
     warn_of_lights(s, pose->scene);
     light_map_followed_update(&s->followed, pose);
+    light_map_materials_update(&s->materials, pose->scene);
     s->light_map.surfaces.moves = s->vertex_map.surfaces.moves =
         s->followed.any_moved ? s->followed.places.moves : NULL;
 }
@@ -277,6 +279,7 @@ static void destroy(void *state)
     list(s, &objects);
     gpu_objects_destroy(s->gpu, &objects, s);
     light_map_followed_finish(&s->followed);
+    light_map_materials_finish(&s->materials);
     prt_receivers_finish(&s->receivers);
 }
 

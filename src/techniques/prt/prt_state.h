@@ -3,6 +3,7 @@
 
 #include "techniques/common/kept.h"
 #include "techniques/common/light_map/follow.h"
+#include "techniques/common/light_map/materials.h"
 #include "techniques/common/light_map/map.h"
 #include "techniques/common/light_map/texels.h"
 #include "techniques/prt/probes/probes.h"
@@ -38,6 +39,7 @@ struct prt {
     } pipelines;
     struct prt_light light; // the newest
     struct light_map_followed followed;
+    struct light_map_materials materials;
     struct kept kept;
     bool warned_lights;
 };

@@ -102,11 +102,13 @@ static bool find_matrices(struct prt *s, const struct tensors *bake, struct cont
 static bool find_receivers(struct prt *s, const struct tensors *bake, struct light_map_texels *out)
 {
     const uint64_t n = light_map_rows(s->receivers.count);
-    if (!s->receivers.at_vertices) return light_map_find_texels(out, s->host, &s->charts, bake);
 #define EXPECT(...) TENSORS_EXPECT(s->host, bake, __VA_ARGS__)
-    return EXPECT(LIGHT_MAP_ALBEDO, TENSOR_F32, n, 4) && EXPECT(LIGHT_MAP_SKY, TENSOR_F32, n, 4) &&
-           (out->emitted = EXPECT(LIGHT_MAP_EMITTED, TENSOR_F32, n, 3, 4)) &&
-           (out->point = EXPECT(LIGHT_MAP_POINT, TENSOR_F32, n, 4));
+    const bool found = s->receivers.at_vertices
+                           ? EXPECT(LIGHT_MAP_SKY, TENSOR_F32, n, 4) &&
+                                 (out->point = EXPECT(LIGHT_MAP_POINT, TENSOR_F32, n, 4))
+                           : light_map_find_texels(out, s->host, &s->charts, bake);
+    return found && (out->reflectance = EXPECT(LIGHT_MAP_ALBEDO, TENSOR_F32, n, 4)) &&
+           (out->emitted = EXPECT(LIGHT_MAP_EMITTED, TENSOR_F32, n, 3, 4));
 #undef EXPECT
 }
 

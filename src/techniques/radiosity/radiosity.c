@@ -37,7 +37,11 @@ static bool create(void *state, const struct technique_create *how)
     const bool ok =
         scene_statics_init(&statics, s->host, how->pose) &&
         light_map_followed_init(&s->followed, s->host, "radiosity", how->pose, &statics) &&
+        light_map_materials_init(&s->materials, s->host, "radiosity",
+                                 LIGHT_MAP_FOLLOWS_EMISSION | LIGHT_MAP_FOLLOWS_REFLECTANCE,
+                                 &statics) &&
         radiosity_map_init(&s->map, s->host, &statics.pose, &s->options);
+    if (ok) light_map_emission_set(&s->emission, &s->materials.emission, how->pose->scene);
     scene_statics_finish(&statics);
     return ok;
 }
@@ -89,7 +93,7 @@ static void list_uploads(struct gpu_objects *out)
             IMAGE(members), IMAGE(groups), IMAGE(factors.order), IMAGE(factors.tiles),
             IMAGE(cluster_factors.order), IMAGE(cluster_factors.tiles),
             { GPU_BUFFER, .member = TABLE(labels) }, { GPU_BUFFER, .member = PROBES(table) },
-            { GPU_BUFFER, .member = PROBES(factors) },
+            { GPU_BUFFER, .member = PROBES(emission) }, { GPU_BUFFER, .member = PROBES(factors) },
             { GPU_IMAGE, .member = PROBES(volume.depth) });
 }
 
@@ -99,6 +103,7 @@ static void list(const struct radiosity *s, struct gpu_objects *out)
     list_tables(s, out);
     list_pipelines(s, out);
     light_map_list(&s->light_map, offsetof(struct radiosity, light_map), out);
+    light_map_emission_list(offsetof(struct radiosity, emission), out);
     list_probes(s, out);
     list_uploads(out);
 }
@@ -115,7 +120,7 @@ static bool load(void *state, const struct tensors *bake)
 static void invalidate(void *state, uint32_t changes)
 {
     struct radiosity *s = state;
-    if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL | CHANGED_OPTIONS)) s->kept.known = false;
+    if (changes & (CHANGED_GEOMETRY | CHANGED_OPTIONS)) s->kept.known = false;
 }
 
 static void follow(void *state, const struct scene_pose *pose, bool wait)
@@ -123,6 +128,7 @@ static void follow(void *state, const struct scene_pose *pose, bool wait)
     struct radiosity *s = state;
     (void)wait;
     light_map_followed_update(&s->followed, pose);
+    radiosity_follow_materials(s, pose->scene);
     s->light_map.surfaces.moves = s->followed.any_moved ? s->followed.places.moves : NULL;
 }
 
@@ -130,13 +136,14 @@ static void gather_probes(struct radiosity *s, struct gpu_cmd *cmd, const struct
 {
     if (!s->probes.fresh)
         radiosity_probes_record_gather(&s->probes, cmd, view, s->tables.solution,
-                                       s->options.emitters);
+                                       s->options.emitters ? &s->emission : NULL);
 }
 
 static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct radiosity *s = state;
     if (light_map_paint_record(&s->paint, cmd)) s->kept.lit = false;
+    if (radiosity_record_materials(s, cmd)) s->kept.lit = false;
     kept_update(&s->kept, view, view->light_hash);
     s->update.at_once |= !s->kept.follows;
     s->update.changed |= !(view->keep && s->kept.same);
@@ -206,6 +213,8 @@ static void destroy(void *state)
     radiosity_destroy_rows(s, &s->tables.cluster_factors);
     light_map_paint_finish(&s->paint);
     light_map_followed_finish(&s->followed);
+    light_map_materials_finish(&s->materials);
+    radiosity_reflectance_finish(&s->reflectance);
     radiosity_map_finish(&s->map);
 }
 
@@ -223,16 +232,17 @@ static uint64_t rows_bytes(uint64_t rows, uint64_t bytes)
 }
 
 // Assumes a light map with the wanted number of texels, on one side, two thirds of it covered by
-// charts, and a triangle for each texel.
+// charts, a triangle for each texel, and an emissive material.
 static uint64_t memory_estimate(const void *options)
 {
+    enum { COLUMNS = 1, SH_BYTES = 36 };
     const struct radiosity_options *o = options;
     const uint64_t texels = (uint64_t)o->texels, places = texels * 3 / 2;
     const uint64_t clusters = texels / (uint64_t)(o->cluster * o->cluster) + 1;
     const uint64_t nodes = 2 * clusters, sources = (uint64_t)o->sources;
     const uint64_t of_texels =
         light_map_table_bytes((TEXEL_PARTS + TEXEL_SKY_WORDS) * texels, 16) +
-        rows_bytes(texels, 8 * sources) +
+        light_map_table_bytes(COLUMNS * texels, 16) + rows_bytes(texels, 8 * sources) +
         light_map_table_bytes(
             RADIOSITY_SMOOTH_PASSES * RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR * texels, 16) +
         light_map_table_bytes(texels, 16) + 2 * light_map_table_bytes(3 * texels, 8) +
@@ -241,8 +251,9 @@ static uint64_t memory_estimate(const void *options)
         rows_bytes(clusters, 8 * sources) + light_map_table_bytes(clusters, 16) +
         light_map_table_bytes(clusters, 8) + light_map_table_bytes(texels, 4) +
         5 * light_map_table_bytes(nodes, 8);
-    const uint64_t of_probes = radiosity_probes_most(o) * (sizeof(struct radiosity_gpu_probe) +
-                                                           12 * 2 * sources + PROBE_VOLUME_BYTES);
+    const uint64_t of_probes =
+        radiosity_probes_most(o) * (sizeof(struct radiosity_gpu_probe) + COLUMNS * SH_BYTES +
+                                    12 * 2 * sources + PROBE_VOLUME_BYTES);
     return of_texels + of_clusters + light_map_bytes(texels) + of_probes;
 }
 
@@ -254,7 +265,7 @@ const struct technique technique_radiosity = {
     .capabilities =
         CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION | PUBLISHES_PROBES,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID,
-    .bake_version = 14,
+    .bake_version = 15,
     .options = OPTION_TABLE(struct radiosity_options, option_rows, NULL),
     .presets = presets,
     .debug_views = radiosity_views,

@@ -3,10 +3,13 @@
 
 #include "techniques/common/kept.h"
 #include "techniques/radiosity/probes/probes.h"
+#include "techniques/common/light_map/emission.h"
+#include "techniques/common/light_map/materials.h"
 #include "techniques/common/light_map/map.h"
 #include "techniques/common/light_map/texels.h"
 #include "techniques/common/light_map/follow.h"
 #include "techniques/common/light_map/paint.h"
+#include "techniques/radiosity/radiosity_reflectance.h"
 #include "techniques/radiosity/radiosity_shared.h"
 #include "techniques/radiosity/radiosity_tensors.h"
 
@@ -74,7 +77,10 @@ struct radiosity {
     struct light_map light_map;
     struct light_map_paint paint;
     uint32_t group_count;
-    float spectral_radius; // of ρ F, at least
+    struct light_map_materials materials;
+    struct light_map_emission emission;
+    struct radiosity_reflectance reflectance;
+    bool reflectance_changed; // the tables have not the newest
     struct radiosity_tables tables;
     struct radiosity_pipelines pipelines;
     struct radiosity_update update;
@@ -112,6 +118,13 @@ bool radiosity_probes_upload(struct radiosity *state, const struct tensors *bake
 // This frame's share of the light that `update` asks for.
 void radiosity_record_update(struct radiosity *state, struct gpu_cmd *cmd,
                              const struct frame_view *view);
+
+// ---- radiosity_follow.c
+
+// Takes over the materials of the scene.
+void radiosity_follow_materials(struct radiosity *state, const struct scene *scene);
+// Before the passes of a frame: brings the tables up to date. Whether they have changed.
+bool radiosity_record_materials(struct radiosity *state, struct gpu_cmd *cmd);
 
 // ---- radiosity_record.c
 

@@ -11,6 +11,7 @@
 #define RADIOSITY_SOURCE         "texels/source"   // U32 [texels][sources]: nodes of the tree
 #define RADIOSITY_FACTOR         "texels/factor"   // F16 [texels][sources][3]
 #define RADIOSITY_NEARNESS       "texels/nearness" // F32 [texels][4]
+#define RADIOSITY_SURFACE        "texels/surface"  // F32 [texels][10]: struct texel_factors
 #define RADIOSITY_PART           "texels/part"     // U8 [texels]
 #define RADIOSITY_CLUSTER_SOURCE "clusters/source" // U32 [clusters][2 · sources]
 #define RADIOSITY_CLUSTER_FACTOR "clusters/factor" // F16 [clusters][2 · sources]
@@ -18,7 +19,7 @@
 #define RADIOSITY_PROBE_FACTOR   "probes/factor"   // F16 [probes][2 · sources][4]
 #define RADIOSITY_PROBE_PLACE    "probes/place"    // F32 [probes][4]
 #define RADIOSITY_PROBE_SKY      "probes/sky"      // F32 [probes][9]
-#define RADIOSITY_PROBE_EMITTED  "probes/emitted"  // F32 [probes][9][3]
+#define RADIOSITY_PROBE_EMISSION "probes/emission" // F32 [probes][columns, at least 1][9]
 #define RADIOSITY_PROBE_DEPTH    "probes/depth"    // F16 [probes][9 · 9][2]
 
 // Rows allocated before clusters are subdivided: two for each, since walls may split it.

@@ -1,15 +1,13 @@
 // From a bake, which is untrusted, to tables on the GPU.
 #include "techniques/radiosity/radiosity_state.h"
 
-#include "core/half.h"
-
-#include <math.h>
 #include <string.h>
 
 struct content {
     const uint32_t *source, *cluster_source;
     const uint16_t *factor, *cluster_factor;
     const uint8_t *part;
+    const float *surface; // [texels] struct texel_factors
     struct light_map_texels texels;
     const float *nearness;
     uint32_t *nearest_valid; // [texels]
@@ -26,6 +24,7 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
     return (out->source = EXPECT(RADIOSITY_SOURCE, TENSOR_U32, n, k)) &&
            (out->factor = EXPECT(RADIOSITY_FACTOR, TENSOR_F16, n, k, 3)) &&
            (out->part = EXPECT(RADIOSITY_PART, TENSOR_U8, n)) &&
+           (out->surface = EXPECT(RADIOSITY_SURFACE, TENSOR_F32, n, 10)) &&
            (out->nearness = EXPECT(RADIOSITY_NEARNESS, TENSOR_F32, n, 4)) &&
            light_map_find_texels(&out->texels, s->host, &s->map.charts, bake) &&
            (out->cluster_source = EXPECT(RADIOSITY_CLUSTER_SOURCE, TENSOR_U32, c, 2 * k)) &&
@@ -78,86 +77,17 @@ static bool check_sources(struct radiosity *s, const struct content *c)
 
 // ---- clusters
 
-// Mean reflectance, and area of texels that are not hidden.
-static vec4s cluster_of(const struct radiosity *s, const struct content *c, uint32_t cluster)
+static bool find_reflectance(struct radiosity *s, struct content *c)
 {
-    const struct radiosity_map *map = &s->map;
-    vec3s reflected = vec3_of(0, 0, 0);
-    float sum = 0.0f;
-    for (uint32_t m = map->first[cluster]; m < map->first[cluster + 1]; m++) {
-        const uint32_t texel = map->members[m];
-        const float area = light_map_texel_area(&c->texels, texel);
-        const float *reflectance = c->texels.reflectance + 4 * (size_t)texel;
-        sum += area;
-        const float diffuse = 0.5f + 0.5f * reflectance[3]; // radiosity_direct.comp
-        for (int k = 0; k < 3; k++) reflected.raw[k] += area * diffuse * reflectance[k];
-    }
-    return vec4_of(sum > 0.0f ? glms_vec3_divs(reflected, sum) : reflected, sum);
-}
-
-struct power {
-    const struct content *content;
-    const struct radiosity_tree *tree;
-    const vec4s *clusters;
-    float *from, *to; // [nodes]
-};
-
-static void fill_nodes(const struct power *p, float *x)
-{
-    for (uint32_t n = p->tree->leaves; n < p->tree->count; n++) {
-        const struct radiosity_node *node = &p->tree->nodes[n];
-        float sum = 0.0f, area = 0.0f;
-        if (node->count > RADIOSITY_GROUP) continue;
-        for (uint32_t c = node->first; c < node->first + node->count; c++) {
-            sum += p->clusters[c].w * x[c];
-            area += p->clusters[c].w;
-        }
-        x[n] = area > 0.0f ? sum / area : 0.0f;
-    }
-}
-
-// One step of the power method; the largest ratio bounds the spectral radius from above (Collatz
-// 1942).
-static float power_step(const struct power *p)
-{
-    const struct content *c = p->content;
-    float most = 0.0f;
-    fill_nodes(p, p->from);
-    for (size_t i = 0; i < p->tree->leaves; i++) {
-        float sum = 0.0f;
-        for (size_t k = 0; k < c->cluster_sources; k++) {
-            const size_t at = i * c->cluster_sources + k;
-            if (c->cluster_factor[at] == 0) break;
-            sum += float_from_half(c->cluster_factor[at]) * p->from[c->cluster_source[at]];
-        }
-        // Clusters that reflect nothing would end with the ratio 0/0.
-        p->to[i] = fmaxf(sum * glms_vec3_max(glms_vec3(p->clusters[i])), 1e-30f);
-        most = fmaxf(most, p->to[i] / p->from[i]);
-    }
-    return most;
-}
-
-enum { POWER_STEPS = 24 };
-static const float MOST_RADIUS = 0.999f;
-
-static bool find_spectral_radius(struct radiosity *s, const struct content *c,
-                                 const vec4s *clusters)
-{
-    struct power p = { c, &s->map.tree, clusters,
-                       host_alloc(s->host, s->map.tree.count, sizeof(float)),
-                       host_alloc(s->host, s->map.tree.count, sizeof(float)) };
-    const bool ok = p.from && p.to;
-    s->spectral_radius = MOST_RADIUS;
-    for (uint32_t i = 0; ok && i < s->map.cluster_count; i++) p.from[i] = 1.0f;
-    for (int k = 0; ok && k < POWER_STEPS; k++) {
-        s->spectral_radius = fminf(s->spectral_radius, power_step(&p));
-        float *last = p.from;
-        p.from = p.to;
-        p.to = last;
-    }
-    host_free(s->host, p.from);
-    host_free(s->host, p.to);
-    return ok;
+    const struct radiosity_reflectance_input from = { (const struct texel_factors *)c->surface,
+                                                      c->texels.point, c->cluster_source,
+                                                      c->cluster_factor, c->cluster_sources };
+    if (!radiosity_reflectance_init(&s->reflectance, s->host, &s->map, s->materials.of_instance,
+                                    &from))
+        return false;
+    radiosity_reflectance_update(&s->reflectance, s->materials.known);
+    c->texels.reflectance = s->reflectance.texels->raw;
+    return true;
 }
 
 struct pair {
@@ -196,15 +126,14 @@ static bool upload_members(struct radiosity *s)
            ok;
 }
 
-static bool upload_clusters(struct radiosity *s, const struct content *c)
+static bool upload_clusters(struct radiosity *s)
 {
     const uint32_t count = s->map.cluster_count;
     vec4s *clusters = host_alloc(s->host, light_map_table_capacity(count), sizeof *clusters);
-    for (uint32_t i = 0; clusters && i < count; i++) clusters[i] = cluster_of(s, c, i);
-    const bool ok = clusters && find_spectral_radius(s, c, clusters);
+    if (clusters) memcpy(clusters, s->reflectance.clusters, count * sizeof *clusters);
     return light_map_table_upload(s->host, s->gpu, "clusters", GPU_RGBA32F, clusters, count,
                                   &s->tables.clusters) &&
-           ok && upload_members(s) && upload_groups(s);
+           upload_members(s) && upload_groups(s);
 }
 
 // The light map shows the smoothed sky where it shows smoothed light.
@@ -224,10 +153,12 @@ static bool upload_light_map(struct radiosity *s, const struct content *c,
 static bool upload_all(struct radiosity *s, const struct content *c, const struct tensors *bake)
 {
     return light_map_upload_texels(&c->texels, s->host, s->gpu, &s->tables.texels) &&
+           light_map_emission_upload(&s->emission, s->host, s->gpu, &s->materials.emission,
+                                     s->map.texel_count, bake) &&
            light_map_upload_sky(&c->texels, s->host, s->gpu, bake, &s->tables.sky) &&
            radiosity_upload_factors(s, c->source, c->factor, c->cluster_source,
                                     c->cluster_factor) &&
-           upload_light_map(s, c, bake) && upload_clusters(s, c) &&
+           upload_light_map(s, c, bake) && upload_clusters(s) &&
            radiosity_view_init(s, c->texels.point, c->nearest_valid);
 }
 
@@ -238,7 +169,7 @@ bool radiosity_upload(struct radiosity *s, const struct tensors *bake)
     if (s->map.texel_count == 0) return true;
     if (!subdivide(s, &c) || !check_sources(s, &c) || !check_factors(s, &c)) return false;
     c.nearest_valid = light_map_nearest_valid(&c.texels, s->host);
-    const bool ok = c.nearest_valid && upload_all(s, &c, bake);
+    const bool ok = c.nearest_valid && find_reflectance(s, &c) && upload_all(s, &c, bake);
     host_free(s->host, c.nearest_valid);
     return ok;
 }

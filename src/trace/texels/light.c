@@ -12,7 +12,8 @@ struct texel_hit texel_hit_at(const struct trace_scene *scene, const struct ray 
 {
     const struct trace_mesh *mesh = &scene->meshes[hit->geometry];
     const float along = -glms_vec3_dot(mesh->facets[hit->triangle].normal, ray->direction);
-    struct texel_hit at_hit = { .back = along<0.0f, .inside = inside_side_of(scene, ray, hit)> 0 };
+    struct texel_hit at_hit = { .back = along<0.0f, .inside = inside_side_of(scene, ray, hit)> 0,
+                                .mesh = hit->geometry };
     if (at_hit.inside || !mesh->material->emissive) return at_hit;
     at_hit.emission = surface_emission(mesh, hit->triangle, hit->u, hit->v);
     at_hit.pdf =
@@ -39,17 +40,49 @@ bool texel_sample_emitter(const struct trace_scene *scene, vec3s position, const
     return !trace_occluded(scene, position, glms_vec3_sub(out->position, position), 1.0f);
 }
 
-static void add_emission(struct texel_lights *out, const struct texel_receiver *r, vec3s direction,
-                         vec3s radiance, float pdf_light)
+void texel_emission_columns(const struct trace_scene *scene, const struct emission_basis *emission,
+                            uint32_t mesh, vec3s radiance, texel_add_column add, void *user)
 {
-    const float cosine = glms_vec3_dot(direction, r->normal);
-    const float density = texel_sample_density(r, direction, pdf_light);
+    const struct emission_part *part = &emission->parts[scene->meshes[mesh].mesh->material];
+    for (int k = 0; k < part->count; k++) add(user, part->first + k, radiance.raw[k] / part->unit);
+}
+
+// An emitter that a receiver sees.
+struct seen_emitter {
+    uint32_t mesh;
+    vec3s direction, radiance;
+    float pdf; // of light_sample_emitter, sr⁻¹
+};
+
+static void add_light(struct texel_light *to, vec3s direction, float cosine, float light)
+{
+    to->irradiance += light * cosine;
+    for (int k = 0; k < 3; k++) to->vector[k] += light * direction.raw[k];
+}
+
+struct column_sums {
+    struct texel_lights *out;
+    vec3s direction;
+    float cosine, density;
+};
+
+static void add_column(void *user, int column, float radiance)
+{
+    const struct column_sums *to = user;
+    add_light(&to->out->columns[column], to->direction, to->cosine, radiance / to->density);
+}
+
+static void add_emission(struct texel_lights *out, const struct trace_scene *scene,
+                         const struct texel_receiver *r, const struct seen_emitter *e)
+{
+    const float cosine = glms_vec3_dot(e->direction, r->normal);
+    const float density = texel_sample_density(r, e->direction, e->pdf);
     if (!(cosine > 0.0f) || !(density > 0.0f)) return;
-    for (int c = 0; c < 3; c++) {
-        const float light = radiance.raw[c] / density;
-        out->emitted[c].irradiance += light * cosine;
-        for (int k = 0; k < 3; k++) out->emitted[c].vector[k] += light * direction.raw[k];
-    }
+    for (int c = 0; c < 3; c++)
+        add_light(&out->emitted[c], e->direction, cosine, e->radiance.raw[c] / density);
+    struct column_sums sums = { out, e->direction, cosine, density };
+    if (r->emission)
+        texel_emission_columns(scene, r->emission, e->mesh, e->radiance, add_column, &sums);
 }
 
 static void add_sky(struct texel_lights *out, const struct texel_receiver *r, vec3s direction,
@@ -84,14 +117,17 @@ void texel_gather(const struct trace_scene *scene, const struct texel_receiver *
         }
         const struct texel_hit at_hit = texel_hit_at(scene, &ray, &hit);
         if (glms_vec3_max(at_hit.emission) > 0.0f)
-            add_emission(out, r, ray.direction, at_hit.emission, at_hit.pdf);
+            add_emission(
+                out, scene, r,
+                &(struct seen_emitter){ at_hit.mesh, ray.direction, at_hit.emission, at_hit.pdf });
         if (visitor->hit) visitor->hit(visitor->user, &ray, &hit, local, &at_hit);
     }
     for (uint32_t k = 0; k < (uint32_t)r->light_samples; k++) {
         struct emitter_sample s;
         if (texel_sample_emitter(scene, r->position, &r->normal, k, (uint32_t)r->light_samples,
                                  r->seed + r->first, &s))
-            add_emission(out, r, s.to_light, s.radiance, s.pdf);
+            add_emission(out, scene, r,
+                         &(struct seen_emitter){ s.mesh, s.to_light, s.radiance, s.pdf });
     }
 }
 

@@ -3,6 +3,7 @@
 // chance.
 #pragma once
 
+#include "scene/emission_basis.h"
 #include "trace/trace_scene.h"
 
 // A surface, whose rays are cosine-distributed, or a point with uniform rays: normal 0.
@@ -11,6 +12,7 @@ struct texel_receiver {
     int rays, light_samples;
     uint32_t first; // of the rays' points in the Sobol sequence
     uint32_t seed;
+    const struct emission_basis *emission; // of the trace scene's materials; NULL: no columns
 };
 
 enum { RAYS_PER_LIGHT_SAMPLE = 4 };
@@ -24,6 +26,7 @@ static inline int texel_light_samples(const struct trace_scene *scene, int rays)
 // The first hit of a ray.
 struct texel_hit {
     bool back, inside; // inside: the back of a single-sided surface
+    uint32_t mesh;     // in trace_scene.meshes
     vec3s emission;    // cd/m²; 0: none
     float pdf;         // of light_sample_emitter, sr⁻¹
 };
@@ -48,7 +51,14 @@ struct texel_lights {
     struct texel_light sky;                 // of radiance 1
     float sky_patches[ENVIRONMENT_PATCHES]; // irradiance by patches of radiance 1
     struct texel_light emitted[3];          // by colour, lux
+    // By columns, for a radiance of 1; with texel_receiver.emission.
+    struct texel_light columns[EMISSION_COLUMNS];
 };
+
+// Calls `add` with the columns of emission of a mesh's material, and the radiance of each.
+typedef void (*texel_add_column)(void *user, int column, float radiance);
+void texel_emission_columns(const struct trace_scene *scene, const struct emission_basis *emission,
+                            uint32_t mesh, vec3s radiance, texel_add_column add, void *user);
 
 // Calls `visit`, which may be NULL, for each ray that meets a surface; local: its direction in the
 // basis of the normal (basis_of). The receiver is a surface.

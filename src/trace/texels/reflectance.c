@@ -4,6 +4,8 @@
 
 #include "trace/reflectance.h"
 
+#include <math.h>
+
 enum { POINTS_ACROSS = 4 };
 
 bool texel_weigh(const struct chart_triangle *t, float x, float y, float *u, float *v)
@@ -29,7 +31,17 @@ void texel_surface(const struct trace_scene *scene, const struct chart_triangle 
 
 struct look {
     vec3s reflectance, normal;
+    struct texel_factors factors;
 };
+
+static void add_factors(struct texel_factors *sum, const struct bsdf_material *m, float weight)
+{
+    sum->base = glms_vec3_muladds(m->albedo, weight, sum->base);
+    sum->metallic += weight * m->metallic;
+    sum->roughness += weight * m->roughness;
+    sum->weight += weight * m->dielectric_f90;
+    sum->color = glms_vec3_muladds(m->dielectric_f0, weight, sum->color);
+}
 
 static void add_look(struct look *sum, const struct trace_scene *scene,
                      const struct chart_triangle *of, vec3s normal, float u, float v, float weight)
@@ -38,6 +50,7 @@ static void add_look(struct look *sum, const struct trace_scene *scene,
     texel_surface(scene, of, u, v, normal, &surface);
     sum->reflectance = glms_vec3_muladds(surface_reflectance(&surface), weight, sum->reflectance);
     sum->normal = glms_vec3_muladds(surface.normal, weight, sum->normal);
+    add_factors(&sum->factors, &surface.material, weight);
 }
 
 // The mean of the middles of its triangles by area.
@@ -76,10 +89,41 @@ static struct look look_of(const struct trace_scene *scene, const struct charts 
     return sum;
 }
 
+static float cosine_of(const struct look *look, const struct charts *charts, uint32_t texel)
+{
+    return glms_vec3_dot(look->normal, chart_texel_normal(charts, texel));
+}
+
 vec4s texel_reflectance(const struct trace_scene *scene, const struct charts *charts,
                         uint32_t texel, vec3s *shading)
 {
     const struct look look = look_of(scene, charts, texel);
     if (shading) *shading = look.normal;
-    return vec4_of(look.reflectance, glms_vec3_dot(look.normal, chart_texel_normal(charts, texel)));
+    return vec4_of(look.reflectance, cosine_of(&look, charts, texel));
+}
+
+struct texel_factors texel_free_factors(const struct trace_scene *scene,
+                                        const struct charts *charts, uint32_t texel)
+{
+    struct look look = look_of(scene, charts, texel);
+    look.factors.cosine = cosine_of(&look, charts, texel);
+    return look.factors;
+}
+
+vec3s texel_reflectance_with(const struct texel_factors *f, const struct material *material)
+{
+    if (material->unlit) return vec3_of(0, 0, 0);
+    const float weight = fmaxf(f->weight, 1e-6f);
+    const vec3s f0 =
+        glms_vec3_mul(material_specular_f0(material), glms_vec3_divs(f->color, weight));
+    const struct bsdf_material look = {
+        .albedo =
+            glms_vec3_clamp(glms_vec3_mul(f->base, vec3_xyz(material->base_color)), 0.0f, 1.0f),
+        .metallic = material->metallic * f->metallic,
+        .roughness = material->roughness * f->roughness,
+        .dielectric_f0 =
+            glms_vec3_scale(glms_vec3_minv(f0, vec3_of(1, 1, 1)), material->specular * f->weight),
+        .dielectric_f90 = material->specular * f->weight,
+    };
+    return bsdf_reflectance(&look);
 }

@@ -33,3 +33,16 @@ struct texel_point texel_find_point(const struct trace_scene *scene, const struc
 // mean of the former, of length 1 or less.
 vec4s texel_reflectance(const struct trace_scene *scene, const struct charts *charts,
                         uint32_t texel, vec3s *shading);
+
+// Means of a texel without the factors of its material, in a trace scene whose factors are 1
+// (scene_statics_free_factors): base colour, mean cosine as above, and the maps of metallic,
+// roughness, specular weight, and specular colour times weight.
+struct texel_factors {
+    vec3s base;
+    float cosine, metallic, roughness, weight;
+    vec3s color;
+};
+struct texel_factors texel_free_factors(const struct trace_scene *scene,
+                                        const struct charts *charts, uint32_t texel);
+// Its reflectance with the factors of a material, as texel_reflectance.
+vec3s texel_reflectance_with(const struct texel_factors *factors, const struct material *material);

@@ -69,12 +69,6 @@ static void check_static(struct light_map_followed *f, const struct scene_pose *
             f, &f->warned_moved,
             "static geometry changed: what moved keeps the light of the bake, and the light that "
             "it blocks and reflects stays; mark as movable what moves");
-    else if (pose->scene->materials[scene_mesh_of(pose->scene, (int)i)->material].revision >
-             f->started)
-        warn_once(
-            f, &f->warned_material,
-            "materials of static geometry changed: the light that it reflects and emits stays "
-            "that of the bake");
 }
 
 static void check_other(struct light_map_followed *f, const struct scene *scene, uint32_t i)

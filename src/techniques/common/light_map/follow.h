@@ -14,7 +14,7 @@ struct light_map_followed {
     bool any_lit;                   // one that is not in the light map
     uint64_t started;               // revisions of the scene
     uint64_t revision;
-    bool warned_moved, warned_added, warned_material;
+    bool warned_moved, warned_added;
 };
 
 // statics: of the same pose. light_map_followed_finish accepts zero.

@@ -45,6 +45,14 @@ struct light_map_paint_push {
     uint32_t count;
 };
 
+struct light_map_emission_push {
+    uint32_t texels, columns;
+};
+
+struct light_map_rows_push {
+    uint32_t first, count;
+};
+
 // Passes over rows `first` … `first` + `count` − 1. texels: of the light. layers: of a side, of the
 // light and of the image that they write.
 struct light_map_show_push {
@@ -77,6 +85,8 @@ struct light_map_checker_push {
 _Static_assert(sizeof(struct light_map_sources) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_painted) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_paint_push) == 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct light_map_emission_push) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct light_map_rows_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_show_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_seams_push) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_apply_push) == 24, "layout is shared with GLSL");

@@ -7,6 +7,7 @@
 #define LIGHT_MAP_SKY         "texels/sky"         // F32 [texels][4]
 #define LIGHT_MAP_SKY_SHARES  "texels/sky_shares"  // U8 [texels][ENVIRONMENT_PATCHES]
 #define LIGHT_MAP_EMITTED     "texels/emitted"     // F32 [texels][3][4]
+#define LIGHT_MAP_EMISSION    "texels/emission"    // F32 [texels][columns, at least 1][4]
 #define LIGHT_MAP_POINT       "texels/point"       // F32 [texels][4]
 #define LIGHT_MAP_SEAM_TEXEL  "seams/texel"        // U32 [places][CHART_SEAM_ENTRIES]
 #define LIGHT_MAP_SEAM_WEIGHT "seams/weight"       // F32 [places][CHART_SEAM_ENTRIES]

@@ -12,9 +12,7 @@ bool light_map_find_texels(struct light_map_texels *out, struct host *host,
     const uint64_t n = light_map_rows(charts->side_texel_count);
     *out = (struct light_map_texels){ .charts = charts };
 #define EXPECT(...) TENSORS_EXPECT(host, bake, __VA_ARGS__)
-    return (out->reflectance = EXPECT(LIGHT_MAP_ALBEDO, TENSOR_F32, n, 4)) &&
-           (out->sky = EXPECT(LIGHT_MAP_SKY, TENSOR_F32, n, 4)) &&
-           (out->emitted = EXPECT(LIGHT_MAP_EMITTED, TENSOR_F32, n, 3, 4)) &&
+    return (out->sky = EXPECT(LIGHT_MAP_SKY, TENSOR_F32, n, 4)) &&
            (out->point = EXPECT(LIGHT_MAP_POINT, TENSOR_F32, n, 4));
 #undef EXPECT
 }
@@ -55,7 +53,7 @@ static void fill_texel(const struct light_map_texels *t, uint32_t i, vec4s *part
     parts[TEXEL_REFLECTANCE * count + i] =
         vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), 0.0f);
     memcpy(&parts[TEXEL_SKY_LIGHT * count + i], t->sky + 4 * (size_t)i, sizeof *parts);
-    for (size_t k = 0; k < 3; k++)
+    for (size_t k = 0; t->emitted && k < 3; k++)
         memcpy(&parts[(TEXEL_EMITTED_0 + k) * count + i], t->emitted + 12 * (size_t)i + 4 * k,
                sizeof *parts);
 }

@@ -10,12 +10,14 @@ struct light_map_texels {
     const float *point;       // [texels][4] position (m), share that is not inside geometry
     const float *reflectance; // [texels][4], the last the mean cosine of shading normals
     const float *sky;         // [texels][4] irradiance and vector irradiance: radiance 1
-    const float *emitted;     // [texels][3][4] the same by colour, lux
+    // [texels][3][4] the same of emissive surfaces by colour, lux. NULL: emission.h adds it.
+    const float *emitted;
     // [texels][3] mean shading normals, which receive first-order light. NULL: the surface's
     // normal, times the mean cosine.
     const float *shading;
     const float *roughness; // [texels] of the material; NULL: not needed
 };
+// Points and sky; the caller finds `reflectance` and `emitted`.
 bool light_map_find_texels(struct light_map_texels *out, struct host *host,
                            const struct charts *charts, const struct tensors *bake);
 // Area of the part of a texel that is not inside geometry, m².

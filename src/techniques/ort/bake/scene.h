@@ -12,6 +12,7 @@ struct ort_scene {
     const struct scene_pose *pose;
     struct ort_options options;
     struct ort_map map; // made while planning
+    uint64_t columns;   // of emission, at least 1; likewise
     // Between prepare and finish:
     struct scene_statics statics;
     struct trace_scene *trace;

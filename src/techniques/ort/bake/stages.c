@@ -21,7 +21,9 @@ static bool prepare_scattering(struct ort_scene *scene, struct host *host)
 static bool prepare(void *argument, struct host *host)
 {
     struct ort_scene *scene = argument;
-    if (!scene_statics_init(&scene->statics, host, scene->pose)) return false;
+    if (!scene_statics_init(&scene->statics, host, scene->pose) ||
+        !scene_statics_free_factors(&scene->statics, false))
+        return false;
     scene->host = host;
     scene->trace = trace_scene_create(host, &scene->statics.pose);
     if (!scene->trace) return false;
@@ -70,8 +72,10 @@ static bool plan_at(struct bake_plan *plan, const void *job, float texels_per_m)
 }
 
 static bool add_stages(struct bake_plan *plan, struct ort_scene *scene,
-                       const struct scene_pose *statics)
+                       const struct scene_statics *of)
 {
+    const struct scene_pose *statics = &of->pose;
+    scene->columns = emission_basis_rows(&of->emission);
     bake_plan_depends(plan, scene_key(statics, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS));
     if (!ort_map_init(&scene->map, bake_plan_host(plan), statics, &scene->options)) return false;
     const struct ort_map *map = &scene->map;
@@ -95,7 +99,8 @@ bool ort_bake(struct bake_plan *plan, const struct technique_bake *how)
     scene->pose = how->pose;
     scene->options = *(const struct ort_options *)how->options;
     if (!scene_statics_init(&statics, bake_plan_host(plan), how->pose)) return false;
-    const bool ok = add_stages(plan, scene, &statics.pose);
+    const bool ok =
+        scene_statics_free_factors(&statics, false) && add_stages(plan, scene, &statics);
     scene_statics_finish(&statics);
     return ok;
 }

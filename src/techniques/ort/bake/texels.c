@@ -14,7 +14,7 @@ enum {
     OUT_ALBEDO,
     OUT_SKY,
     OUT_SKY_SHARES,
-    OUT_EMITTED,
+    OUT_EMISSION,
     OUT_POINT,
     OUT_NORMAL,
     OUT_COUNT
@@ -110,13 +110,15 @@ static void gather(const struct bake_task *task, uint32_t texel, vec3s position,
         .rays = rays,
         .light_samples = texel_light_samples(scene->trace, rays),
         .seed = (uint32_t)rng_mix(task->bake_seed ^ (uint64_t)texel << 32) | 1u,
+        .emission = &scene->statics.emission,
     };
     struct texel_lights light;
     texel_gather_light(scene->trace, &receiver, add_hit,
                        &(struct visit){ scene, bake_row(task, OUT_HITS, row), 0 }, &light);
     memcpy(bake_row(task, OUT_SKY, row), &light.sky, sizeof light.sky);
     texel_sky_shares(&light, bake_row(task, OUT_SKY_SHARES, row));
-    memcpy(bake_row(task, OUT_EMITTED, row), light.emitted, sizeof light.emitted);
+    memcpy(bake_row(task, OUT_EMISSION, row), light.columns,
+           (size_t)scene->statics.emission.count * sizeof *light.columns);
 }
 
 static void make_texel(const struct bake_task *task, uint32_t texel, uint64_t row)
@@ -162,7 +164,7 @@ bool ort_add_texels(struct bake_plan *plan, const struct ort_scene *scene)
           { texels, ENVIRONMENT_PATCHES },
           BAKE_ROWS,
           BAKE_SAVED },
-        { LIGHT_MAP_EMITTED, TENSOR_F32, 3, { texels, 3, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_EMISSION, TENSOR_F32, 3, { texels, scene->columns, 4 }, BAKE_ROWS, BAKE_SAVED },
         { LIGHT_MAP_POINT, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { ORT_NORMALS, TENSOR_F32, 2, { texels, 3 }, BAKE_ROWS, BAKE_SAVED },
     };

@@ -10,7 +10,9 @@ bool radiosity_scene_init(struct radiosity_scene *scene, struct host *host,
 {
     *scene = (struct radiosity_scene){ .host = host, .options = *options, .map = *map };
     *map = (struct radiosity_map){ 0 };
-    if (!scene_statics_init(&scene->statics, host, pose)) return false;
+    if (!scene_statics_init(&scene->statics, host, pose) ||
+        !scene_statics_free_factors(&scene->statics, true))
+        return false;
     if (!scene->map.host && !radiosity_map_init(&scene->map, host, &scene->statics.pose, options))
         return false;
     scene->trace = trace_scene_create(host, &scene->statics.pose);
@@ -88,6 +90,7 @@ void radiosity_gather(const struct radiosity_scene *scene, uint32_t texel, vec3s
         .light_samples = texel_light_samples(scene->trace, scene->options.rays),
         .first = radiosity_shared_part(place->x, place->y) * (uint32_t)scene->options.rays,
         .seed = (uint32_t)rng_mix(seed ^ radiosity_shared_seed(charts, texel)) | 1u,
+        .emission = &scene->statics.emission,
     };
     radiosity_gather_clear(gather);
     texel_gather_light(scene->trace, &receiver, add_hit, &(struct visit){ scene, gather },

@@ -81,10 +81,10 @@ static void scratch_finish(struct scratch *scratch, struct host *host)
 enum {
     OUT_SOURCE,
     OUT_FACTOR,
-    OUT_ALBEDO,
+    OUT_SURFACE,
     OUT_SKY,
     OUT_SKY_SHARES,
-    OUT_EMITTED,
+    OUT_EMISSION,
     OUT_POINT,
     OUT_PART,
     OUT_NEARNESS,
@@ -121,10 +121,11 @@ static void gather_texel(const struct bake_task *task, struct scratch *scratch, 
     write_row(scratch->row, count, bake_row(task, OUT_SOURCE, i), bake_row(task, OUT_FACTOR, i));
     memcpy(bake_row(task, OUT_SKY, i), &gather->light.sky, sizeof gather->light.sky);
     texel_sky_shares(&gather->light, bake_row(task, OUT_SKY_SHARES, i));
-    memcpy(bake_row(task, OUT_EMITTED, i), gather->light.emitted, sizeof gather->light.emitted);
+    memcpy(bake_row(task, OUT_EMISSION, i), gather->light.columns,
+           (size_t)job->scene.statics.emission.count * sizeof *gather->light.columns);
     memcpy(bake_row(task, OUT_NEARNESS, i), gather->nearness.raw, sizeof gather->nearness.raw);
-    const vec4s albedo = texel_reflectance(job->scene.trace, charts, texel, NULL);
-    memcpy(bake_row(task, OUT_ALBEDO, i), albedo.raw, sizeof albedo.raw);
+    const struct texel_factors factors = texel_free_factors(job->scene.trace, charts, texel);
+    memcpy(bake_row(task, OUT_SURFACE, i), &factors, sizeof factors);
 }
 
 static bool run_texels(const struct bake_task *task)
@@ -143,13 +144,13 @@ static bool run_texels(const struct bake_task *task)
 }
 
 static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t texels,
-                       uint64_t clusters)
+                       uint64_t clusters, uint64_t columns)
 {
     const uint64_t sources = (uint64_t)job->options.sources;
     const struct bake_output out[OUT_COUNT] = {
         { RADIOSITY_SOURCE, TENSOR_U32, 2, { texels, sources }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_FACTOR, TENSOR_F16, 3, { texels, sources, 3 }, BAKE_ROWS, BAKE_SAVED },
-        { LIGHT_MAP_ALBEDO, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_SURFACE, TENSOR_F32, 2, { texels, 10 }, BAKE_ROWS, BAKE_SAVED },
         { LIGHT_MAP_SKY, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { LIGHT_MAP_SKY_SHARES,
           TENSOR_U8,
@@ -157,7 +158,7 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
           { texels, ENVIRONMENT_PATCHES },
           BAKE_ROWS,
           BAKE_SAVED },
-        { LIGHT_MAP_EMITTED, TENSOR_F32, 3, { texels, 3, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_EMISSION, TENSOR_F32, 3, { texels, columns, 4 }, BAKE_ROWS, BAKE_SAVED },
         { LIGHT_MAP_POINT, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_PART, TENSOR_U8, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_NEARNESS, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
@@ -340,8 +341,10 @@ static bool plan_at(struct bake_plan *plan, const void *user, float texels_per_m
     return radiosity_bake(plan, &(struct technique_bake){ .pose = job->pose, .options = &options });
 }
 
-static bool add_stages(struct bake_plan *plan, struct job *job, const struct scene_pose *statics)
+static bool add_stages(struct bake_plan *plan, struct job *job, const struct scene_statics *of)
 {
+    const struct scene_pose *statics = &of->pose;
+    const uint64_t columns = emission_basis_rows(&of->emission);
     bake_plan_depends(plan, scene_key(statics, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS));
     // The size of the tensors is that of the charts: clusters are not divided yet.
     struct radiosity_map *map = &job->map;
@@ -356,8 +359,11 @@ static bool add_stages(struct bake_plan *plan, struct job *job, const struct sce
     const uint64_t texels = light_map_rows(map->texel_count);
     const uint64_t clusters = radiosity_cluster_rows(map);
     const struct frame_probes grid = radiosity_probe_grid(map, &job->options);
-    return add_texels(plan, job, texels, clusters) &&
-           radiosity_probe_plan(plan, grid, &job->options, run_probes, scratch_size(clusters)) &&
+    return add_texels(plan, job, texels, clusters, columns) &&
+           radiosity_probe_plan(
+               plan, grid,
+               &(struct radiosity_probe_size){ job->options.rays, job->options.sources, columns },
+               run_probes, scratch_size(clusters)) &&
            add_clusters(plan, job, texels, clusters) &&
            light_map_add_seams(plan, &job->closing, &map->charts);
 }
@@ -370,7 +376,7 @@ bool radiosity_bake(struct bake_plan *plan, const struct technique_bake *how)
     job->options = *(const struct radiosity_options *)how->options;
     struct scene_statics statics;
     if (!scene_statics_init(&statics, bake_plan_host(plan), how->pose)) return false;
-    const bool ok = add_stages(plan, job, &statics.pose);
+    const bool ok = scene_statics_free_factors(&statics, true) && add_stages(plan, job, &statics);
     scene_statics_finish(&statics);
     return ok;
 }

@@ -33,6 +33,14 @@ layout(set = 0, binding = 2, scalar) readonly buffer probe_factors
     uvec3 factor_table[];
 };
 layout(set = 0, binding = 3) uniform usampler2D radiosity_sent;
+layout(set = 0, binding = 5, scalar) readonly buffer emission_weights
+{
+    vec4 weight_table[]; // [column] by colour, cd/m²
+};
+layout(set = 0, binding = 6, scalar) readonly buffer probe_emission
+{
+    radiosity_gpu_probe_emission emission_table[]; // [column][probe]
+};
 layout(set = 0, binding = 4, rgba16f) uniform writeonly image3D volume;
 
 vec3 coefficients[9];
@@ -58,7 +66,6 @@ void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.probes) return;
-    float emitters = push.emitters * frame.radiance_scale;
     for (int c = 0; c < 9; c++) coefficients[c] = vec3(0.0);
     for (uint k = 0; k < push.entries; k++) {
         uvec3 word = factor_table[k * push.probes + i];
@@ -68,10 +75,13 @@ void main()
     for (int c = 0; c < 9; c++) coefficients[c] *= sh9_cosine_weight(c);
     vec3 environment[9];
     environment_through(probes[i].sky, environment);
+    for (uint k = 0u; k < push.columns; k++) {
+        vec3 weight = frame.radiance_scale * weight_table[k].rgb;
+        for (int c = 0; c < 9; c++)
+            coefficients[c] += weight * emission_table[k * push.probes + i].sh[c];
+    }
     for (int c = 0; c < 9; c++) {
-        vec3 emitted = vec3(probes[i].emitted[3 * c], probes[i].emitted[3 * c + 1],
-                            probes[i].emitted[3 * c + 2]);
-        coefficients[c] += environment[c] + emitters * emitted;
+        coefficients[c] += environment[c];
         coefficients[c] = clamp(coefficients[c], -HALF_MAX, HALF_MAX);
     }
     ivec3 at = probes_cell(push.grid, int(i));

@@ -10,38 +10,31 @@
 #include <string.h>
 
 enum { PROBES_PER_TASK = 32 };
-enum { OUT_SOURCE, OUT_FACTOR, OUT_PLACE, OUT_SKY, OUT_EMITTED, OUT_DEPTH, OUT_COUNT };
+enum { OUT_SOURCE, OUT_FACTOR, OUT_PLACE, OUT_SKY, OUT_EMISSION, OUT_DEPTH, OUT_COUNT };
 
 enum { SH = 9, DEPTHS = PROBE_DEPTHS };
 
 struct probe {
-    vec3s position;       // moved out of geometry, within its cell
-    float valid;          // 1; 0: all of the cell is inside geometry
-    float sky[SH];        // irradiance of a sky of radiance 1, Σ c_i Y_i
-    float emitted[SH][3]; // of emissive surfaces, lux
+    vec3s position;                       // moved out of geometry, within its cell
+    float valid;                          // 1; 0: all of the cell is inside geometry
+    float sky[SH];                        // irradiance of a sky of radiance 1, Σ c_i Y_i
+    float emission[EMISSION_COLUMNS][SH]; // of emissive surfaces by columns
     uint16_t depth[PROBE_DEPTHS][2];
 };
 
-static void add_sh(vec3s direction, float weight, float *sum, int stride)
+static void add_sh(vec3s direction, float weight, float *sum)
 {
     float basis[SH];
     sh_eval(3, direction, basis);
-    for (int i = 0; i < SH; i++) sum[i * stride] += weight * basis[i];
+    for (int i = 0; i < SH; i++) sum[i] += weight * basis[i];
 }
 
 // From radiance to irradiance.
-static void finish_sh(float *sh, int stride)
+static void finish_sh(float *sh)
 {
-    float radiance[SH], irradiance[SH];
-    for (int i = 0; i < SH; i++) radiance[i] = sh[i * stride];
-    sh_irradiance(3, radiance, irradiance);
-    for (int i = 0; i < SH; i++) sh[i * stride] = irradiance[i];
-}
-
-static void add_emission(struct probe *out, vec3s direction, vec3s radiance, float density)
-{
-    for (int c = 0; c < 3; c++)
-        add_sh(direction, radiance.raw[c] / density, &out->emitted[0][c], 3);
+    float radiance[SH];
+    memcpy(radiance, sh, sizeof radiance);
+    sh_irradiance(3, radiance, sh);
 }
 
 static void add_cluster(struct radiosity_gather *gather, uint32_t cluster, vec3s direction,
@@ -64,11 +57,32 @@ struct job {
     struct probe *out;
 };
 
+struct sh_sums {
+    struct probe *out;
+    vec3s direction;
+    float density;
+};
+
+static void add_column(void *user, int column, float radiance)
+{
+    const struct sh_sums *to = user;
+    add_sh(to->direction, radiance / to->density, to->out->emission[column]);
+}
+
+// density: samples of the direction per steradian.
+static void add_emission(const struct job *job, uint32_t mesh, vec3s direction, vec3s radiance,
+                         float density)
+{
+    struct sh_sums sums = { job->out, direction, density };
+    texel_emission_columns(job->scene->trace, &job->scene->statics.emission, mesh, radiance,
+                           add_column, &sums);
+}
+
 static void add_hit(const struct job *job, const struct probe_ray *ray,
                     const struct texel_hit *at_hit, uint32_t cluster)
 {
     if (glms_vec3_max(at_hit->emission) > 0.0f)
-        add_emission(job->out, ray->direction, at_hit->emission,
+        add_emission(job, at_hit->mesh, ray->direction, at_hit->emission,
                      1.0f / ray->solid_angle + (float)job->light_samples * at_hit->pdf);
     if (cluster != CHART_NONE)
         add_cluster(job->gather, cluster, ray->direction, ray->solid_angle / (4.0f * GLM_PIf));
@@ -82,7 +96,7 @@ static float trace_ray(void *user, const struct probe_ray *from, bool *inside)
     struct ray_hit hit;
     *inside = false;
     if (!embree_closest(job->scene->trace->embree, &ray, NULL, false, &hit)) {
-        if (gathers) add_sh(ray.direction, from->solid_angle, job->out->sky, 1);
+        if (gathers) add_sh(ray.direction, from->solid_angle, job->out->sky);
         return INFINITY;
     }
     const struct texel_hit at_hit = texel_hit_at(job->scene->trace, &ray, &hit);
@@ -98,7 +112,7 @@ static void sample_emitters(const struct job *job)
         if (!texel_sample_emitter(job->scene->trace, job->out->position, NULL, k,
                                   job->light_samples, job->seed, &s))
             continue;
-        add_emission(job->out, s.to_light, s.radiance,
+        add_emission(job, s.mesh, s.to_light, s.radiance,
                      1.0f / probe_solid_angle(&job->sphere, s.to_light) +
                          (float)job->light_samples * s.pdf);
     }
@@ -124,23 +138,24 @@ static void gather_probe(const struct radiosity_scene *scene, struct frame_probe
     job.gather = gather;
     probe_trace_depths(&job.sphere, &tracer, out->position, grid.spacing_m, out->depth);
     sample_emitters(&job);
-    finish_sh(out->sky, 1);
-    for (int c = 0; c < 3; c++) finish_sh(&out->emitted[0][c], 3);
+    finish_sh(out->sky);
+    for (int k = 0; k < scene->statics.emission.count; k++) finish_sh(out->emission[k]);
 }
 
 // ---- the stage
 
 bool radiosity_probe_plan(struct bake_plan *plan, struct frame_probes grid,
-                          const struct radiosity_options *options,
+                          const struct radiosity_probe_size *size,
                           bool (*run)(const struct bake_task *task), size_t scratch_bytes)
 {
-    const uint64_t probes = probe_grid_count(grid), most = 2 * (uint64_t)options->sources;
+    const uint64_t probes = probe_grid_count(grid), most = 2 * (uint64_t)size->sources;
+    const uint64_t columns = size->columns;
     const struct bake_output out[OUT_COUNT] = {
         { RADIOSITY_PROBE_SOURCE, TENSOR_U32, 2, { probes, most }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_PROBE_FACTOR, TENSOR_F16, 3, { probes, most, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_PROBE_PLACE, TENSOR_F32, 2, { probes, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_PROBE_SKY, TENSOR_F32, 2, { probes, SH }, BAKE_ROWS, BAKE_SAVED },
-        { RADIOSITY_PROBE_EMITTED, TENSOR_F32, 3, { probes, SH, 3 }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_PROBE_EMISSION, TENSOR_F32, 3, { probes, columns, SH }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_PROBE_DEPTH, TENSOR_F16, 3, { probes, DEPTHS, 2 }, BAKE_ROWS, BAKE_SAVED },
     };
     const size_t tasks = (size_t)((probes + PROBES_PER_TASK - 1) / PROBES_PER_TASK);
@@ -151,7 +166,7 @@ bool radiosity_probe_plan(struct bake_plan *plan, struct frame_probes grid,
                                     .run = run,
                                     .outputs = out,
                                     .output_count = OUT_COUNT,
-                                    .rays = (double)probes * 2 * options->rays / (double)tasks,
+                                    .rays = (double)probes * 2 * size->rays / (double)tasks,
                                     .scratch_bytes = scratch_bytes });
 }
 
@@ -167,13 +182,15 @@ static void write_row(const struct bake_task *task, uint64_t i, const struct rad
     }
 }
 
-static void write_probe(const struct bake_task *task, uint64_t i, const struct probe *probe)
+static void write_probe(const struct bake_task *task, uint64_t i, const struct probe *probe,
+                        int columns)
 {
     float *place = bake_row(task, OUT_PLACE, i);
     memcpy(place, probe->position.raw, sizeof probe->position.raw);
     place[3] = probe->valid;
     memcpy(bake_row(task, OUT_SKY, i), probe->sky, sizeof probe->sky);
-    memcpy(bake_row(task, OUT_EMITTED, i), probe->emitted, sizeof probe->emitted);
+    memcpy(bake_row(task, OUT_EMISSION, i), probe->emission,
+           (size_t)columns * sizeof *probe->emission);
     memcpy(bake_row(task, OUT_DEPTH, i), probe->depth, sizeof probe->depth);
 }
 
@@ -191,7 +208,7 @@ bool radiosity_probe_run(const struct bake_task *task, const struct radiosity_sc
             radiosity_make_row(scratch->rows, scratch->gather, (uint32_t)most,
                                r2_sequence((uint32_t)(first + i)).x, scratch->row);
         write_row(task, i, scratch->row, entries);
-        write_probe(task, i, &probe);
+        write_probe(task, i, &probe, scene->statics.emission.count);
     }
     return true;
 }

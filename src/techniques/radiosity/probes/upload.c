@@ -12,8 +12,9 @@ struct content {
     const uint32_t *source;
     const uint16_t *factor, *depth;
     const vec4s *place;
-    const float *sky, *emitted;
-    uint32_t *owner; // of each probe: the one whose light it shows
+    const float *sky, *emission;
+    uint64_t columns; // of emission, at least 1
+    uint32_t *owner;  // of each probe: the one whose light it shows
 };
 
 static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct content *c)
@@ -24,7 +25,7 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
            (c->factor = EXPECT(RADIOSITY_PROBE_FACTOR, TENSOR_F16, n, k, 4)) &&
            (c->place = EXPECT(RADIOSITY_PROBE_PLACE, TENSOR_F32, n, 4)) &&
            (c->sky = EXPECT(RADIOSITY_PROBE_SKY, TENSOR_F32, n, SH)) &&
-           (c->emitted = EXPECT(RADIOSITY_PROBE_EMITTED, TENSOR_F32, n, SH, 3)) &&
+           (c->emission = EXPECT(RADIOSITY_PROBE_EMISSION, TENSOR_F32, n, c->columns, SH)) &&
            (c->depth = EXPECT(RADIOSITY_PROBE_DEPTH, TENSOR_F16, n, PROBE_DEPTHS, 2));
 #undef EXPECT
 }
@@ -48,11 +49,22 @@ static bool upload_table(struct radiosity *s, const struct content *c)
     for (uint32_t i = 0; table && i < count; i++) {
         table[i].place = probe_offset(grid, i, c->place[i]);
         memcpy(table[i].sky, c->sky + SH * (size_t)c->owner[i], sizeof table[i].sky);
-        memcpy(table[i].emitted, c->emitted + 3 * SH * (size_t)c->owner[i],
-               sizeof table[i].emitted);
     }
     return light_map_buffer_upload(s->host, s->gpu, "probe_table", table, count * sizeof *table,
                                    &s->probes.table);
+}
+
+static bool upload_emission(struct radiosity *s, const struct content *c)
+{
+    const size_t count = s->probes.count;
+    struct radiosity_gpu_probe_emission *table =
+        host_alloc(s->host, c->columns * count, sizeof *table);
+    for (size_t k = 0; table && k < c->columns; k++)
+        for (size_t i = 0; i < count; i++)
+            memcpy(&table[k * count + i], c->emission + SH * (c->owner[i] * c->columns + k),
+                   sizeof *table);
+    return light_map_buffer_upload(s->host, s->gpu, "probe_emission", table,
+                                   c->columns * count * sizeof *table, &s->probes.emission);
 }
 
 // Entries of all probes side by side, as those of texels.
@@ -76,13 +88,13 @@ static bool upload_factors(struct radiosity *s, const struct content *c)
 bool radiosity_probes_upload(struct radiosity *s, const struct tensors *bake)
 {
     struct radiosity_probes *p = &s->probes;
-    struct content c = { .owner = NULL };
+    struct content c = { .columns = emission_basis_rows(&s->materials.emission) };
     p->entries = 2 * (uint32_t)s->options.sources;
     p->volume.grid = radiosity_probe_grid(&s->map, &s->options);
     p->count = probe_grid_count(p->volume.grid);
     const bool ok = find_tensors(s, bake, &c) && check_sources(s, &c) &&
                     (c.owner = probe_owners(s->host, p->volume.grid, c.place)) &&
-                    upload_table(s, &c) && upload_factors(s, &c) &&
+                    upload_table(s, &c) && upload_factors(s, &c) && upload_emission(s, &c) &&
                     probe_depth_create(s->host, s->gpu, p->count, c.depth, &p->volume.depth);
     host_free(s->host, c.owner);
     return ok;
