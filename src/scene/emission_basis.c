@@ -32,7 +32,7 @@ static double area_of(const struct scene_pose *pose, int instance)
     return sum;
 }
 
-// Of the emissive materials, m²; of materials that no instance has 0.
+// [materials] m² of emissive ones; 0: no instance has it, or it does not emit.
 static double *areas_of(struct host *host, const struct scene_pose *pose)
 {
     const struct scene *scene = pose->scene;

@@ -383,6 +383,19 @@ vec3s material_specular_f0(const struct material *m)
     return glms_vec3_scale(m->specular_color, root * root);
 }
 
+static bool same_colors(vec3s a, vec3s b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+bool material_reflects_alike(const struct material *a, const struct material *b)
+{
+    return same_colors(vec3_xyz(a->base_color), vec3_xyz(b->base_color)) &&
+           a->metallic == b->metallic && a->roughness == b->roughness && a->ior == b->ior &&
+           a->specular == b->specular && same_colors(a->specular_color, b->specular_color) &&
+           a->unlit == b->unlit;
+}
+
 bool material_has_default_specular(const struct material *m)
 {
     return m->ior == MATERIAL_DEFAULT_IOR && m->specular == 1.0f && m->specular_color.x == 1.0f &&

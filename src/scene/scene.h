@@ -245,6 +245,8 @@ struct material material_default(void);
 void material_clear_emission(struct material *material);
 // ((ior − 1)/(ior + 1))² · specular colour, before the clamp to 1 and the weight.
 vec3s material_specular_f0(const struct material *material);
+// Whether both reflect the same light, of equal maps.
+bool material_reflects_alike(const struct material *a, const struct material *b);
 bool material_has_default_specular(const struct material *material); // factors and textures
 struct node node_default(void);
 struct texture_use texture_use_none(void);

@@ -173,18 +173,21 @@ bool gi_resize_view(struct gi *gi, int view, const struct scene_pose *pose, uint
 // Once for each technique that cannot follow changed surfaces.
 static void warn_of_change(struct gi *gi, int term)
 {
+    const struct technique *technique = gi->spec.technique[term];
     if (!gi->warned_fixed[term])
         host_log(gi->host, LOG_WARNING,
-                 "%s: the scene's geometry or materials changed, but indirect light keeps those at "
+                 "%s: the scene's geometry%s changed, but indirect light keeps those at "
                  "the renderer's creation; lpv and vct follow them",
-                 gi->spec.technique[term]->name);
+                 technique->name, technique->follow ? "" : " or materials");
     gi->warned_fixed[term] = true;
 }
 
+// Whether it keeps the geometry of the renderer's creation.
 static bool is_fixed(const struct gi *gi, int term)
 {
     const struct technique *technique = gi->spec.technique[term];
-    return !(technique->capabilities & CAN_MOVE_GEOMETRY) && !technique->follow;
+    const bool follows = technique->follow && !(technique->capabilities & KEEPS_GEOMETRY);
+    return !(technique->capabilities & CAN_MOVE_GEOMETRY) && !follows;
 }
 
 bool gi_would_warn_of_movement(const struct gi *gi)
@@ -208,9 +211,10 @@ void gi_warn_of_movement(struct gi *gi)
 
 void gi_invalidate(struct gi *gi, uint32_t changes)
 {
-    const uint32_t surfaces = CHANGED_GEOMETRY | CHANGED_MATERIAL | CHANGED_MOVABLE;
     for (int i = 0; i < gi->spec.count; i++) {
         const struct technique *technique = gi->spec.technique[i];
+        const uint32_t surfaces =
+            CHANGED_GEOMETRY | CHANGED_MOVABLE | (technique->follow ? 0 : CHANGED_MATERIAL);
         if (changes & surfaces && is_fixed(gi, i)) warn_of_change(gi, i);
         if (!technique->invalidate) continue;
         technique->invalidate(gi->state[i], changes);

@@ -20,6 +20,7 @@ enum technique_capability {
     MAKES_SPECULAR = 8,
     PUBLISHES_PROBES = 16,
     GATHERS_EMISSION = 32, // emissive surfaces light others
+    KEEPS_GEOMETRY = 64,   // `follow` follows materials alone
 };
 
 // Changes, for `invalidate`. frame_view has those of lights and of movable geometry, too, for a
@@ -120,9 +121,9 @@ struct technique {
     // `invalidate` with CHANGED_OPTIONS.
     void (*set_options)(void *state, const void *options);
     void (*invalidate)(void *state, uint32_t changes); // technique_change bits
-    // Before each frame is recorded, with the pose that it shows: follows changes of surfaces,
-    // which techniques without it or CAN_MOVE_GEOMETRY do not, with a warning of gi.c. `wait`: the
-    // frame shows them, however long it takes.
+    // Before each frame is recorded, with the pose that it shows: follows changes of surfaces, with
+    // KEEPS_GEOMETRY of materials alone, and warns of what it cannot follow. Of techniques without
+    // it or CAN_MOVE_GEOMETRY gi.c warns. `wait`: the frame shows them, however long it takes.
     void (*follow)(void *state, const struct scene_pose *pose, bool wait);
     // Whether its bake lacks what `follow` has found, which another bake has. NULL: never.
     bool (*lacks_bake)(const void *state);

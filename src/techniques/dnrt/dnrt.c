@@ -50,6 +50,16 @@ static bool find_frames(struct dnrt *s, const struct scene_pose *pose)
     return s->frames != NULL;
 }
 
+static bool copy_materials(struct dnrt *s, const struct scene *scene)
+{
+    const size_t count = (size_t)scene->material_count;
+    s->materials = host_alloc(s->host, count, sizeof *s->materials);
+    s->material_count = scene->material_count;
+    if (s->materials && count > 0)
+        memcpy(s->materials, scene->materials, count * sizeof *s->materials);
+    return s->materials;
+}
+
 static bool create(void *state, const struct technique_create *how)
 {
     struct dnrt *s = state;
@@ -64,8 +74,9 @@ static bool create(void *state, const struct technique_create *how)
         host_log(s->host, LOG_WARNING,
                  "dnrt: %s has no dynamic objects: it changes nothing (docs/library.md: mobility)",
                  how->pose->scene->name);
-    return s->keys && s->volumes && find_frames(s, how->pose) &&
-           resize(s, 0, how->width, how->height) && dnrt_find_objects(s, how->pose);
+    return s->keys && s->volumes && copy_materials(s, how->pose->scene) &&
+           find_frames(s, how->pose) && resize(s, 0, how->width, how->height) &&
+           dnrt_find_objects(s, how->pose);
 }
 
 #define MEMBER(thing) offsetof(struct dnrt, thing)
@@ -345,6 +356,7 @@ static void destroy(void *state)
     host_free(s->host, s->own);
     host_free(s->host, s->gpu_objects);
     host_free(s->host, s->keys);
+    host_free(s->host, s->materials);
     host_free(s->host, s->volumes);
     host_free(s->host, s->frames);
     host_free(s->host, s->tiles);

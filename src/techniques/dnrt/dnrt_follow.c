@@ -106,11 +106,34 @@ bool dnrt_lacks_bake(const void *state)
     return s->without > 0;
 }
 
+// Once. Light between the parts of an object is not linear in its reflectance.
+static void check_materials(struct dnrt *s, const struct scene *scene)
+{
+    for (int i = 0; i < s->baked.shape_count && !s->warned_materials; i++) {
+        const struct dnrt_shape *shape = &s->baked.shapes[i];
+        for (int k = shape->first; k < shape->first + shape->count; k++) {
+            const int m = scene->meshes[s->baked.meshes[k]].material;
+            if (s->warned_materials || m >= s->material_count ||
+                material_reflects_alike(&s->materials[m], &scene->materials[m]))
+                continue;
+            s->warned_materials = true;
+            host_log(s->host, LOG_WARNING,
+                     "dnrt: material %s of a dynamic object: its reflectance changed, but the "
+                     "light that the object reflects stays; bake the changed scene",
+                     scene->materials[m].name ? scene->materials[m].name : "");
+        }
+    }
+}
+
 void dnrt_follow(void *state, const struct scene_pose *pose, bool wait)
 {
     struct dnrt *s = state;
     const struct scene_revisions *now = &pose->scene->revisions;
     (void)wait;
+    if (now->materials != s->revisions.materials) {
+        s->revisions.materials = now->materials;
+        check_materials(s, pose->scene);
+    }
     if (now->layout != s->revisions.layout || now->instances != s->revisions.instances ||
         now->transforms != s->revisions.transforms)
         dnrt_find_objects(s, pose);

@@ -43,11 +43,14 @@ struct dnrt {
     struct scene_revisions revisions; // of the scene when `objects` were found
     int without;                      // a volume, of the objects
     bool warned;                      // of them
-    int animation;                    // of the key frames
-    struct dnrt_volume *volumes;      // [baked.volume_count]
-    struct hash128 *keys;             // [baked.volume_count], of their tensors
-    struct dnrt_frame *frames; // [baked.shape_count] of their objects in the pose of `create`
-    int slots[3];              // of objects along x, y, z of the image
+    struct material *materials;       // [material_count] of the pose of `create`
+    int material_count;
+    bool warned_materials;       // that one of an object has changed
+    int animation;               // of the key frames
+    struct dnrt_volume *volumes; // [baked.volume_count]
+    struct hash128 *keys;        // [baked.volume_count], of their tensors
+    struct dnrt_frame *frames;   // [baked.shape_count] of their objects in the pose of `create`
+    int slots[3];                // of objects along x, y, z of the image
     gpu_buffer shapes, samples, light, changed;
     bool stale;      // all volumes of `image`
     gpu_image image; // volumes of all objects in their light

@@ -109,6 +109,7 @@ static bool mrt_create(void *state, const struct technique_create *how)
     struct mrt *mrt = state;
     mrt->host = how->host;
     mrt->gpu = how->gpu;
+    if (how->pose) mrt->materials = how->pose->scene->revisions.materials;
     return !how->pose || mrt_make_map(mrt, how->pose);
 }
 
@@ -211,12 +212,22 @@ static void record_solution(struct mrt *mrt, struct gpu_cmd *cmd, const struct f
         record_bounces(mrt, cmd, view);
 }
 
+static void mrt_follow(void *state, const struct scene_pose *pose, bool wait)
+{
+    struct mrt *mrt = state;
+    if (mrt_update_follow_materials(mrt, pose, wait)) return;
+    if (!mrt->update.warned_failure)
+        host_log(mrt->host, LOG_WARNING,
+                 "mrt: materials changed, but indirect light keeps the former ones: out of memory");
+    mrt->update.warned_failure = true;
+}
+
 static void drt_follow(void *state, const struct scene_pose *pose, bool wait)
 {
     mrt_update_follow(state, pose, wait);
 }
 
-static bool drt_is_updating(const void *state)
+static bool mrt_is_updating(const void *state)
 {
     return ((const struct mrt *)state)->update.state != MRT_IDLE;
 }
@@ -315,16 +326,17 @@ enum { MRT_CAN = CAN_MOVE_LIGHTS | NEEDS_BAKE | PUBLISHES_PROBES | GATHERS_EMISS
     .debug_views = debug_views, .state_size = sizeof(struct mrt), .resolve = mrt_resolve_maze,     \
     .read_block_map = mrt_read_block_map, .bake = mrt_bake, .bake_report = mrt_bake_report,        \
     .load = mrt_load, .set_options = mrt_set_options, .invalidate = mrt_invalidate,                \
-    .update = mrt_update, .record = mrt_record, .debug_view = mrt_debug_view,                      \
-    .probes = mrt_probes, .destroy = mrt_destroy
+    .is_updating = mrt_is_updating, .update = mrt_update, .record = mrt_record,                    \
+    .debug_view = mrt_debug_view, .probes = mrt_probes, .destroy = mrt_destroy
 
 const struct technique technique_mrt = {
     MRT_TECHNIQUE("mrt", "modular radiance transfer",
                   "Loos 2015, Modular Radiance Transfer, ch. 3 and 4", option_rows),
-    .capabilities = MRT_CAN,
+    .capabilities = MRT_CAN | KEEPS_GEOMETRY,
     .check = mrt_check,
     .block_map = mrt_block_map,
     .create = mrt_create,
+    .follow = mrt_follow,
     .memory_estimate = mrt_memory_estimate,
 };
 
@@ -339,6 +351,5 @@ const struct technique technique_drt = {
     .block_map = drt_block_map,
     .create = drt_create,
     .follow = drt_follow,
-    .is_updating = drt_is_updating,
     .memory_estimate = drt_memory_estimate,
 };

@@ -3,6 +3,12 @@
 
 #include <string.h>
 
+void mrt_host_solver_set_reflectance(struct mrt_host_solver *solver,
+                                     const struct mrt_geometry_texel *geometry)
+{
+    for (int i = 0; i < solver->texels; i++) solver->reflectance[i] = geometry[i].reflectance;
+}
+
 bool mrt_host_solver_init(struct mrt_host_solver *out, struct host *host, struct gpu *gpu,
                           const struct mrt_level *level, const struct mrt_geometry_texel *geometry)
 {
@@ -13,7 +19,7 @@ bool mrt_host_solver_init(struct mrt_host_solver *out, struct host *host, struct
     out->radiosity = host_alloc(host, texels, sizeof *out->radiosity);
     out->irradiance = host_alloc(host, texels, sizeof *out->irradiance);
     if (!out->reflectance || !out->direct || !out->radiosity || !out->irradiance) return false;
-    for (size_t i = 0; i < texels; i++) out->reflectance[i] = geometry[i].reflectance;
+    mrt_host_solver_set_reflectance(out, geometry);
     for (int i = 0; i < 2; i++)
         if (!gpu_readback_create(gpu, "direct_readback", texels * sizeof *out->direct,
                                  &out->slots[i].readback))

@@ -31,6 +31,9 @@ struct mrt_host_solver {
 
 bool mrt_host_solver_init(struct mrt_host_solver *out, struct host *host, struct gpu *gpu,
                           const struct mrt_level *level, const struct mrt_geometry_texel *geometry);
+// geometry: of the same texels.
+void mrt_host_solver_set_reflectance(struct mrt_host_solver *solver,
+                                     const struct mrt_geometry_texel *geometry);
 void mrt_host_solver_finish(struct mrt_host_solver *solver); // accepts zero
 // Frames before this call are neither solved nor shown.
 void mrt_host_solver_forget(struct mrt_host_solver *solver);

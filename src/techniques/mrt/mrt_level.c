@@ -162,7 +162,7 @@ static bool make_images(struct mrt_parts *out, const struct mrt *mrt, const stru
 {
     const int probes = mrt_runtime_options_of(&mrt->options).probes ? mrt->options.block_probes : 0;
     const struct scene_pose *walls = out->clutter.triangles > 0 ? &out->clutter.walls.pose : pose;
-    if (mrt->delta) out->walls = hash_of_walls(walls);
+    out->walls = hash_of_walls(walls);
     const bool same = last && hash128_same(last->walls, out->walls);
     return (!mrt->delta || note_walls(out, walls)) &&
            mrt_scene_images_init(&out->reflectors, pose, walls, &mrt->atlas, probes,

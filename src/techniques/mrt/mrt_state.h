@@ -51,7 +51,8 @@ struct mrt {
     struct mrt_parts parts;
     struct mrt_published published; // with `probes`
     gpu_image probe_depth;
-    struct mrt_update update; // drt
+    struct mrt_update update;
+    uint64_t materials; // revision of the scene's at the start
     // The dictionary and data that depend on both.
     struct mrt_dictionary dictionary;
     struct mrt_level level;

@@ -72,7 +72,8 @@ static void fail(struct mrt *mrt, const char *why)
     struct mrt_update *u = &mrt->update;
     if (!u->warned_failure)
         host_log(mrt->host, LOG_WARNING,
-                 "drt: objects moved, but their indirect light stays as it was: %s", why);
+                 "%s: the scene changed, but indirect light stays as it was: %s",
+                 mrt->delta ? "drt" : "mrt", why);
     u->warned_failure = true;
     drop(mrt);
 }
@@ -94,7 +95,7 @@ static bool had_walls(const struct mrt_parts *parts, int instance)
 static void check_walls(struct mrt *mrt)
 {
     const struct mrt_update *u = &mrt->update;
-    for (int i = 0; i < u->changed_count; i++)
+    for (int i = 0; mrt->delta && i < u->changed_count; i++)
         if (u->changed[i] && (had_walls(&mrt->parts, i) || had_walls(u->parts, i))) {
             log_walls(mrt);
             return;
@@ -154,24 +155,29 @@ static void start(struct mrt *mrt, const struct scene_pose *pose)
         u->state = MRT_RUNNING;
 }
 
-// Tubes and scenes without blocks have no clutter.
-static bool can_follow(const struct mrt *mrt)
+// Tubes have no clutter.
+static bool can_move_objects(const struct mrt *mrt)
 {
-    return mrt->map.count > 0 && !mrt_block_is_tube(&mrt->map.blocks[0]);
+    return mrt->delta && !mrt_block_is_tube(&mrt->map.blocks[0]);
+}
+
+static bool has_other_materials(const struct mrt *mrt, const struct scene_pose *pose)
+{
+    return mrt->update.snapshot.materials != pose->scene->revisions.materials;
 }
 
 static void follow(struct mrt *mrt, const struct scene_pose *pose)
 {
     struct mrt_update *u = &mrt->update;
     const bool wait = u->waits;
-    if (!u->host.log || (u->warned_walls && !can_follow(mrt))) return;
+    if (!u->host.log || mrt->map.count == 0) return;
     if (u->state == MRT_RUNNING && (wait || atomic_load(&u->done))) join(mrt);
     if (u->state == MRT_RUNNING || (u->state == MRT_COPYING && !wait)) return;
-    if (scene_snapshot_is_current(&u->snapshot, pose)) return;
-    if (!can_follow(mrt)) {
-        log_walls(mrt);
+    if (!has_other_materials(mrt, pose) && !can_move_objects(mrt)) {
+        if (mrt->delta && !scene_snapshot_is_current(&u->snapshot, pose)) log_walls(mrt);
         return;
     }
+    if (scene_snapshot_is_current(&u->snapshot, pose)) return;
     drop(mrt);
     start(mrt, pose);
     if (wait && u->state == MRT_RUNNING) join(mrt);
@@ -199,12 +205,27 @@ bool mrt_update_record(struct mrt *mrt, struct gpu_cmd *cmd)
     u->next_places = (struct light_map_places){ 0 };
     find_moves(mrt);
     mrt_parts_replace(&mrt->parts, u->parts);
+    if (mrt->options.solver == MRT_SOLVER_CPU)
+        mrt_host_solver_set_reflectance(&mrt->host_solver, mrt->parts.images.geometry);
     u->swapped = true;
     drop(mrt);
     return true;
 }
 
 // ---- creation
+
+bool mrt_update_follow_materials(struct mrt *mrt, const struct scene_pose *pose, bool wait)
+{
+    struct mrt_update *u = &mrt->update;
+    if (mrt->map.count == 0) return true;
+    if (!u->host.log) {
+        if (mrt->materials == pose->scene->revisions.materials) return true;
+        if (!mrt_update_init(mrt, pose)) return false;
+        u->snapshot.materials = mrt->materials; // the run time is of those before
+    }
+    mrt_update_follow(mrt, pose, wait);
+    return true;
+}
 
 bool mrt_update_init(struct mrt *mrt, const struct scene_pose *pose)
 {

@@ -1,4 +1,5 @@
-// Operators of clutter that moved, made by another thread while frames use the old ones.
+// Light of emitters and operators, of other materials and of clutter that moved, made by another
+// thread while frames use the old ones.
 //
 // The thread works on a copy of the scene (scene/snapshot.h) and without the GPU: it plans a run
 // time (gpu/upload.h), whose content frames copy in parts. The frame with the last part takes
@@ -53,5 +54,7 @@ bool mrt_update_pass_on(struct mrt *mrt);
 // update=wait, or if the program wants it, it waits. After a failure the old operators stay, with
 // one warning.
 void mrt_update_follow(struct mrt *mrt, const struct scene_pose *pose, bool wait);
+// The same of mrt, which follows materials alone and keeps no copy of the scene before one changes.
+bool mrt_update_follow_materials(struct mrt *mrt, const struct scene_pose *pose, bool wait);
 // In a frame: copies; true: the operators are new from now on.
 bool mrt_update_record(struct mrt *mrt, struct gpu_cmd *cmd);

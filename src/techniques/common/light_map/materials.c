@@ -49,16 +49,8 @@ void light_map_materials_finish(struct light_map_materials *m)
 
 static bool same_emission(const struct material *a, const struct material *b)
 {
-    return memcmp(&a->emissive, &b->emissive, sizeof a->emissive) == 0;
-}
-
-static bool same_reflectance(const struct material *a, const struct material *b)
-{
-    return memcmp(&a->base_color, &b->base_color, sizeof(vec3s)) == 0 &&
-           a->metallic == b->metallic && a->roughness == b->roughness && a->ior == b->ior &&
-           a->specular == b->specular &&
-           memcmp(&a->specular_color, &b->specular_color, sizeof(vec3s)) == 0 &&
-           a->unlit == b->unlit;
+    return a->emissive.x == b->emissive.x && a->emissive.y == b->emissive.y &&
+           a->emissive.z == b->emissive.z;
 }
 
 // Sides, holes and normals.
@@ -97,7 +89,7 @@ static void warn_of(struct light_map_materials *m, int i)
 {
     warn_of_emission(m, i);
     if (!(m->follows & LIGHT_MAP_FOLLOWS_REFLECTANCE) &&
-        !same_reflectance(&m->known[i], &m->baked[i]))
+        !material_reflects_alike(&m->known[i], &m->baked[i]))
         warn_once(m, &m->warned_reflectance, i,
                   "its reflectance changed, but the indirect light that it reflects stays");
     if (!same_surface(&m->known[i], &m->baked[i]))
@@ -110,7 +102,7 @@ static unsigned change_of(struct light_map_materials *m, int i, const struct mat
     unsigned changes = 0;
     if (m->emission.parts[i].count > 0 && !same_emission(&m->known[i], now))
         changes |= LIGHT_MAP_FOLLOWS_EMISSION;
-    if (!same_reflectance(&m->known[i], now)) changes |= LIGHT_MAP_FOLLOWS_REFLECTANCE;
+    if (!material_reflects_alike(&m->known[i], now)) changes |= LIGHT_MAP_FOLLOWS_REFLECTANCE;
     m->known[i] = *now;
     warn_of(m, i);
     return changes;

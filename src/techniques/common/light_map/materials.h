@@ -4,7 +4,7 @@
 
 #include "scene/statics.h"
 
-// What of a material has changed, and what a technique follows.
+// Parts of a material that change, and that a technique follows.
 enum {
     LIGHT_MAP_FOLLOWS_EMISSION = 1,    // of materials that emit in the bake
     LIGHT_MAP_FOLLOWS_REFLECTANCE = 2, // by factors
