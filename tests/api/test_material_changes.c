@@ -340,6 +340,95 @@ TEST(radiosity_of_a_furnace_follows_its_albedo_and_emission)
     fixture_close(&s);
 }
 
+// ---- Keys, and updates over frames
+
+static uint64_t key_hash(struct ag_scene *scene)
+{
+    struct ag_bake *bake = NULL;
+    struct ag_bake_info info;
+    uint64_t hash = 14695981039346656037u; // FNV-1a
+    assert_int_equal(ag_bake_create(scene, "radiosity:texels=4096,rays=64,sources=16", NULL, &bake),
+                     AG_OK);
+    assert_int_equal(ag_bake_get_info(bake, &info), AG_OK);
+    for (const char *c = info.key; *c; c++) hash = (hash ^ (unsigned char)*c) * 1099511628211u;
+    ag_bake_destroy(bake);
+    return hash;
+}
+
+static void turn_dark(struct ag_material_desc *m)
+{
+    set_panel(m, 0, 0, 0);
+}
+
+static void show_backs(struct ag_material_desc *m)
+{
+    m->double_sided = !m->double_sided;
+}
+
+TEST(a_bake_of_radiosity_is_that_of_the_scene_with_other_factors)
+{
+    const struct change others[] = { { "", PANEL, turn_dark }, { "", BLOCK, show_backs } };
+    struct ag_context *context = fixture_context();
+    struct ag_scene *scene = make_room(context);
+    const uint64_t key = key_hash(scene);
+    for (int k = 0; k < CHANGES; k++) {
+        apply(scene, &changes[k]);
+        assert_true(key_hash(scene) == key);
+    }
+    for (int k = 0; k < 2; k++) {
+        const struct ag_material_desc before = apply(scene, &others[k]);
+        assert_true(key_hash(scene) != key);
+        restore(scene, &others[k], &before);
+    }
+    ag_scene_destroy(scene);
+    ag_context_destroy(context);
+}
+
+// Index of the image that is the same to the bit; -1: none.
+static int find_same(const struct ag_image *image, struct ag_image *const *among, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (fixture_difference(image, among[i]) == 0.0) return i;
+    return -1;
+}
+
+// A change during an update over frames: each image is whole, of one of the three moments.
+TEST(updates_over_frames_take_materials_over_between_two_updates)
+{
+    enum { MOMENTS = 3, FRAMES = 14 };
+    static const float EYE[3] = { 1.6f, 1.6f, 1.7f }, TARGET[3] = { -0.6f, 0.8f, -0.8f };
+    struct subject subject = { "radiosity:texels=4096,rays=64,sources=16", 0, true, 0.0, false };
+    const struct change *steps[2] = { &changes[1], &changes[2] };
+    struct renderer_fixture s = fixture_open("none", NULL);
+    struct ag_scene *scene = make_room(s.context);
+    struct ag_image *moments[MOMENTS];
+    frames = 1;
+    assert_int_equal(ag_scene_look_at(scene, EYE, TARGET, 1.2f, &s.frame.camera), AG_OK);
+    struct ag_renderer *at_once = make_renderer(&s, scene, &subject);
+    subject.gi = "radiosity:texels=4096,rays=64,sources=16,frames=4";
+    struct ag_renderer *over_frames = make_renderer(&s, scene, &subject);
+    ag_image_destroy(s.context, irradiance_of(&s, over_frames));
+    moments[0] = irradiance_of(&s, at_once);
+    int last = 0;
+    for (int i = 0; i < FRAMES; i++) {
+        if (i == 1 || i == 3) {
+            apply(scene, steps[i / 2]);
+            moments[1 + i / 2] = irradiance_of(&s, at_once);
+        }
+        struct ag_image *image = irradiance_of(&s, over_frames);
+        const int now = find_same(image, moments, i < 1 ? 1 : i < 3 ? 2 : MOMENTS);
+        if (now < last) fail_msg("frame %d is that of moment %d after %d", i, now, last);
+        ag_image_destroy(s.context, image);
+        last = now;
+    }
+    assert_int_equal(last, MOMENTS - 1);
+    for (int i = 0; i < MOMENTS; i++) ag_image_destroy(s.context, moments[i]);
+    ag_renderer_destroy(at_once);
+    ag_renderer_destroy(over_frames);
+    ag_scene_destroy(scene);
+    fixture_close(&s);
+}
+
 // ---- More emissive materials than a bake has columns
 
 static void add_panels(struct ag_scene *scene, int count)

@@ -143,11 +143,13 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
 {
     struct radiosity *s = state;
     if (light_map_paint_record(&s->paint, cmd)) s->kept.lit = false;
-    if (radiosity_record_materials(s, cmd)) s->kept.lit = false;
+    if (radiosity_has_new_materials(s)) s->kept.lit = false;
     kept_update(&s->kept, view, view->light_hash);
     s->update.at_once |= !s->kept.follows;
     s->update.changed |= !(view->keep && s->kept.same);
     s->update.other |= !s->kept.same && s->map.texel_count > 0;
+    if (radiosity_has_new_materials(s) && (!s->update.running || s->update.at_once))
+        radiosity_record_materials(s, cmd);
     if (s->map.texel_count > 0)
         radiosity_record_update(s, cmd, view);
     else if (s->update.changed)

@@ -21,12 +21,16 @@ static void record_reflectance(struct radiosity *s, struct gpu_cmd *cmd)
                           s->map.cluster_count);
     gpu_scope_end(cmd);
     s->reflectance_changed = false;
+    s->spectral_radius = s->reflectance.spectral_radius;
 }
 
-bool radiosity_record_materials(struct radiosity *s, struct gpu_cmd *cmd)
+bool radiosity_has_new_materials(const struct radiosity *s)
 {
-    if (s->map.texel_count == 0) return false;
-    const bool reflects = s->reflectance_changed;
-    if (reflects) record_reflectance(s, cmd);
-    return light_map_emission_record(&s->emission, cmd, s->tables.texels) || reflects;
+    return s->map.texel_count > 0 && (s->reflectance_changed || s->emission.pending);
+}
+
+void radiosity_record_materials(struct radiosity *s, struct gpu_cmd *cmd)
+{
+    if (s->reflectance_changed) record_reflectance(s, cmd);
+    light_map_emission_record(&s->emission, cmd, s->tables.texels);
 }

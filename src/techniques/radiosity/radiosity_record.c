@@ -77,7 +77,7 @@ static gpu_image after_step(const struct radiosity *s, int step)
 // σ: 1, 1/(1 − σ²/2), 1/(1 − σ²ω/4), …
 static float over_of(const struct radiosity *s, int step)
 {
-    const float square = s->reflectance.spectral_radius * s->reflectance.spectral_radius;
+    const float square = s->spectral_radius * s->spectral_radius;
     float over = 1.0f;
     for (int i = 1; i <= step; i++) over = 1.0f / (1.0f - (i == 1 ? 0.5f : 0.25f * over) * square);
     return over;

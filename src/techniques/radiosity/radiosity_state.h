@@ -81,6 +81,7 @@ struct radiosity {
     struct light_map_emission emission;
     struct radiosity_reflectance reflectance;
     bool reflectance_changed; // the tables have not the newest
+    float spectral_radius;    // of the tables' ρ F, at least
     struct radiosity_tables tables;
     struct radiosity_pipelines pipelines;
     struct radiosity_update update;
@@ -123,8 +124,10 @@ void radiosity_record_update(struct radiosity *state, struct gpu_cmd *cmd,
 
 // Takes over the materials of the scene.
 void radiosity_follow_materials(struct radiosity *state, const struct scene *scene);
-// Before the passes of a frame: brings the tables up to date. Whether they have changed.
-bool radiosity_record_materials(struct radiosity *state, struct gpu_cmd *cmd);
+// Whether the tables have not the newest materials.
+bool radiosity_has_new_materials(const struct radiosity *state);
+// Before the passes of a frame, not between those of an update: brings the tables up to date.
+void radiosity_record_materials(struct radiosity *state, struct gpu_cmd *cmd);
 
 // ---- radiosity_record.c
 

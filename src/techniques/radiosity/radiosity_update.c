@@ -9,7 +9,7 @@
 static int steps_of(const struct radiosity *s)
 {
     static const float ENOUGH = 1.0f / 4096.0f;
-    const float sigma = s->reflectance.spectral_radius;
+    const float sigma = s->spectral_radius;
     const float factor = sigma / (1.0f + sqrtf(1.0f - sigma * sigma));
     int steps = 0;
     for (float error = 2.0f * sigma; error > ENOUGH && steps < s->options.bounces; steps++)

@@ -87,6 +87,7 @@ static bool find_reflectance(struct radiosity *s, struct content *c)
         return false;
     radiosity_reflectance_update(&s->reflectance, s->materials.known);
     c->texels.reflectance = s->reflectance.texels->raw;
+    s->spectral_radius = s->reflectance.spectral_radius;
     return true;
 }
 
