@@ -8,14 +8,12 @@
 #ifndef AG_FRAME_PROBES_GLSL
 #define AG_FRAME_PROBES_GLSL
 
-// Irradiance between eight probes: `texel` in texels of the first slab, `slab` texels to the next.
-vec3 probes_irradiance_at(sampler3D volume, int slab, vec3 texel, vec3 normal)
+// Coefficients between eight probes: `texel` in texels of the first slab, `slab` texels to the
+// next.
+void probes_coefficients_at(sampler3D volume, int slab, vec3 texel, out vec3 coefficients[9])
 {
     vec3 size = vec3(textureSize(volume, 0));
-    float basis[9];
-    sh9_eval(normal, basis);
     vec4 values;
-    vec3 sum = vec3(0.0);
     for (int i = 0; i < 9; i++) {
         for (int channel = 0; channel < 3; channel++) {
             int component = 3 * i + channel;
@@ -23,10 +21,17 @@ vec3 probes_irradiance_at(sampler3D volume, int slab, vec3 texel, vec3 normal)
                 float offset = float(component / 4 * slab);
                 values = textureLod(volume, (texel + vec3(0.0, 0.0, offset)) / size, 0.0);
             }
-            sum[channel] += basis[i] * values[component % 4];
+            coefficients[i][channel] = values[component % 4];
         }
     }
-    return max(sum, vec3(0.0));
+}
+
+// Irradiance there.
+vec3 probes_irradiance_at(sampler3D volume, int slab, vec3 texel, vec3 normal)
+{
+    vec3 coefficients[9];
+    probes_coefficients_at(volume, slab, texel, coefficients);
+    return max(sh9_dot(coefficients, normal), vec3(0.0));
 }
 
 // Irradiance at a world position; positions are clamped to the grid.

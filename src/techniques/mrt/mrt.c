@@ -1,10 +1,11 @@
 // Modular radiance transfer (Loos 2015, chapters 3 and 4): the scene is a level of blocks, shapes
 // of a precomputed dictionary. Each frame computes direct light at the texels of the blocks' walls,
 // carries it in reduced bases within each block (b) and through openings into others (r),
-// reconstructs indirect light in a light map, and looks that up at each pixel. Diffuse only; lights
-// may move.
+// reconstructs indirect light in a light map, and looks that up at each pixel. Bounces are diffuse;
+// lights may move.
 #include "techniques/mrt/mrt.h"
 
+#include "techniques/common/light_map/columns.h"
 #include "techniques/mrt/mrt_state.h"
 
 #include <string.h>
@@ -113,11 +114,17 @@ static bool mrt_create(void *state, const struct technique_create *how)
     return !how->pose || mrt_make_map(mrt, how->pose);
 }
 
+static uint32_t mrt_more_needs(const void *options)
+{
+    return ((const struct mrt_options *)options)->specular ? FRAME_WRITES_SPECULAR : 0;
+}
+
 // Pixels find their clutter by their triangle.
 static uint32_t drt_more_needs(const void *options)
 {
     const struct mrt_options *o = options;
-    return o->gather && o->reflection && o->vector ? FRAME_NEEDS_ID : 0;
+    const bool gathers = o->gather && o->reflection && o->vector;
+    return mrt_more_needs(options) | (gathers ? FRAME_NEEDS_ID : 0);
 }
 
 static bool drt_create(void *state, const struct technique_create *how)
@@ -251,8 +258,7 @@ static void mrt_record(void *state, struct gpu_cmd *cmd, const struct frame_view
 {
     struct mrt *mrt = state;
     if (mrt->map.count == 0)
-        gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE],
-                        (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
+        light_map_clear_pixels(cmd, view);
     else
         mrt_record_apply(&mrt->runtime, cmd, view, mrt->options.gain);
 }
@@ -318,7 +324,9 @@ static uint64_t drt_memory_estimate(const void *options)
 }
 
 // Capabilities of both; drt can also follow objects.
-enum { MRT_CAN = CAN_MOVE_LIGHTS | NEEDS_BAKE | PUBLISHES_PROBES | GATHERS_EMISSION };
+enum {
+    MRT_CAN = CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | PUBLISHES_PROBES | GATHERS_EMISSION
+};
 #define MRT_TECHNIQUE(of_name, of_title, of_paper, rows)                                           \
     .name = of_name, .title = of_title, .paper = of_paper, .role = ROLE_SOURCE,                    \
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_LIGHT_EVOLVES, .bake_version = 6,                     \
@@ -333,6 +341,7 @@ const struct technique technique_mrt = {
     MRT_TECHNIQUE("mrt", "modular radiance transfer",
                   "Loos 2015, Modular Radiance Transfer, ch. 3 and 4", option_rows),
     .capabilities = MRT_CAN | KEEPS_GEOMETRY,
+    .more_needs = mrt_more_needs,
     .check = mrt_check,
     .block_map = mrt_block_map,
     .create = mrt_create,

@@ -247,6 +247,7 @@ struct mrt_runtime_options mrt_runtime_options_of(const struct mrt_options *opti
         .probes = options->clutter == MRT_CLUTTER_PROBES || options->probes,
         .clutter = options->clutter == MRT_CLUTTER_PROBES,
         .publish = options->probes,
+        .specular = options->specular,
     };
 }
 

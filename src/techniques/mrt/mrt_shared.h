@@ -25,6 +25,13 @@
 #define MRT_CONSTANT_OUTDOORS 9 // bool: some places are not enclosed
 #define MRT_MAX_QUADS         16
 
+// Vector irradiance along a surface over the slope of irradiance by normal there, where the latter
+// is linear SH that fit the hemisphere (OHLSH; Loos 2015, appendix B). Radiance x L, linear in its
+// direction, has the vector irradiance 2π/3 L. Coefficients 3 and 7 of its irradiance are
+// (2π/3)² Y₁ L and (π/4)² Y₂ L, with Y₁ = √(3/4π) and Y₂ = √(15/4π). The slope of the fit to both
+// is Y₁ ((2π/3)² Y₁ + 3√5/8 (π/4)² Y₂) L = 647π/1536 L.
+#define MRT_VECTOR_OF_SLOPE (1024.0f / 647.0f)
+
 // Shares of reflectors: those of light that surfaces in no block send (light/reflectors.h).
 struct mrt_gpu_reflector_row {
     uint32_t first, count;
@@ -153,6 +160,8 @@ struct mrt_level_params {
     float gain;            // artistic factor on the result
     uint32_t probes;       // along an edge of a block
     uint32_t brick_columns;
+    uint32_t has_dielectric; // FRAME_DIELECTRIC
+
     uint32_t reflectors;
     AG_STRUCT(frame_probes) outdoors; // no probes: all places are enclosed
 };
@@ -186,7 +195,7 @@ _Static_assert(sizeof(struct mrt_gpu_clutter_sample) == 8, "layout is shared wit
 _Static_assert(sizeof(struct mrt_apply_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_clutter_fill_push) == 116, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_level_params) == 120, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_level_params) == 124, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_view_push) == 4, "layout is shared with GLSL");
 #endif
 

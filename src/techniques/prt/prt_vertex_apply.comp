@@ -39,6 +39,7 @@ layout(set = 0, binding = 9) uniform sampler2D albedo;
 layout(set = 0, binding = 10) uniform sampler2D material;
 layout(set = 0, binding = 11) uniform sampler2D dielectric; // FRAME_DIELECTRIC if HAS_DIELECTRIC
 layout(set = 0, binding = 12, rgba16f) uniform writeonly image2D specular;
+#include "techniques/common/reflected.glsl"
 #endif
 
 // One division, where normalize has three on software drivers.
@@ -77,14 +78,10 @@ light_map_light light_of(uint triangle, vec3 place, vec3 n)
 #if SPECULAR
 vec3 reflected(ivec2 pixel, light_map_surface s, light_map_light light)
 {
-    vec4 lobe = BRDF_DEFAULT_DIELECTRIC;
-    if (HAS_DIELECTRIC) lobe = texelFetch(dielectric, pixel, 0);
-    brdf_material m =
-        brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
+    brdf_material m = pixel_material(pixel, HAS_DIELECTRIC);
     vec3 n = s.normal, to_viewer = unit(s.to_viewer);
     vec3 radiance = light_map_radiance(light, n, to_viewer, brdf_alpha(m.roughness));
-    return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
-           clamp(radiance, vec3(0.0), vec3(HALF_MAX));
+    return pixel_reflected(m, n, to_viewer, radiance);
 }
 #endif
 

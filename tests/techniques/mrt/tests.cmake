@@ -19,7 +19,7 @@ add_library(ag_test_mrt_runtime STATIC techniques/mrt/mrt_runtime_fixture.c)
 target_link_libraries(ag_test_mrt_runtime PUBLIC ag_test_gpu ag_test_mrt ag_test_mrt_map PRIVATE afterglow_flags m)
 ag_test(techniques/mrt/runtime USES techniques LIBRARIES ag_test_mrt_runtime)
 
-ag_technique_tests(mrt/frame mrt/places mrt/drt_frame)
+ag_technique_tests(mrt/frame mrt/places mrt/specular mrt/drt_frame)
 foreach(name clutter_charts clutter_names weighted)
   ag_test(techniques/mrt/${name} USES techniques)
 endforeach()

@@ -43,13 +43,23 @@ float light_map_first_order_share(float alpha)
     return smoothstep(0.0, WHOLE_FROM * WHOLE_FROM, alpha);
 }
 
+// t of light_map_radiance_along, times the share.
+vec3 light_map_shared_along(vec3 n, vec3 to_viewer, float alpha)
+{
+    return light_map_first_order_share(alpha) * light_map_lobe_along(n, to_viewer, alpha);
+}
+
 // Radiance in the mean direction of a specular lobe, L(ω) = E(n)/π + 3/(2π) V·t, with t the part of
 // ω along the surface. Its irradiance is E(n), its vector irradiance along the surface V. Uniform
 // light is exact.
+vec3 light_map_radiance_along(light_map_light light, vec3 along)
+{
+    return INV_PI * (light.irradiance + 1.5 * (along * light.vector));
+}
+
 vec3 light_map_radiance(light_map_light light, vec3 n, vec3 to_viewer, float alpha)
 {
-    vec3 along = light_map_first_order_share(alpha) * light_map_lobe_along(n, to_viewer, alpha);
-    return INV_PI * (light.irradiance + 1.5 * (along * light.vector));
+    return light_map_radiance_along(light, light_map_shared_along(n, to_viewer, alpha));
 }
 
 #endif

@@ -42,6 +42,7 @@ layout(set = 0, binding = 9) uniform sampler2D albedo;
 layout(set = 0, binding = 10) uniform sampler2D material;
 layout(set = 0, binding = 11) uniform sampler2D dielectric; // FRAME_DIELECTRIC if `has_dielectric`
 layout(set = 0, binding = 12, rgba16f) uniform writeonly image2D specular;
+#include "techniques/common/reflected.glsl"
 #endif
 
 vec3 light_at(vec3 position, vec3 n, vec3 direction)
@@ -106,23 +107,17 @@ vec3 mean_over_lobe(vec3 position, vec3 n, vec3 to_viewer, float alpha)
 #elif SPECULAR
 vec3 mean_over_lobe(vec3 position, vec3 n, vec3 to_viewer, float alpha)
 {
-    vec3 upwards = dot(to_viewer, n) * n;
-    vec3 mean = upwards + (upwards - to_viewer) * lobe_lean(alpha);
-    return INV_PI * light_at(position, n, normalize(mean + 1e-4 * n));
+    return INV_PI * light_at(position, n, normalize(lobe_mean(n, to_viewer, alpha)));
 }
 #endif
 
 #if SPECULAR
 vec3 reflected(ivec2 pixel, vec3 position, vec3 n)
 {
-    vec4 lobe = BRDF_DEFAULT_DIELECTRIC;
-    if (push.has_dielectric != 0u) lobe = texelFetch(dielectric, pixel, 0);
-    brdf_material m =
-        brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
+    brdf_material m = pixel_material(pixel, push.has_dielectric != 0u);
     vec3 to_viewer = normalize(frame_to_viewer(position));
     vec3 radiance = mean_over_lobe(position, n, to_viewer, brdf_alpha(m.roughness));
-    return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
-           clamp(radiance, vec3(0.0), vec3(HALF_MAX));
+    return pixel_reflected(m, n, to_viewer, radiance);
 }
 #endif
 

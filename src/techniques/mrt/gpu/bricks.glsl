@@ -1,5 +1,5 @@
-// Lookups in the bricks of probes. Needs locate.glsl, core/sh.glsl, frame/probes.glsl,
-// MRT_BRICKS_BINDING and MRT_SIGHT_BINDING.
+// Places of lookups in the bricks of probes. Needs locate.glsl, MRT_BRICKS_BINDING and
+// MRT_SIGHT_BINDING.
 #ifndef AG_MRT_BRICKS_GLSL
 #define AG_MRT_BRICKS_GLSL
 
@@ -79,20 +79,6 @@ vec3 lookup_of(mrt_visible_probes visible, int i, out float weight)
     weight = visible.scale * (all ? 1.0 : share_of_probe(visible, i));
     return all ? visible.texel
                : floor(visible.texel - 0.5) + vec3(i & 1, i >> 1 & 1, i >> 2 & 1) + 0.5;
-}
-
-vec3 bricks_irradiance(mrt_place place, vec3 normal)
-{
-    int slab = int(level.probes) + 2;
-    if (SIGHT == 0) return probes_irradiance_at(bricks, slab, brick_texel(place), normal);
-    mrt_visible_probes visible = visible_probes_at(place, normal_in_cell(place, normal));
-    vec3 sum = vec3(0.0);
-    for (int i = 0; i < visible.lookups; i++) {
-        float weight;
-        vec3 texel = lookup_of(visible, i, weight);
-        sum += weight * probes_irradiance_at(bricks, slab, texel, normal);
-    }
-    return sum;
 }
 
 #endif

@@ -1,17 +1,21 @@
-// Irradiance of the pixels of clutter from its light map, found by the triangle that they show.
+// Irradiance of the pixels of clutter from its light map, found by the triangle that they show;
+// SPECULAR: also the radiance that the specular lobe reflects.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
 #include "core/half.glsl"
+#include "core/math.glsl"
 #include "core/sh.glsl"
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
+#include "frame/probes.glsl"
 #define LIGHT_MAP_INSTANCES_BINDING 2
 #define LIGHT_MAP_TRIANGLES_BINDING 3
 #define LIGHT_MAP_MOVES_BINDING     4
 #include "techniques/common/light_map/surface.glsl"
 #include "techniques/mrt/gpu/level.glsl"
+#include "techniques/mrt/gpu/lobe.glsl"
 
 layout(local_size_x = MRT_LOCAL_2D, local_size_y = MRT_LOCAL_2D) in;
 
@@ -25,29 +29,41 @@ layout(push_constant, scalar) uniform push_block
 };
 layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D irradiance;
 
-vec3 map_irradiance(vec3 place, vec3 n)
+#if SPECULAR
+#include "techniques/mrt/gpu/reflected.glsl"
+#endif
+
+// The vector irradiance is that along the surface.
+light_map_light map_light(vec3 place, vec3 n)
 {
     vec2 uv = place.xy / vec2(textureSize(clutter_map, 0).xy);
-    vec3 sum;
+    light_map_light light;
     for (int c = 0; c < 3; c++) {
         float layer = float(LIGHT_MAP_LAYERS) * place.z + float(c);
-        sum[c] = sh4_dot(textureLod(clutter_map, vec3(uv, layer), 0.0), n);
+        vec4 texel = textureLod(clutter_map, vec3(uv, layer), 0.0);
+        light.irradiance[c] = max(sh4_dot(texel, n), 0.0);
+        light.vector[c] = vector_of_fit(texel);
     }
-    return max(sum, vec3(0.0));
+    return light;
 }
 
 // Whether the map lights the pixel. One that was added since the map was made has the light of
 // probes.
-bool find_light(ivec2 pixel, out vec3 light)
+bool find_light(ivec2 pixel, out vec3 irradiance)
 {
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
     float z = texelFetch(depth, pixel, 0).r;
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
     light_map_surface s = light_map_surface(position, n, frame_to_viewer(position));
     vec3 place = light_map_place_of(texelFetch(id, pixel, 0).rg, push, s);
-    light = vec3(0.0);
+    irradiance = vec3(0.0);
     if (place.z < 0.0) return false;
-    light = level.gain * map_irradiance(place, s.normal);
+    light_map_light light = map_light(place, s.normal);
+    irradiance = level.gain * light.irradiance;
+#if SPECULAR
+    mrt_reflection reflection = reflection_of(pixel, s.normal, s.to_viewer);
+    store_reflected(pixel, reflection, light_map_radiance_along(light, reflection.lobe.along));
+#endif
     return true;
 }
 

@@ -137,7 +137,9 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
            mrt_image_of(runtime, &image, &map->image) &&
            mrt_pipeline_of(runtime, "clutter_fill", &shader_mrt_gpu_clutter_fill_comp, 0,
                            &map->fill) &&
-           mrt_pipeline_of(runtime, "clutter_apply", &shader_mrt_gpu_clutter_apply_comp,
+           mrt_pipeline_of(runtime, "clutter_apply",
+                           runtime->options.specular ? &shader_mrt_gpu_clutter_apply_specular_comp
+                                                     : &shader_mrt_gpu_clutter_apply_diffuse_comp,
                            1u << MRT_CONSTANT_ROW_BACKS, &map->apply);
 }
 
@@ -173,12 +175,12 @@ bool mrt_record_clutter_pixels(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     const struct light_map_instances push = light_map_instances(&m->surfaces);
     if (m->tile_count == 0 || !view->layers[FRAME_ID].id) return false;
     mrt_dispatch(runtime, cmd, m->apply,
-                 GPU_BIND(view->constants_binding, LIGHT_MAP_SURFACE_BINDINGS(&m->surfaces, cmd),
+                 GPU_BIND(FRAME_SURFACE_BINDINGS(view),
+                          LIGHT_MAP_SURFACE_BINDINGS(&m->surfaces, cmd),
                           { .name = "clutter_map", .image = m->image, .sampler = runtime->linear },
                           { .name = "id", .image = view->layers[FRAME_ID] },
-                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-                          { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                          { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+                          { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] },
+                          { .name = "specular", .image = view->layers[FRAME_SPECULAR] }),
                  &push, sizeof push, gpu_groups(view->width, MRT_LOCAL_2D),
                  gpu_groups(view->height, MRT_LOCAL_2D), 1);
     return true;

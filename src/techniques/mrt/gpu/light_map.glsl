@@ -1,5 +1,5 @@
-// Irradiance of a surface from the light map: of the wall that stands for it, or of several.
-// Needs locate.glsl, bricks.glsl, outdoors.glsl, MRT_TILES_BINDING, core/sh.glsl.
+// Light of a surface from the light map: of the wall that stands for it, or of several.
+// Needs locate.glsl, bricks.glsl, outdoors.glsl, lobe.glsl, MRT_TILES_BINDING.
 #ifndef AG_MRT_LIGHT_MAP_GLSL
 #define AG_MRT_LIGHT_MAP_GLSL
 
@@ -22,33 +22,41 @@ vec3 light_map_uv(int tile, vec2 st)
     return vec3(at / vec2(level.map_width, level.map_height), 0.0);
 }
 
-// The change of irradiance from the wall's normal to another (Loos 2015, section 3.5.4), in the
-// frame of struct mrt_point.
-vec3 change_by_normal(vec3 uv, vec3 normal)
+// The light at a wall changes from its normal to another (Loos 2015, section 3.5.4), in the frame
+// of struct mrt_point. Its vector irradiance along the wall's normal is its irradiance there.
+void change_by_normal(vec3 uv, vec3 normal, inout light_map_light light)
 {
     vec4 change = sh4_eval(normal) - sh4_eval(vec3(0.0, 0.0, 1.0));
-    vec3 sum;
-    for (int c = 0; c < 3; c++)
-        sum[c] = dot(textureLod(vector_map, vec3(uv.xy, float(c)), 0.0), change);
-    return sum;
+    for (int c = 0; c < 3; c++) {
+        vec4 texel = textureLod(vector_map, vec3(uv.xy, float(c)), 0.0);
+        light.vector[c] = vec3(vector_of_fit(texel).xy, light.irradiance[c]);
+        light.irradiance[c] += dot(texel, change);
+    }
 }
 
 // Reduced bases leave small negative values beside bright texels. Up to here light is linear.
-// `normal` is in the frame of struct mrt_point.
-vec3 tile_irradiance(int tile, vec2 st, vec3 normal)
+// `normal` and `along`, of mrt_lobe, are in the frame of struct mrt_point.
+mrt_light tile_light(int tile, vec2 st, vec3 normal, vec3 along)
 {
     vec3 uv = light_map_uv(tile, clamp(st, 0.0, 1.0));
-    vec3 irradiance = textureLod(light_map, uv, 0.0).rgb;
-    if (VALUES == 4u && normal.z < MRT_ALONG_WALL) irradiance += change_by_normal(uv, normal);
-    return max(irradiance, vec3(0.0));
+    light_map_light light = light_map_light(textureLod(light_map, uv, 0.0).rgb, mat3(0.0));
+    if (VALUES == 4u && (SPECULAR == 1 || normal.z < MRT_ALONG_WALL))
+        change_by_normal(uv, normal, light);
+    light.irradiance = max(light.irradiance, vec3(0.0));
+    return mrt_light(light.irradiance, max(light_map_radiance_along(light, along), vec3(0.0)));
 }
 
-vec3 wall_irradiance(int tile, int face, vec3 cell, vec3 normal)
+// From the cell to the frame of mrt_point of a wall.
+vec3 before_wall(mat3 frame, vec3 direction)
+{
+    return (direction * frame) * vec3(-1.0, 1.0, -1.0);
+}
+
+mrt_light wall_light(int tile, int face, vec3 cell, vec3 normal, vec3 along)
 {
     mat3 frame = cube_from_face(face);
-    return tile_irradiance(
-        tile, 0.5 + vec2(dot(frame[0], cell), dot(frame[1], cell)),
-        vec3(-dot(frame[0], normal), dot(frame[1], normal), -dot(frame[2], normal)));
+    return tile_light(tile, 0.5 + vec2(dot(frame[0], cell), dot(frame[1], cell)),
+                      before_wall(frame, normal), before_wall(frame, along));
 }
 
 struct mrt_wall {
@@ -80,7 +88,7 @@ mrt_wall wall_of(mrt_place place, vec3 normal)
 // cosines, which sum to 1. Where these are openings, a little of all walls remains.
 const float MRT_LEAST_WEIGHT = 0.01;
 
-vec3 walls_irradiance(mrt_place place, vec3 normal)
+vec3 walls_irradiance(mrt_place place, vec3 direction)
 {
     vec3 sum = vec3(0.0);
     float weights = 0.0;
@@ -88,11 +96,36 @@ vec3 walls_irradiance(mrt_place place, vec3 normal)
         int tile = block_table[place.block].tile[face];
         if (tile < 0) continue;
         vec3 inner = -cube_from_face(face)[2];
-        float cosine = max(dot(inner, normal), 0.0), weight = cosine * cosine + MRT_LEAST_WEIGHT;
-        sum += weight * wall_irradiance(tile, face, place.cell, inner);
+        float cosine = max(dot(inner, direction), 0.0), weight = cosine * cosine + MRT_LEAST_WEIGHT;
+        sum += weight * wall_light(tile, face, place.cell, inner, vec3(0.0)).irradiance;
         weights += weight;
     }
     return weights > 0.0 ? sum / weights : vec3(0.0);
+}
+
+mrt_light walls_light(mrt_place place, vec3 normal, mrt_lobe lobe)
+{
+    mrt_light light = mrt_light(walls_irradiance(place, normal), vec3(0.0));
+#if SPECULAR
+    light.radiance = INV_PI * walls_irradiance(place, direction_in_cell(place, lobe.mean));
+#endif
+    return light;
+}
+
+// Between probes, past clutter.
+mrt_light bricks_light(mrt_place place, vec3 normal, mrt_lobe lobe)
+{
+    int slab = int(level.probes) + 2;
+    if (SIGHT == 0) return probe_light_at(bricks, slab, brick_texel(place), normal, lobe);
+    mrt_visible_probes visible = visible_probes_at(place, normal_in_cell(place, normal));
+    mrt_light sum = MRT_DARK;
+    for (int i = 0; i < visible.lookups; i++) {
+        float weight;
+        vec3 texel = lookup_of(visible, i, weight);
+        mrt_light light = probe_light_at(bricks, slab, texel, normal, lobe);
+        sum = sum_of_lights(sum, scaled_light(light, weight));
+    }
+    return sum;
 }
 
 const float MRT_AWAY_COSINE = 0.5;
@@ -154,50 +187,53 @@ mrt_wall wall_beyond(vec3 world, vec3 normal, inout mrt_place place, inout vec3 
 }
 
 // In a tube a surface inside is projected onto the wall away from the axis.
-vec3 tube_irradiance(mrt_place place, vec3 normal)
+mrt_light tube_light(mrt_place place, vec3 normal, mrt_lobe lobe)
 {
     mrt_tube_place at = tube_place(place.block, place.cell);
     int tile = block_table[place.block].tile[0];
     vec2 st = vec2(at.around, at.along);
     vec3 n = normal_in_cell(place, normal) * at.frame;
     float share = share_of_wall(MRT_TUBE_RADIUS - length(at.off), n.z);
-    vec3 on_wall = vec3(0.0), inside = vec3(0.0);
-    if (share > 0.0) on_wall = tile_irradiance(tile, st, n);
+    mrt_light on_wall = MRT_DARK, inside = MRT_DARK;
+    if (share > 0.0)
+        on_wall = tile_light(tile, st, n, direction_in_cell(place, lobe.along) * at.frame);
     if (share < 1.0)
-        inside = PROBES ? bricks_irradiance(place, normal)
-                        : tile_irradiance(tile, st, vec3(0.0, 0.0, 1.0));
-    return mix(inside, on_wall, share);
+        inside = PROBES ? bricks_light(place, normal, lobe)
+                        : tile_light(tile, st, vec3(0.0, 0.0, 1.0), vec3(0.0));
+    return mix_light(inside, on_wall, share);
 }
 
-vec3 room_irradiance(vec3 position, vec3 normal, mrt_place place)
+mrt_light room_light(vec3 position, vec3 normal, mrt_lobe lobe, mrt_place place)
 {
-    if (TUBES) return tube_irradiance(place, normal);
+    if (TUBES) return tube_light(place, normal, lobe);
     vec3 n = normal_in_cell(place, normal);
     mrt_wall wall = wall_of(place, n);
     if (wall.share == 0.0) wall = wall_beyond(position + level.offset_m * normal, normal, place, n);
-    vec3 on_wall = vec3(0.0), inside = vec3(0.0);
+    mrt_light on_wall = MRT_DARK, inside = MRT_DARK;
     if (wall.share > 0.0)
-        on_wall =
-            wall_irradiance(block_table[place.block].tile[wall.face], wall.face, place.cell, n);
+        on_wall = wall_light(block_table[place.block].tile[wall.face], wall.face, place.cell, n,
+                             direction_in_cell(place, lobe.along));
     if (wall.share < 1.0)
-        inside = PROBES ? bricks_irradiance(place, normal) : walls_irradiance(place, n);
-    return mix(inside, on_wall, wall.share);
+        inside = PROBES ? bricks_light(place, normal, lobe) : walls_light(place, n, lobe);
+    return mix_light(inside, on_wall, wall.share);
 }
 
 // Edges beyond its block over which a surface outdoors blends out of the light of the room.
 const float MRT_LEAVING = 0.25;
 
 // Beyond its block an enclosed surface, such as that of a niche, has the light of the room.
-vec3 level_irradiance(vec3 position, vec3 normal)
+mrt_light level_light(vec3 position, vec3 normal, mrt_lobe lobe)
 {
     mrt_place place =
         TUBES ? locate(position + level.offset_m * normal) : locate_surface(position, normal);
-    vec4 outdoors = vec4(0.0);
-    if (place.block < 0 || place.outside > 0.0) outdoors = outdoor_irradiance(position, normal);
-    if (place.block < 0) return outdoors.a * outdoors.rgb;
-    float share = outdoors.a * smoothstep(0.0, MRT_LEAVING, place.outside);
-    if (share == 1.0) return outdoors.rgb;
-    return mix(room_irradiance(position, normal, place), outdoors.rgb, share);
+    mrt_light outdoors = MRT_DARK;
+    float open = 0.0;
+    if (place.block < 0 || place.outside > 0.0)
+        outdoors = outdoor_light(position, normal, lobe, open);
+    if (place.block < 0) return scaled_light(outdoors, open);
+    float share = open * smoothstep(0.0, MRT_LEAVING, place.outside);
+    if (share == 1.0) return outdoors;
+    return mix_light(room_light(position, normal, lobe, place), outdoors, share);
 }
 
 #endif

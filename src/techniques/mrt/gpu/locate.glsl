@@ -115,6 +115,14 @@ vec3 normal_in_cell(mrt_place place, vec3 normal)
     return normalize(transpose(world_from_cell(place)) * normal);
 }
 
+// Directions turn with the cell's edges: a rotation of boxes.
+vec3 direction_in_cell(mrt_place place, vec3 direction)
+{
+    mat3 edges = world_from_cell(place);
+    vec3 squares = vec3(dot(edges[0], edges[0]), dot(edges[1], edges[1]), dot(edges[2], edges[2]));
+    return (direction * edges) * inversesqrt(max(squares, vec3(1e-20)));
+}
+
 // cube_from_face of dictionary/cube.h: columns u, v and n, n outward.
 mat3 cube_from_face(int face)
 {

@@ -108,7 +108,9 @@ static bool make_pipelines(struct mrt_runtime *runtime)
         { &p->couple, "couple", &shader_mrt_gpu_couple_comp, HALF | QUADS_B | QUADS_R },
         { &p->reconstruct, "reconstruct", &shader_mrt_gpu_reconstruct_comp, ALL | VALUES },
         { &p->fill, "fill", &shader_mrt_gpu_fill_comp, VALUES },
-        { &p->apply, "apply", &shader_mrt_gpu_apply_comp,
+        { &p->apply, "apply",
+          runtime->options.specular ? &shader_mrt_gpu_apply_specular_comp
+                                    : &shader_mrt_gpu_apply_diffuse_comp,
           (vector ? VECTOR : VALUES) | PROBES | AFFINE | TUBES | SIGHT | OUTDOORS },
         { &p->debug, "debug", &shader_mrt_gpu_debug_comp, AFFINE | TUBES },
         { &p->reconstruct_vector, "reconstruct_vector",

@@ -25,11 +25,12 @@ struct mrt_runtime_input {
 };
 
 struct mrt_runtime_options {
-    bool half;    // operators are half floats, else floats
-    bool vector;  // irradiance by normal
-    bool probes;  // there are volume probes
-    bool clutter; // they light surfaces inside blocks, else the walls that face these do
-    bool publish; // their volume
+    bool half;     // operators are half floats, else floats
+    bool vector;   // irradiance by normal
+    bool probes;   // there are volume probes
+    bool clutter;  // they light surfaces inside blocks, else the walls that face these do
+    bool publish;  // their volume
+    bool specular; // pixels get what the specular lobe reflects
 };
 
 struct mrt_runtime_pipelines {
@@ -149,7 +150,7 @@ void mrt_record_probes(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 // Outdoor probes, of this frame's sky.
 void mrt_record_outdoors(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                          const struct frame_view *view);
-// Irradiance of each pixel.
+// Irradiance of each pixel, and specular light.
 void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                       const struct frame_view *view, float gain);
 void mrt_record_debug(struct mrt_runtime *runtime, struct gpu_cmd *cmd,

@@ -160,20 +160,20 @@ void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                       const struct frame_view *view, float gain)
 {
     runtime->level.gain = gain;
+    runtime->level.has_dielectric = view->layers[FRAME_DIELECTRIC].id != 0;
     gpu_scope_begin(cmd, "apply");
     const bool clutter_is_lit = mrt_record_clutter_pixels(runtime, cmd, view);
     const struct mrt_apply_push push = { clutter_is_lit ? (int32_t)view->width : 0 };
     mrt_dispatch(
         runtime, cmd, runtime->pipelines.apply,
         GPU_BIND(
-            view->constants_binding,
+            FRAME_SURFACE_BINDINGS(view),
             { .name = "light_map", .image = runtime->light_map, .sampler = runtime->linear },
             { .name = "vector_map", .image = runtime->vector_map, .sampler = runtime->linear },
             { .name = "bricks", .image = runtime->probes.bricks, .sampler = runtime->linear },
             { .name = "outdoors", .image = runtime->outdoors.image, .sampler = runtime->linear },
-            { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-            { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-            { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+            { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] },
+            { .name = "specular", .image = view->layers[FRAME_SPECULAR] }),
         &push, sizeof push, gpu_groups(view->width, MRT_LOCAL_2D),
         gpu_groups(view->height, MRT_LOCAL_2D), 1);
     gpu_scope_end(cmd);
