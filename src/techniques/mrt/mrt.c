@@ -8,6 +8,7 @@
 #include "techniques/common/light_map/columns.h"
 #include "techniques/mrt/mrt_state.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #define OPTION(...) OPTION_ROW(struct mrt_options, __VA_ARGS__)
@@ -103,6 +104,18 @@ static bool mrt_bake_report(struct report *report, struct bake *bake,
 {
     const struct mrt_dictionary_options options = dictionary_options(how->options);
     return mrt_dictionary_report(report, bake, &options);
+}
+
+static void mrt_objects(const void *options, int view, uint32_t width, uint32_t height,
+                        struct gpu_objects *out)
+{
+    const size_t base = offsetof(struct mrt, lists) + (size_t)view * sizeof(struct mrt_pixel_lists);
+    const size_t bytes = width > 0 ? mrt_list_bytes(width, height) : 0;
+    (void)options;
+#define LIST(thing)                                                                                \
+    { GPU_BUFFER,      #thing,         offsetof(struct mrt_pixel_lists, thing),                    \
+      .of_view = true, .bytes = bytes, .usage = GPU_BUFFER_INDIRECT }
+    GPU_ADD(out, base, LIST(amid), LIST(several));
 }
 
 static bool mrt_create(void *state, const struct technique_create *how)
@@ -260,7 +273,7 @@ static void mrt_record(void *state, struct gpu_cmd *cmd, const struct frame_view
     if (mrt->map.count == 0)
         light_map_clear_pixels(cmd, view);
     else
-        mrt_record_apply(&mrt->runtime, cmd, view, mrt->options.gain);
+        mrt_record_apply(&mrt->runtime, cmd, view, &mrt->lists[view->number], mrt->options.gain);
 }
 
 static void mrt_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
@@ -331,10 +344,11 @@ enum {
     .name = of_name, .title = of_title, .paper = of_paper, .role = ROLE_SOURCE,                    \
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_LIGHT_EVOLVES, .bake_version = 6,                     \
     .options = OPTION_TABLE(struct mrt_options, rows, NULL), .presets = presets,                   \
-    .debug_views = debug_views, .state_size = sizeof(struct mrt), .resolve = mrt_resolve_maze,     \
-    .read_block_map = mrt_read_block_map, .bake = mrt_bake, .bake_report = mrt_bake_report,        \
-    .load = mrt_load, .set_options = mrt_set_options, .invalidate = mrt_invalidate,                \
-    .is_updating = mrt_is_updating, .update = mrt_update, .record = mrt_record,                    \
+    .debug_views = debug_views, .state_size = sizeof(struct mrt), .objects = mrt_objects,          \
+    .resolve = mrt_resolve_maze, .read_block_map = mrt_read_block_map, .bake = mrt_bake,           \
+    .bake_report = mrt_bake_report, .load = mrt_load, .set_options = mrt_set_options,              \
+    .invalidate = mrt_invalidate, .is_updating = mrt_is_updating, .update = mrt_update,            \
+    .record = mrt_record,                                                                          \
     .debug_view = mrt_debug_view, .probes = mrt_probes, .destroy = mrt_destroy
 
 const struct technique technique_mrt = {

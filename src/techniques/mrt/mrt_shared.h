@@ -136,6 +136,24 @@ struct mrt_apply_push {
     int32_t clutter_columns;
 };
 
+// Rows of a block in a table of an image (gpu/pixels/rows.glsl). Of the second row of tiles, z is a
+// mask of faces that are walls, and one of those with a block beyond.
+#define MRT_BLOCK_ROWS  8u
+#define MRT_ROW_INVERSE 0u // three
+#define MRT_ROW_EDGES   3u // three
+#define MRT_ROW_TILES   6u // two
+#define MRT_ROW_OPENING 64u
+
+// Begins a list of pixels.
+struct mrt_list_header {
+    uint32_t count;
+    uint32_t groups[3]; // of the dispatch: MRT_LOCAL pixels each
+};
+
+struct mrt_rows_push {
+    uint32_t blocks, cells;
+};
+
 struct mrt_clutter_fill_push {
     uint32_t places;
     float emitted;           // radiance scale; 0: emissive surfaces are no sources
@@ -193,6 +211,8 @@ _Static_assert(sizeof(struct mrt_gpu_clutter_group) == 8, "layout is shared with
 _Static_assert(sizeof(struct mrt_gpu_clutter_place) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_sample) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_apply_push) == 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_list_header) == 16, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_rows_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_clutter_fill_push) == 116, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_level_params) == 124, "layout is shared with GLSL");

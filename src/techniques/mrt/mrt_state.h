@@ -57,6 +57,7 @@ struct mrt {
     struct mrt_dictionary dictionary;
     struct mrt_level level;
     struct mrt_runtime runtime;
+    struct mrt_pixel_lists lists[FRAME_MAX_VIEWS];
     struct mrt_host_solver host_solver; // MRT_SOLVER_CPU
     bool lit;                           // the irradiance of the last frame is valid
     struct kept kept;

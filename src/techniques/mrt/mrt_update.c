@@ -144,7 +144,7 @@ static void start(struct mrt *mrt, const struct scene_pose *pose)
     u->error[0] = 0;
     u->cache.traced = 0;
     u->waited_for = u->waits;
-    u->plan = (struct mrt_plan){ .host = &u->host };
+    u->plan = (struct mrt_plan){ .host = &u->host, .columns = mrt->runtime.columns };
     atomic_store(&u->stop, false);
     atomic_store(&u->done, false);
     if (!note_changes(u, pose) || !scene_snapshot_take(&u->snapshot, pose))

@@ -73,13 +73,14 @@ struct light_map_checker_push {
     AG_STRUCT(light_map_instances) instances;
 };
 
-// Specialization constants: the size of a workgroup; whether there is FRAME_DIELECTRIC; whether the
-// environment has a map; pixels of an invocation, which are in a column, at most 32.
-#define LIGHT_MAP_APPLY_WIDTH      0
-#define LIGHT_MAP_APPLY_HEIGHT     1
+// Specialization constants: the size of a workgroup; pixels of an invocation, which are in a
+// column, at most 32 (columns.glsl); whether there is FRAME_DIELECTRIC; whether the environment has
+// a map.
+#define LIGHT_MAP_APPLY_WIDTH      66
+#define LIGHT_MAP_APPLY_HEIGHT     67
+#define LIGHT_MAP_APPLY_ROWS       68
 #define LIGHT_MAP_APPLY_DIELECTRIC 2
 #define LIGHT_MAP_APPLY_MIRRORS    3
-#define LIGHT_MAP_APPLY_ROWS       4
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct light_map_sources) == 12, "layout is shared with GLSL");

@@ -138,8 +138,9 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
            mrt_pipeline_of(runtime, "clutter_fill", &shader_mrt_gpu_clutter_fill_comp, 0,
                            &map->fill) &&
            mrt_pipeline_of(runtime, "clutter_apply",
-                           runtime->options.specular ? &shader_mrt_gpu_clutter_apply_specular_comp
-                                                     : &shader_mrt_gpu_clutter_apply_diffuse_comp,
+                           runtime->options.specular
+                               ? &shader_mrt_gpu_pixels_clutter_apply_specular_comp
+                               : &shader_mrt_gpu_pixels_clutter_apply_diffuse_comp,
                            1u << MRT_CONSTANT_ROW_BACKS, &map->apply);
 }
 

@@ -1,14 +1,23 @@
 // The level's uniform block and tables of texels, tiles and blocks. A shader defines the binding
-// number of each table that it reads.
+// number of each table that it reads. With MRT_LEVEL_COPIED, `level` is a copy that main begins
+// with: level = level_block (as FRAME_CONSTANTS_COPIED).
 #ifndef AG_MRT_LEVEL_GLSL
 #define AG_MRT_LEVEL_GLSL
 
 #include "techniques/mrt/mrt_shared.h"
 
+#ifdef MRT_LEVEL_COPIED
+layout(set = 0, binding = 1, scalar) uniform mrt_level
+{
+    mrt_level_params level_block;
+};
+mrt_level_params level;
+#else
 layout(set = 0, binding = 1, scalar) uniform mrt_level
 {
     mrt_level_params level;
 };
+#endif
 
 #ifdef MRT_TEXELS_BINDING
 layout(set = 0, binding = MRT_TEXELS_BINDING, scalar) readonly buffer mrt_texels

@@ -116,11 +116,15 @@ vec3 normal_in_cell(mrt_place place, vec3 normal)
 }
 
 // Directions turn with the cell's edges: a rotation of boxes.
-vec3 direction_in_cell(mrt_place place, vec3 direction)
+vec3 turned_by(mat3 edges, vec3 direction)
 {
-    mat3 edges = world_from_cell(place);
     vec3 squares = vec3(dot(edges[0], edges[0]), dot(edges[1], edges[1]), dot(edges[2], edges[2]));
     return (direction * edges) * inversesqrt(max(squares, vec3(1e-20)));
+}
+
+vec3 direction_in_cell(mrt_place place, vec3 direction)
+{
+    return turned_by(world_from_cell(place), direction);
 }
 
 // cube_from_face of dictionary/cube.h: columns u, v and n, n outward.

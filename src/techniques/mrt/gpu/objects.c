@@ -60,12 +60,13 @@ static bool has_name(const struct gpu_binding *bindings, int count, const char *
     return false;
 }
 
-void mrt_dispatch(const struct mrt_runtime *runtime, struct gpu_cmd *cmd, gpu_pipeline pipeline,
-                  const struct gpu_binding *bindings, int binding_count, const void *push,
-                  size_t push_bytes, uint32_t groups_x, uint32_t groups_y, uint32_t groups_z)
+enum { MAX_BINDINGS = 32, MAX_ALL_BINDINGS = MAX_BINDINGS + 1 + MRT_MAX_BUFFERS };
+
+// Adds the parameters and buffers of the level. Returns the number of all.
+static int bind_level(const struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                      const struct gpu_binding *bindings, int binding_count,
+                      struct gpu_binding all[MAX_ALL_BINDINGS])
 {
-    enum { MAX_BINDINGS = 32 };
-    struct gpu_binding all[MAX_BINDINGS + 1 + MRT_MAX_BUFFERS];
     int count = binding_count;
     assert(count <= MAX_BINDINGS);
     for (int i = 0; i < binding_count; i++) all[i] = bindings[i];
@@ -75,7 +76,25 @@ void mrt_dispatch(const struct mrt_runtime *runtime, struct gpu_cmd *cmd, gpu_pi
         if (!has_name(bindings, binding_count, runtime->buffer_names[i]))
             all[count++] = (struct gpu_binding){ .name = runtime->buffer_names[i],
                                                  .buffer = runtime->buffers[i] };
+    return count;
+}
+
+void mrt_dispatch(const struct mrt_runtime *runtime, struct gpu_cmd *cmd, gpu_pipeline pipeline,
+                  const struct gpu_binding *bindings, int binding_count, const void *push,
+                  size_t push_bytes, uint32_t groups_x, uint32_t groups_y, uint32_t groups_z)
+{
+    struct gpu_binding all[MAX_ALL_BINDINGS];
+    const int count = bind_level(runtime, cmd, bindings, binding_count, all);
     gpu_dispatch(cmd, pipeline, all, count, push, push_bytes, groups_x, groups_y, groups_z);
+}
+
+void mrt_dispatch_indirect(const struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                           gpu_pipeline pipeline, const struct gpu_binding *bindings,
+                           int binding_count, gpu_buffer arguments, size_t offset)
+{
+    struct gpu_binding all[MAX_ALL_BINDINGS];
+    const int count = bind_level(runtime, cmd, bindings, binding_count, all);
+    gpu_dispatch_indirect(cmd, pipeline, all, count, NULL, 0, arguments, offset);
 }
 
 bool mrt_image_of(struct mrt_runtime *runtime, const struct gpu_image_desc *desc, gpu_image *out)

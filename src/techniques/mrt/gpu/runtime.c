@@ -1,11 +1,14 @@
 // Buffers, images and pipelines of a level.
 #include "runtime.h"
 
+#include "techniques/common/light_map/table.h"
 #include "techniques/common/probes/volume.h"
 #include "techniques/mrt/objects/delta.h"
 #include "techniques/mrt/gpu/upload.h"
 
 #include "technique_shaders.h"
+
+#include <string.h>
 
 enum { VEC3_BYTES = 12, VECTOR_VALUES = 4 };
 
@@ -37,6 +40,18 @@ static bool make_image(struct mrt_runtime *runtime, const char *name, uint32_t w
     return mrt_image_of(runtime, &desc, out);
 }
 
+static bool make_table(struct mrt_runtime *runtime, const char *name, size_t count, gpu_image *out)
+{
+    struct gpu_image_desc desc = light_map_table(GPU_RGBA32U, count);
+    desc.name = name;
+    return mrt_image_of(runtime, &desc, out);
+}
+
+static size_t cells_of(const struct mrt_level_params *level)
+{
+    return (size_t)level->cells_x * (size_t)level->cells_y * (size_t)level->cells_z;
+}
+
 static bool make_images(struct mrt_runtime *runtime)
 {
     const struct mrt_level_params *level = &runtime->level;
@@ -45,7 +60,10 @@ static bool make_images(struct mrt_runtime *runtime)
            make_image(runtime, "light_map", level->map_width, level->map_height, 1,
                       &runtime->light_map) &&
            make_image(runtime, "vector_map", vector ? level->map_width : 1,
-                      vector ? level->map_height : 1, 3, &runtime->vector_map);
+                      vector ? level->map_height : 1, 3, &runtime->vector_map) &&
+           make_table(runtime, "block_rows", runtime->block_count * MRT_BLOCK_ROWS,
+                      &runtime->block_rows) &&
+           make_table(runtime, "cell_rows", cells_of(level), &runtime->cell_rows);
 }
 
 static bool is_affine(const struct mrt_block_map *map)
@@ -58,6 +76,7 @@ static bool is_affine(const struct mrt_block_map *map)
 // VECTOR is another value of VALUES.
 static void fill_constants(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
+    const struct light_map_columns columns = runtime->columns;
     const uint32_t values[] = {
         [MRT_CONSTANT_HALF] = runtime->options.half,
         [MRT_CONSTANT_QUADS_B] = mrt_quads(input->operators->k_b),
@@ -75,6 +94,11 @@ static void fill_constants(struct mrt_runtime *runtime, const struct mrt_runtime
         constants[i] = (struct gpu_constant){ i, values[i] };
     constants[MRT_CONSTANT_ROW_VECTOR] =
         (struct gpu_constant){ MRT_CONSTANT_VALUES, VECTOR_VALUES };
+    const struct gpu_constant size[] = { { LIGHT_MAP_APPLY_WIDTH, columns.width },
+                                         { LIGHT_MAP_APPLY_HEIGHT, columns.height },
+                                         { LIGHT_MAP_APPLY_ROWS, columns.rows } };
+    memcpy(constants + MRT_CONSTANT_ROW_COLUMNS, size, sizeof size);
+    runtime->has_lists = values[MRT_CONSTANT_AFFINE] && !values[MRT_CONSTANT_TUBES];
 }
 
 enum {
@@ -88,6 +112,7 @@ enum {
     CLUTTER = 1 << MRT_CONSTANT_CLUTTER,
     SIGHT = 1 << MRT_CONSTANT_SIGHT,
     OUTDOORS = 1 << MRT_CONSTANT_OUTDOORS,
+    COLUMNS = 7 << MRT_CONSTANT_ROW_COLUMNS,
     VECTOR = 1 << MRT_CONSTANT_ROW_VECTOR,
     ALL = HALF | QUADS_B | QUADS_R | CLUTTER,
 };
@@ -95,7 +120,17 @@ enum {
 static bool make_pipelines(struct mrt_runtime *runtime)
 {
     struct mrt_runtime_pipelines *p = &runtime->pipelines;
-    const bool vector = runtime->options.vector;
+    const bool vector = runtime->options.vector, lists = runtime->has_lists,
+               specular = runtime->options.specular;
+    const uint32_t at_pixels =
+        (vector ? VECTOR : VALUES) | PROBES | AFFINE | TUBES | SIGHT | OUTDOORS;
+    const struct gpu_shader *apply = specular ? &shader_mrt_gpu_pixels_apply_specular_comp
+                                              : &shader_mrt_gpu_pixels_apply_diffuse_comp;
+    const struct gpu_shader *amid = specular ? &shader_mrt_gpu_pixels_listed_amid_specular_comp
+                                             : &shader_mrt_gpu_pixels_listed_amid_diffuse_comp;
+    const struct gpu_shader *several = specular
+                                           ? &shader_mrt_gpu_pixels_listed_several_specular_comp
+                                           : &shader_mrt_gpu_pixels_listed_several_diffuse_comp;
     const struct {
         gpu_pipeline *out;
         const char *name;
@@ -108,10 +143,10 @@ static bool make_pipelines(struct mrt_runtime *runtime)
         { &p->couple, "couple", &shader_mrt_gpu_couple_comp, HALF | QUADS_B | QUADS_R },
         { &p->reconstruct, "reconstruct", &shader_mrt_gpu_reconstruct_comp, ALL | VALUES },
         { &p->fill, "fill", &shader_mrt_gpu_fill_comp, VALUES },
-        { &p->apply, "apply",
-          runtime->options.specular ? &shader_mrt_gpu_apply_specular_comp
-                                    : &shader_mrt_gpu_apply_diffuse_comp,
-          (vector ? VECTOR : VALUES) | PROBES | AFFINE | TUBES | SIGHT | OUTDOORS },
+        { &p->apply, "apply", apply, at_pixels | COLUMNS },
+        { &p->amid, "amid", lists ? amid : NULL, at_pixels },
+        { &p->several, "several", lists ? several : NULL, at_pixels },
+        { &p->rows, "rows", &shader_mrt_gpu_pixels_rows_comp, 0 },
         { &p->debug, "debug", &shader_mrt_gpu_debug_comp, AFFINE | TUBES },
         { &p->reconstruct_vector, "reconstruct_vector",
           vector ? &shader_mrt_gpu_reconstruct_comp : NULL, ALL | VECTOR },
@@ -137,7 +172,9 @@ bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gp
                       const struct mrt_runtime_input *input,
                       const struct mrt_runtime_options *options)
 {
-    *out = (struct mrt_runtime){ .host = host, .gpu = gpu, .options = *options };
+    *out = (struct mrt_runtime){
+        .host = host, .gpu = gpu, .options = *options, .columns = light_map_columns_for(gpu)
+    };
     return make_all(out, input);
 }
 
@@ -145,7 +182,9 @@ bool mrt_runtime_plan(struct mrt_runtime *out, struct mrt_plan *plan,
                       const struct mrt_runtime_input *input,
                       const struct mrt_runtime_options *options)
 {
-    *out = (struct mrt_runtime){ .host = plan->host, .plan = plan, .options = *options };
+    *out = (struct mrt_runtime){
+        .host = plan->host, .plan = plan, .options = *options, .columns = plan->columns
+    };
     const bool ok = make_all(out, input);
     out->plan = NULL;
     return ok;
@@ -221,7 +260,8 @@ uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
     // A tile for each wall, RGBA16F; three layers of irradiance by normal.
     const uint64_t map = s.walls * (n + 2) * (n + 2) * 8;
     const uint64_t cells = MRT_LOOKUP_CELLS * MRT_LOOKUP_CELLS * MRT_LOOKUP_CELLS;
-    return cells * 3 * sizeof(uint32_t) +
+    return cells * 3 * sizeof(uint32_t) + light_map_table_bytes(cells, 16) +
+           light_map_table_bytes(MRT_BLOCK_ROWS, 16) +
            s.texels * (sizeof(struct mrt_texel) + (2 + s.values) * VEC3_BYTES) +
            s.walls * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
            s.texels * s.k_b * s.number * (1 + s.values) + 3 * s.k_b * s.k_b * sizeof(float) +

@@ -4,6 +4,7 @@
 
 #include "frame/frame.h"
 
+#include "techniques/common/light_map/columns.h"
 #include "techniques/common/light_map/surface.h"
 #include "techniques/mrt/objects/clutter.h"
 #include "techniques/mrt/light/area_light.h"
@@ -37,7 +38,8 @@ struct mrt_runtime_pipelines {
     gpu_pipeline reflectors, reflectors_bounce, direct, project, bounce, couple;
     gpu_pipeline reconstruct, reconstruct_vector;
     gpu_pipeline fill, fill_vector;
-    gpu_pipeline apply, debug;
+    gpu_pipeline rows, apply, debug;
+    gpu_pipeline amid, several; // of the lists of `apply`
 };
 
 // Volume probes; without them `bricks` is 1×1×1.
@@ -91,6 +93,10 @@ struct mrt_runtime {
     const char *buffer_names[MRT_MAX_BUFFERS];
     int buffer_count;
     gpu_image light_map, vector_map; // vector_map: 1×1 without `vector`
+    gpu_image block_rows, cell_rows; // of rows.glsl
+    bool has_rows;                   // they are filled
+    struct light_map_columns columns;
+    bool has_lists; // `apply` leaves pixels to lists: blocks are affine cubes
     struct mrt_runtime_pipelines pipelines;
     struct mrt_runtime_probes probes;
     struct mrt_runtime_outdoors outdoors;
@@ -150,8 +156,18 @@ void mrt_record_probes(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 // Outdoor probes, of this frame's sky.
 void mrt_record_outdoors(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                          const struct frame_view *view);
+// Lists of the pixels of a view (mrt_list_header): those that probes light, those that several
+// lookups do.
+struct mrt_pixel_lists {
+    gpu_buffer amid, several;
+};
+static inline size_t mrt_list_bytes(uint32_t width, uint32_t height)
+{
+    return sizeof(struct mrt_list_header) + (size_t)width * height * sizeof(uint32_t);
+}
 // Irradiance of each pixel, and specular light.
 void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
-                      const struct frame_view *view, float gain);
+                      const struct frame_view *view, const struct mrt_pixel_lists *lists,
+                      float gain);
 void mrt_record_debug(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                       const struct frame_view *view, uint32_t debug_view, gpu_image out);

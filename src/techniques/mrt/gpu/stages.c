@@ -1,6 +1,8 @@
 // The passes of a frame.
 #include "techniques/mrt/gpu/upload.h"
 
+#include <stddef.h>
+
 void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                        const struct frame_view *view, bool emitters)
 {
@@ -156,26 +158,84 @@ void mrt_record_outdoors(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     gpu_scope_end(cmd);
 }
 
-void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
-                      const struct frame_view *view, float gain)
+static void record_rows(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
+    const struct mrt_level_params *level = &runtime->level;
+    const struct mrt_rows_push push = {
+        runtime->block_count, (uint32_t)(level->cells_x * level->cells_y * level->cells_z)
+    };
+    if (runtime->has_rows) return;
+    runtime->has_rows = true;
+    gpu_scope_begin(cmd, "rows");
+    mrt_dispatch(runtime, cmd, runtime->pipelines.rows,
+                 GPU_BIND({ .name = "block_rows", .image = runtime->block_rows },
+                          { .name = "cell_rows", .image = runtime->cell_rows }),
+                 &push, sizeof push, gpu_groups(push.blocks + push.cells, MRT_LOCAL), 1, 1);
+    gpu_scope_end(cmd);
+}
+
+static void clear_list(struct gpu_cmd *cmd, gpu_buffer list)
+{
+    const size_t ones = offsetof(struct mrt_list_header, groups[1]);
+    gpu_fill_buffer(cmd, list, 0, ones, 0);
+    gpu_fill_buffer(cmd, list, ones, sizeof(struct mrt_list_header) - ones, 1);
+}
+
+// Bindings of the passes over pixels.
+#define PIXEL_BINDINGS(runtime, view)                                                              \
+    FRAME_SURFACE_BINDINGS(view),                                                                  \
+        { .name = "light_map", .image = (runtime)->light_map, .sampler = (runtime)->linear },      \
+        { .name = "vector_map", .image = (runtime)->vector_map, .sampler = (runtime)->linear },    \
+        { .name = "bricks", .image = (runtime)->probes.bricks, .sampler = (runtime)->linear },     \
+        { .name = "outdoors", .image = (runtime)->outdoors.image, .sampler = (runtime)->linear },  \
+        { .name = "block_rows", .image = (runtime)->block_rows },                                  \
+        { .name = "cell_rows", .image = (runtime)->cell_rows },                                    \
+        { .name = "irradiance", .image = (view)->layers[FRAME_IRRADIANCE] },                       \
+    {                                                                                              \
+        .name = "specular", .image = (view)->layers[FRAME_SPECULAR]                                \
+    }
+
+static void record_pixels(const struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                          const struct frame_view *view, const struct mrt_pixel_lists *lists,
+                          struct mrt_apply_push push)
+{
+    const struct light_map_columns *columns = &runtime->columns;
+    mrt_dispatch(runtime, cmd, runtime->pipelines.apply,
+                 GPU_BIND(PIXEL_BINDINGS(runtime, view),
+                          { .name = "amid_list", .buffer = lists->amid },
+                          { .name = "several_list", .buffer = lists->several }),
+                 &push, sizeof push, gpu_groups(view->width, columns->width),
+                 gpu_groups(view->height, columns->height * columns->rows), 1);
+}
+
+static void record_list(const struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                        const struct frame_view *view, gpu_pipeline pipeline, gpu_buffer list)
+{
+    mrt_dispatch_indirect(
+        runtime, cmd, pipeline,
+        GPU_BIND(PIXEL_BINDINGS(runtime, view), { .name = "pixel_list", .buffer = list }), list,
+        offsetof(struct mrt_list_header, groups));
+}
+
+void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                      const struct frame_view *view, const struct mrt_pixel_lists *lists,
+                      float gain)
+{
+    const struct mrt_runtime_pipelines *p = &runtime->pipelines;
     runtime->level.gain = gain;
     runtime->level.has_dielectric = view->layers[FRAME_DIELECTRIC].id != 0;
+    record_rows(runtime, cmd);
     gpu_scope_begin(cmd, "apply");
+    light_map_clear_pixels(cmd, view);
+    clear_list(cmd, lists->amid);
+    clear_list(cmd, lists->several);
     const bool clutter_is_lit = mrt_record_clutter_pixels(runtime, cmd, view);
-    const struct mrt_apply_push push = { clutter_is_lit ? (int32_t)view->width : 0 };
-    mrt_dispatch(
-        runtime, cmd, runtime->pipelines.apply,
-        GPU_BIND(
-            FRAME_SURFACE_BINDINGS(view),
-            { .name = "light_map", .image = runtime->light_map, .sampler = runtime->linear },
-            { .name = "vector_map", .image = runtime->vector_map, .sampler = runtime->linear },
-            { .name = "bricks", .image = runtime->probes.bricks, .sampler = runtime->linear },
-            { .name = "outdoors", .image = runtime->outdoors.image, .sampler = runtime->linear },
-            { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] },
-            { .name = "specular", .image = view->layers[FRAME_SPECULAR] }),
-        &push, sizeof push, gpu_groups(view->width, MRT_LOCAL_2D),
-        gpu_groups(view->height, MRT_LOCAL_2D), 1);
+    record_pixels(runtime, cmd, view, lists,
+                  (struct mrt_apply_push){ clutter_is_lit ? (int32_t)view->width : 0 });
+    if (runtime->has_lists) {
+        record_list(runtime, cmd, view, p->amid, lists->amid);
+        record_list(runtime, cmd, view, p->several, lists->several);
+    }
     gpu_scope_end(cmd);
 }
 

@@ -20,7 +20,11 @@ bool mrt_table_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inpu
 bool mrt_image_of(struct mrt_runtime *runtime, const struct gpu_image_desc *desc, gpu_image *out);
 bool mrt_sampler_of(struct mrt_runtime *runtime, const char *name, gpu_sampler *out);
 // Rows of runtime->objects.constants: those of MRT_CONSTANT_…, and these.
-enum { MRT_CONSTANT_ROW_VECTOR = MRT_CONSTANT_OUTDOORS + 1, MRT_CONSTANT_ROW_BACKS };
+enum {
+    MRT_CONSTANT_ROW_VECTOR = MRT_CONSTANT_OUTDOORS + 1,
+    MRT_CONSTANT_ROW_BACKS,
+    MRT_CONSTANT_ROW_COLUMNS, // three: LIGHT_MAP_APPLY_WIDTH, _HEIGHT, _ROWS
+};
 // constants: bits of these rows.
 bool mrt_pipeline_of(struct mrt_runtime *runtime, const char *name, const struct gpu_shader *shader,
                      uint32_t constants, gpu_pipeline *out);
@@ -30,11 +34,16 @@ void mrt_dispatch(const struct mrt_runtime *runtime, struct gpu_cmd *cmd, gpu_pi
                   const struct gpu_binding *bindings, int binding_count, const void *push,
                   size_t push_bytes, uint32_t groups_x, uint32_t groups_y, uint32_t groups_z);
 #define MRT_NO_BINDINGS NULL, 0
+// gpu_dispatch_indirect with the same, without push constants.
+void mrt_dispatch_indirect(const struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                           gpu_pipeline pipeline, const struct gpu_binding *bindings,
+                           int binding_count, gpu_buffer arguments, size_t offset);
 
 struct mrt_plan {
     struct host *host;
-    char *data[GPU_MAX_OBJECTS]; // content of runtime->objects; NULL: zeros
-    int item;                    // the next byte that mrt_plan_record copies
+    struct light_map_columns columns; // of the device
+    char *data[GPU_MAX_OBJECTS];      // content of runtime->objects; NULL: zeros
+    int item;                         // the next byte that mrt_plan_record copies
     size_t offset;
 };
 

@@ -15,7 +15,7 @@
 #define LIGHT_MAP_MOVES_BINDING     4
 #include "techniques/common/light_map/surface.glsl"
 #include "techniques/mrt/gpu/level.glsl"
-#include "techniques/mrt/gpu/lobe.glsl"
+#include "techniques/mrt/gpu/pixels/lobe.glsl"
 
 layout(local_size_x = MRT_LOCAL_2D, local_size_y = MRT_LOCAL_2D) in;
 
@@ -30,7 +30,7 @@ layout(push_constant, scalar) uniform push_block
 layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D irradiance;
 
 #if SPECULAR
-#include "techniques/mrt/gpu/reflected.glsl"
+#include "techniques/mrt/gpu/pixels/reflected.glsl"
 #endif
 
 // The vector irradiance is that along the surface.
@@ -67,12 +67,13 @@ bool find_light(ivec2 pixel, out vec3 irradiance)
     return true;
 }
 
-// Alpha is 0 where apply.comp has to find the light.
+// Alpha is 0 where apply.comp has to find the light of a surface.
 void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
     vec3 light = vec3(0.0);
     bool found = find_light(pixel, light);
-    imageStore(irradiance, pixel, vec4(min(light, vec3(HALF_MAX)), found ? 1.0 : 0.0));
+    bool done = found || texelFetch(depth, pixel, 0).r <= 0.0;
+    imageStore(irradiance, pixel, vec4(min(light, vec3(HALF_MAX)), done ? 1.0 : 0.0));
 }

@@ -16,9 +16,15 @@ const vec2 MRT_WALL_COSINE = vec2(0.35, 0.65);
 // Normals in the half floats of the frame differ this little from the wall's.
 const float MRT_ALONG_WALL = 1.0 - 1e-6;
 
-vec3 light_map_uv(int tile, vec2 st)
+// The first texel of a tile.
+vec2 first_of(int tile)
 {
-    vec2 at = vec2(tile_table[tile].x, tile_table[tile].y) + st * float(level.resolution);
+    return vec2(tile_table[tile].x, tile_table[tile].y);
+}
+
+vec3 light_map_uv(vec2 first, vec2 st)
+{
+    vec2 at = first + st * float(level.resolution);
     return vec3(at / vec2(level.map_width, level.map_height), 0.0);
 }
 
@@ -36,9 +42,9 @@ void change_by_normal(vec3 uv, vec3 normal, inout light_map_light light)
 
 // Reduced bases leave small negative values beside bright texels. Up to here light is linear.
 // `normal` and `along`, of mrt_lobe, are in the frame of struct mrt_point.
-mrt_light tile_light(int tile, vec2 st, vec3 normal, vec3 along)
+mrt_light tile_light(vec2 first, vec2 st, vec3 normal, vec3 along)
 {
-    vec3 uv = light_map_uv(tile, clamp(st, 0.0, 1.0));
+    vec3 uv = light_map_uv(first, clamp(st, 0.0, 1.0));
     light_map_light light = light_map_light(textureLod(light_map, uv, 0.0).rgb, mat3(0.0));
     if (VALUES == 4u && (SPECULAR == 1 || normal.z < MRT_ALONG_WALL))
         change_by_normal(uv, normal, light);
@@ -52,10 +58,10 @@ vec3 before_wall(mat3 frame, vec3 direction)
     return (direction * frame) * vec3(-1.0, 1.0, -1.0);
 }
 
-mrt_light wall_light(int tile, int face, vec3 cell, vec3 normal, vec3 along)
+mrt_light wall_light(vec2 first, int face, vec3 cell, vec3 normal, vec3 along)
 {
     mat3 frame = cube_from_face(face);
-    return tile_light(tile, 0.5 + vec2(dot(frame[0], cell), dot(frame[1], cell)),
+    return tile_light(first, 0.5 + vec2(dot(frame[0], cell), dot(frame[1], cell)),
                       before_wall(frame, normal), before_wall(frame, along));
 }
 
@@ -97,7 +103,7 @@ vec3 walls_irradiance(mrt_place place, vec3 direction)
         if (tile < 0) continue;
         vec3 inner = -cube_from_face(face)[2];
         float cosine = max(dot(inner, direction), 0.0), weight = cosine * cosine + MRT_LEAST_WEIGHT;
-        sum += weight * wall_light(tile, face, place.cell, inner, vec3(0.0)).irradiance;
+        sum += weight * wall_light(first_of(tile), face, place.cell, inner, vec3(0.0)).irradiance;
         weights += weight;
     }
     return weights > 0.0 ? sum / weights : vec3(0.0);
@@ -190,16 +196,16 @@ mrt_wall wall_beyond(vec3 world, vec3 normal, inout mrt_place place, inout vec3 
 mrt_light tube_light(mrt_place place, vec3 normal, mrt_lobe lobe)
 {
     mrt_tube_place at = tube_place(place.block, place.cell);
-    int tile = block_table[place.block].tile[0];
+    vec2 first = first_of(block_table[place.block].tile[0]);
     vec2 st = vec2(at.around, at.along);
     vec3 n = normal_in_cell(place, normal) * at.frame;
     float share = share_of_wall(MRT_TUBE_RADIUS - length(at.off), n.z);
     mrt_light on_wall = MRT_DARK, inside = MRT_DARK;
     if (share > 0.0)
-        on_wall = tile_light(tile, st, n, direction_in_cell(place, lobe.along) * at.frame);
+        on_wall = tile_light(first, st, n, direction_in_cell(place, lobe.along) * at.frame);
     if (share < 1.0)
         inside = PROBES ? bricks_light(place, normal, lobe)
-                        : tile_light(tile, st, vec3(0.0, 0.0, 1.0), vec3(0.0));
+                        : tile_light(first, st, vec3(0.0, 0.0, 1.0), vec3(0.0));
     return mix_light(inside, on_wall, share);
 }
 
@@ -211,8 +217,8 @@ mrt_light room_light(vec3 position, vec3 normal, mrt_lobe lobe, mrt_place place)
     if (wall.share == 0.0) wall = wall_beyond(position + level.offset_m * normal, normal, place, n);
     mrt_light on_wall = MRT_DARK, inside = MRT_DARK;
     if (wall.share > 0.0)
-        on_wall = wall_light(block_table[place.block].tile[wall.face], wall.face, place.cell, n,
-                             direction_in_cell(place, lobe.along));
+        on_wall = wall_light(first_of(block_table[place.block].tile[wall.face]), wall.face,
+                             place.cell, n, direction_in_cell(place, lobe.along));
     if (wall.share < 1.0)
         inside = PROBES ? bricks_light(place, normal, lobe) : walls_light(place, n, lobe);
     return mix_light(inside, on_wall, wall.share);

@@ -1,0 +1,70 @@
+// The tables of pixels' lookups (rows.glsl), from those of the level. Once for a level.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#define MRT_TILES_BINDING      2
+#define MRT_BLOCKS_BINDING     3
+#define MRT_CELLS_BINDING      4
+#define MRT_CANDIDATES_BINDING 5
+#include "techniques/common/light_map/table.glsl"
+#include "techniques/mrt/gpu/locate.glsl"
+
+layout(local_size_x = MRT_LOCAL) in;
+
+layout(push_constant, scalar) uniform push_block
+{
+    mrt_rows_push push;
+};
+layout(set = 0, binding = 6, rgba32ui) uniform writeonly uimage2D block_rows;
+layout(set = 0, binding = 7, rgba32ui) uniform writeonly uimage2D cell_rows;
+
+void store(uint block, uint row, uvec4 words)
+{
+    imageStore(block_rows, light_map_at(block * MRT_BLOCK_ROWS + row), words);
+}
+
+uint word_of_tile(int tile)
+{
+    return tile < 0 ? 0u : uint(tile_table[tile].y) << 16 | uint(tile_table[tile].x);
+}
+
+void store_block(uint block)
+{
+    uint words[8], masks = 0u;
+    for (uint a = 0u; a < 3u; a++) {
+        vec3 edge = block_table[block].corner[1u << a] - block_table[block].corner[0];
+        store(block, MRT_ROW_INVERSE + a,
+              uvec4(floatBitsToUint(block_table[block].inverse[a]),
+                    floatBitsToUint(block_table[block].middle[a])));
+        store(block, MRT_ROW_EDGES + a, uvec4(floatBitsToUint(edge), 0u));
+    }
+    for (uint f = 0u; f < 6u; f++) {
+        words[f] = word_of_tile(block_table[block].tile[f]);
+        if (block_table[block].tile[f] >= 0) masks |= 1u << f;
+        if (block_table[block].neighbor[f] >= 0) masks |= MRT_ROW_OPENING << f;
+    }
+    store(block, MRT_ROW_TILES, uvec4(words[0], words[1], words[2], words[3]));
+    store(block, MRT_ROW_TILES + 1u, uvec4(words[4], words[5], masks, 0u));
+}
+
+void store_cell(uint cell)
+{
+    uvec2 list = cell_table[cell];
+    uint last = max(list.y, 1u) - 1u;
+    uvec4 words = uvec4(list.y, 0u, 0u, 0u);
+    if (list.y > 0u) {
+        words.y = candidate_table[list.x];
+        words.z = candidate_table[list.x + min(1u, last)];
+    }
+    imageStore(cell_rows, light_map_at(cell), words);
+}
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i < push.blocks)
+        store_block(i);
+    else if (i - push.blocks < push.cells)
+        store_cell(i - push.blocks);
+}

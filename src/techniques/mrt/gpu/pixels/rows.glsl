@@ -1,0 +1,154 @@
+// Pixels whose light needs one lookup: on a wall, or amid a block. Their blocks are affine cubes,
+// found by tables in images, of which a driver on a processor loads 16 bytes at once.
+// Needs light_map.glsl; binding numbers MRT_BLOCK_ROWS_BINDING and MRT_CELL_ROWS_BINDING.
+#ifndef AG_MRT_ROWS_GLSL
+#define AG_MRT_ROWS_GLSL
+
+#include "techniques/common/light_map/table.glsl"
+
+// [block][MRT_BLOCK_ROWS]: rows of the warp's inverse, each with a component of the block's middle;
+// edges of the cell; the places of tiles in the light map by face, y above x, and two masks.
+layout(set = 0, binding = MRT_BLOCK_ROWS_BINDING, rgba32ui) uniform readonly uimage2D block_rows;
+// [cell of the lookup grid]: number of candidates and the first two of them.
+layout(set = 0, binding = MRT_CELL_ROWS_BINDING, rgba32ui) uniform readonly uimage2D cell_rows;
+
+struct mrt_rows {
+    uint block;
+    vec3 inverse[3];
+    vec3 cell;
+};
+
+uvec4 block_row(uint block, uint row)
+{
+    return imageLoad(block_rows, light_map_at(block * MRT_BLOCK_ROWS + row));
+}
+
+mrt_rows rows_of(uint block, vec3 world)
+{
+    mrt_rows rows;
+    vec3 middle;
+    rows.block = block;
+    for (uint a = 0u; a < 3u; a++) {
+        vec4 row = uintBitsToFloat(block_row(block, MRT_ROW_INVERSE + a));
+        rows.inverse[a] = row.xyz;
+        middle[a] = row.w;
+    }
+    for (int a = 0; a < 3; a++) rows.cell[a] = dot(rows.inverse[a], world - middle);
+    return rows;
+}
+
+// As `locate`, of the first two candidates. False: the point is in neither.
+bool find_rows(vec3 world, out mrt_rows rows)
+{
+    ivec3 cells = ivec3(level.cells_x, level.cells_y, level.cells_z);
+    vec3 at = (world - level.grid_origin_m) * level.cells_per_m;
+    ivec3 i = clamp(ivec3(at), ivec3(0), cells - 1);
+    uvec4 list = imageLoad(cell_rows, light_map_at(uint((i.z * cells.y + i.y) * cells.x + i.x)));
+    bool found = false;
+    uint next = list.y, left = 2u;
+    do {
+        rows = rows_of(next, world);
+        found = largest_of(rows.cell) <= 0.5;
+        next = list.z;
+        left--;
+    } while (!found && left > 0u);
+    return found && list.x > 0u && all(greaterThanEqual(at, vec3(0.0))) &&
+           all(lessThan(at, vec3(cells)));
+}
+
+// A place of a block, and the faces around it.
+struct mrt_around {
+    vec3 cell;
+    vec3 normal; // in the cell
+    uvec4 tiles[2];
+};
+
+bool has_wall(mrt_around around, int face)
+{
+    return (around.tiles[1].z & 1u << face) != 0u;
+}
+
+// One of the two faces of an axis.
+int face_of(int axis, bool high)
+{
+    return 2 * axis + (high ? 1 : 0);
+}
+
+// Whether way_to_wall finds none.
+bool faces_no_wall(mrt_rows rows, mrt_around around, vec3 normal)
+{
+    vec3 to;
+    for (int a = 0; a < 3; a++) to[a] = dot(rows.inverse[a], normal);
+    float least = MRT_AWAY_COSINE * length(to);
+    bool none = true;
+    for (int a = 0; a < 3; a++) {
+        bool high = to[a] > 0.0;
+        float distance = 0.5 - (high ? rows.cell[a] : -rows.cell[a]);
+        none = none && !(has_wall(around, face_of(a, high)) && distance <= MRT_WALL_DISTANCE[0] &&
+                         abs(to[a]) >= least);
+    }
+    return none;
+}
+
+// As wall_of: of two opposite walls the surface faces one.
+mrt_wall wall_around(mrt_around around)
+{
+    mrt_wall best = mrt_wall(-1, 0.0);
+    for (int a = 0; a < 3; a++) {
+        bool high = around.normal[a] < 0.0;
+        float distance = 0.5 - (high ? around.cell[a] : -around.cell[a]);
+        float share = share_of_wall(distance, abs(around.normal[a]));
+        if (share > best.share && has_wall(around, face_of(a, high)))
+            best = mrt_wall(face_of(a, high), share);
+    }
+    return best;
+}
+
+// Whether wall_beyond looks beyond no opening.
+bool is_beside_no_opening(mrt_around around)
+{
+    bool none = true;
+    for (int a = 0; a < 3; a++) {
+        bool opening =
+            (around.tiles[1].z & MRT_ROW_OPENING << face_of(a, around.cell[a] > 0.0)) != 0u;
+        none = none && !(opening && 0.5 - abs(around.cell[a]) <= MRT_WALL_DISTANCE.x &&
+                         abs(around.normal[a]) < MRT_WALL_COSINE.x);
+    }
+    return none;
+}
+
+const int MRT_OF_WALL = 0, MRT_OF_PROBES = 1, MRT_OF_SEVERAL = 2;
+
+// The kind of lookups that light a surface; `light` is that of a wall.
+int plain_light(vec3 position, vec3 normal, mrt_lobe lobe, out mrt_light light)
+{
+    mrt_rows rows;
+    bool found = find_rows(position + level.offset_m * normal, rows);
+    mat3 edges;
+    for (uint a = 0u; a < 3u; a++)
+        edges[a] = uintBitsToFloat(block_row(rows.block, MRT_ROW_EDGES + a).xyz);
+    mrt_around around;
+    around.cell = rows.cell;
+    around.normal = normalize(normal * edges);
+    around.tiles =
+        uvec4[2](block_row(rows.block, MRT_ROW_TILES), block_row(rows.block, MRT_ROW_TILES + 1u));
+    found = found && faces_no_wall(rows, around, normal);
+    mrt_wall wall = wall_around(around);
+    int face = max(wall.face, 0);
+    uint tile = face < 4 ? around.tiles[0][face & 3] : around.tiles[1][face & 3];
+    light = wall_light(vec2(tile & 0xffffu, tile >> 16), face, around.cell, around.normal,
+                       turned_by(edges, lobe.along));
+    if (found && wall.share == 1.0) return MRT_OF_WALL;
+    bool probes = PROBES && wall.share == 0.0 && is_beside_no_opening(around);
+    return found && probes ? MRT_OF_PROBES : MRT_OF_SEVERAL;
+}
+
+// Light of MRT_OF_PROBES.
+mrt_light amid_light(vec3 position, vec3 normal, mrt_lobe lobe)
+{
+    mrt_rows rows;
+    find_rows(position + level.offset_m * normal, rows);
+    return bricks_light(mrt_place(int(rows.block), rows.cell, 0.0), normal, lobe);
+}
+
+#endif
