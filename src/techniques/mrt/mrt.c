@@ -348,8 +348,8 @@ enum {
     .resolve = mrt_resolve_maze, .read_block_map = mrt_read_block_map, .bake = mrt_bake,           \
     .bake_report = mrt_bake_report, .load = mrt_load, .set_options = mrt_set_options,              \
     .invalidate = mrt_invalidate, .is_updating = mrt_is_updating, .update = mrt_update,            \
-    .record = mrt_record,                                                                          \
-    .debug_view = mrt_debug_view, .probes = mrt_probes, .destroy = mrt_destroy
+    .record = mrt_record, .debug_view = mrt_debug_view, .probes = mrt_probes,                      \
+    .destroy = mrt_destroy
 
 const struct technique technique_mrt = {
     MRT_TECHNIQUE("mrt", "modular radiance transfer",
