@@ -52,6 +52,14 @@ struct mrt_texel {
     float sky;     // irradiance of a sky of radiance 1/π
     vec3s emitted; // irradiance of emissive surfaces, lux
     AG_STRUCT(mrt_gpu_reflector_row) reflected;
+    vec3s emitted_vector[3], sky_vector; // of struct mrt_geometry_texel
+    uint32_t across;                     // of a wall: octahedral, two snorm values
+};
+
+// Light of emissive surfaces, the sky and reflectors at a texel: irradiance, and vector irradiance
+// along the first two axes of the frame of irradiance by normal.
+struct mrt_gpu_area_light {
+    vec3s irradiance, along[2];
 };
 
 // A wall of a block: `texels` texels from first_texel.
@@ -200,7 +208,8 @@ struct mrt_view_push {
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct mrt_gpu_reflector_row) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_reflector_share) == 12, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_texel) == 68, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_texel) == 120, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_area_light) == 36, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_tile) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_block) == 220, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_probe) == 152, "layout is shared with GLSL");

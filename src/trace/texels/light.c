@@ -85,6 +85,13 @@ static void add_emission(struct texel_lights *out, const struct trace_scene *sce
         texel_emission_columns(scene, r->emission, e->mesh, e->radiance, add_column, &sums);
 }
 
+static void add_uniform(struct texel_lights *out, const struct texel_receiver *r, vec3s direction,
+                        float pdf_light)
+{
+    const float density = texel_sample_density(r, direction, pdf_light);
+    for (int k = 0; k < 3; k++) out->uniform_vector[k] += direction.raw[k] / density;
+}
+
 static void add_sky(struct texel_lights *out, const struct texel_receiver *r, vec3s direction,
                     float cosine)
 {
@@ -112,10 +119,12 @@ void texel_gather(const struct trace_scene *scene, const struct texel_receiver *
         struct ray_hit hit;
         if (!embree_closest(scene->embree, &ray, NULL, false, &hit)) {
             add_sky(out, r, ray.direction, local.z);
+            add_uniform(out, r, ray.direction, 0.0f);
             if (visitor->miss) visitor->miss(visitor->user, ray.direction);
             continue;
         }
         const struct texel_hit at_hit = texel_hit_at(scene, &ray, &hit);
+        add_uniform(out, r, ray.direction, at_hit.pdf);
         if (glms_vec3_max(at_hit.emission) > 0.0f)
             add_emission(
                 out, scene, r,
@@ -125,9 +134,11 @@ void texel_gather(const struct trace_scene *scene, const struct texel_receiver *
     for (uint32_t k = 0; k < (uint32_t)r->light_samples; k++) {
         struct emitter_sample s;
         if (texel_sample_emitter(scene, r->position, &r->normal, k, (uint32_t)r->light_samples,
-                                 r->seed + r->first, &s))
+                                 r->seed + r->first, &s)) {
+            add_uniform(out, r, s.to_light, s.pdf);
             add_emission(out, scene, r,
                          &(struct seen_emitter){ s.mesh, s.to_light, s.radiance, s.pdf });
+        }
     }
 }
 

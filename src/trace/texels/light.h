@@ -53,6 +53,9 @@ struct texel_lights {
     struct texel_light emitted[3];          // by colour, lux
     // By columns, for a radiance of 1; with texel_receiver.emission.
     struct texel_light columns[EMISSION_COLUMNS];
+    // The vector irradiance of radiance 1 from everywhere, by the same samples: along the surface
+    // it is their error, of which light that is nearly uniform has the same share.
+    float uniform_vector[3];
 };
 
 // Calls `add` with the columns of emission of a mesh's material, and the radiance of each.

@@ -141,21 +141,50 @@ TEST_GPU(mrt_lobes_reflect_uniform_light_by_their_albedo)
 
 // ---- light from one side
 
-// Radiance that a metal floor reflects to a camera at x, from light that bounces at the wall −x.
-static double seen_from(struct gpu *gpu, const char *options, float roughness, float x)
+enum side_light { BOUNCE, PANEL, SKY };
+
+// At the wall −x: light that bounces, an emissive panel, or the sky in its place.
+static void light_side(struct frame_fixture *s, enum side_light light)
+{
+    if (light == BOUNCE)
+        fixture_add_spot(s, vec3_of(0, 1.5f, 0), vec3_of(-1, 0, 0), 0.4f, 0.6f,
+                         vec3_of(100, 100, 100));
+    if (light == PANEL)
+        fixture_quad(s, vec3_of(-1.98f, 0.5f, 1), vec3_of(-1.98f, 0.5f, -1), vec3_of(-1.98f, 2, -1),
+                     vec3_of(-1.98f, 2, 1), fixture_emissive(s, 0, 100));
+    if (light == SKY) s->input.environment.sky = vec3_of(100, 100, 100);
+}
+
+// Without the wall −x.
+static void add_open_room(struct frame_fixture *s)
+{
+    const int grey = fixture_matte(s, vec3_of(0.5f, 0.5f, 0.5f));
+    const struct box3 walls[] = { { vec3_of(-2, -0.1f, -2), vec3_of(2.1f, 0, 2) },
+                                  { vec3_of(-2, 3, -2), vec3_of(2.1f, 3.1f, 2) },
+                                  { vec3_of(2, 0, -2), vec3_of(2.1f, 3, 2) },
+                                  { vec3_of(-2, -0.1f, -2.1f), vec3_of(2.1f, 3.1f, -2) },
+                                  { vec3_of(-2, -0.1f, 2), vec3_of(2.1f, 3.1f, 2.1f) } };
+    for (int i = 0; i < 5; i++) fixture_box(s, walls[i].min, walls[i].max, false, grey);
+}
+
+// Radiance that a metal floor reflects to a camera at x, from light at the wall −x.
+static double seen_from(struct gpu *gpu, enum side_light light, const char *options,
+                        float roughness, float x)
 {
     struct frame_fixture s;
     char text[TEXT];
     struct material metal = furnace_material(vec3_of(1, 1, 1), 1, roughness);
     metal.emissive = vec3_of(0, 0, 0);
     fixture_init(&s, gpu);
-    fixture_box(&s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true,
-                fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
+    if (light == SKY)
+        add_open_room(&s);
+    else
+        fixture_box(&s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true,
+                    fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
     fixture_quad(&s, vec3_of(-1.99f, 0.01f, 1.99f), vec3_of(1.99f, 0.01f, 1.99f),
                  vec3_of(1.99f, 0.01f, -1.99f), vec3_of(-1.99f, 0.01f, -1.99f),
                  fixture_material(&s, &metal));
-    fixture_add_spot(&s, vec3_of(0, 1.5f, 0), vec3_of(-1, 0, 0), 0.4f, 0.6f,
-                     vec3_of(100, 100, 100));
+    light_side(&s, light);
     fixture_look(&s, vec3_of(x, 1, 0), vec3_of(0, 0.01f, 0));
     snprintf(text, sizeof text, "mrt" DICTIONARY "%s", options);
     fixture_open(&s);
@@ -171,12 +200,25 @@ static double seen_from(struct gpu *gpu, const char *options, float roughness, f
 // without it.
 TEST_GPU(mrt_lobes_reflect_the_side_that_light_comes_from)
 {
-    const double towards = seen_from(gpu, "", 0.4f, 1), away = seen_from(gpu, "", 0.4f, -1);
+    const double towards = seen_from(gpu, BOUNCE, "", 0.4f, 1),
+                 away = seen_from(gpu, BOUNCE, "", 0.4f, -1);
     print_message("towards the lit wall %.2f cd/m2, away from it %.2f\n", towards, away);
     CHECK(towards > 1.5 * away && away > 0.0);
-    const double mean = seen_from(gpu, ",vector=false", 0.4f, 1);
-    CHECK_RELATIVE(mean, seen_from(gpu, ",vector=false", 0.4f, -1), 0.02);
+    const double mean = seen_from(gpu, BOUNCE, ",vector=false", 0.4f, 1);
+    CHECK_RELATIVE(mean, seen_from(gpu, BOUNCE, ",vector=false", 0.4f, -1), 0.02);
     CHECK(mean > away && mean < towards);
-    CHECK_RELATIVE(seen_from(gpu, "", 0, 1), seen_from(gpu, "", 0, -1), 0.02);
-    CHECK(seen_from(gpu, ",specular=false", 0.4f, 1) == 0.0);
+    CHECK_RELATIVE(seen_from(gpu, BOUNCE, "", 0, 1), seen_from(gpu, BOUNCE, "", 0, -1), 0.02);
+    CHECK(seen_from(gpu, BOUNCE, ",specular=false", 0.4f, 1) == 0.0);
+}
+
+// Light that texels receive straight has a direction, too.
+TEST_GPU(mrt_lobes_reflect_the_side_of_emitters_and_the_sky)
+{
+    for (enum side_light light = PANEL; light <= SKY; light++) {
+        const double towards = seen_from(gpu, light, "", 0.4f, 1),
+                     away = seen_from(gpu, light, "", 0.4f, -1);
+        print_message("%s: towards it %.2f cd/m2, away from it %.2f\n",
+                      light == SKY ? "sky" : "panel", towards, away);
+        CHECK(towards > 1.5 * away && away > 0.0);
+    }
 }

@@ -6,6 +6,7 @@
 
 #define MRT_TILES_BINDING 2
 #include "core/half.glsl"
+#include "core/sh.glsl"
 #include "techniques/mrt/gpu/level.glsl"
 
 layout(local_size_x = MRT_LOCAL) in;
@@ -22,7 +23,7 @@ layout(set = 0, binding = 4, scalar) readonly buffer mrt_irradiance
 };
 layout(set = 0, binding = 6, scalar) readonly buffer mrt_area_light
 {
-    vec3 area_light_table[]; // [texel]
+    mrt_gpu_area_light area_light_table[]; // [texel]
 };
 // VALUES 1: one layer of RGB. VALUES 4: a layer for each of red, green, blue, with four values.
 layout(set = 0, binding = 5, rgba16f) writeonly uniform image2DArray light_map;
@@ -39,10 +40,24 @@ void store(ivec2 at, vec3 values[4])
     }
 }
 
+// By normal: the slopes of the fit that vector_of_fit (lobe.glsl) takes for its vector irradiance.
+// Along the wall's normal that of uniform light, half of its irradiance. Its constant is that of
+// the other layer.
+void add_area_light(mrt_gpu_area_light light, float weight, inout vec3 sum[4])
+{
+    if (VALUES == 1u) {
+        sum[0] += weight * light.irradiance;
+    } else {
+        sum[1] += weight / (MRT_VECTOR_OF_SLOPE * SH_Y1) * light.along[1];
+        sum[2] += weight / (2.0 * SH_Y1) * light.irradiance;
+        sum[3] += weight / (MRT_VECTOR_OF_SLOPE * SH_Y1) * light.along[0];
+    }
+}
+
 void add(uint texel, float weight, inout vec3 sum[4])
 {
     for (uint v = 0u; v < VALUES; v++) sum[v] += weight * irradiance_table[texel * VALUES + v];
-    if (VALUES == 1u) sum[0] += weight * area_light_table[texel];
+    add_area_light(area_light_table[texel], weight, sum);
 }
 
 void main()

@@ -26,6 +26,18 @@ vec3 reflected_irradiance(mrt_gpu_reflector_row row)
     return sum;
 }
 
+// Vector irradiance at a texel, a column for each colour.
+void add_reflected_vector(mrt_gpu_reflector_row row, vec3 normal, inout mat3 vector)
+{
+    const float LEAST_COSINE = 1e-3; // of rays of texels
+    for (uint k = row.first; k < row.first + row.count; k++) {
+        mrt_gpu_reflector_share share = reflector_share_table[k];
+        vec3 way = octahedral_decode(unpackSnorm2x16(share.direction));
+        way *= share.weight / max(dot(way, normal), LEAST_COSINE);
+        vector += outerProduct(way, reflector_light_table[share.reflector]);
+    }
+}
+
 // Irradiance by normal at a point.
 void add_reflected(mrt_gpu_reflector_row row, inout vec3 coefficients[9])
 {

@@ -16,7 +16,8 @@ static bool make_buffers(struct mrt_runtime *runtime, const struct mrt_operators
 {
     const size_t light = (size_t)runtime->level.texels * VEC3_BYTES;
     const size_t quad = 3 * 4 * sizeof(float), all_b = runtime->block_count * mrt_quads(o->k_b);
-    return mrt_buffer_of(runtime, "mrt_area_light", NULL, light) &&
+    return mrt_buffer_of(runtime, "mrt_area_light", NULL,
+                         runtime->level.texels * sizeof(struct mrt_gpu_area_light)) &&
            mrt_buffer_of(runtime, "mrt_direct", NULL, light) &&
            mrt_buffer_of(runtime, "mrt_b_direct", NULL, all_b * quad) &&
            mrt_buffer_of(runtime, "mrt_b", NULL, all_b * quad) &&
@@ -262,7 +263,8 @@ uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
     const uint64_t cells = MRT_LOOKUP_CELLS * MRT_LOOKUP_CELLS * MRT_LOOKUP_CELLS;
     return cells * 3 * sizeof(uint32_t) + light_map_table_bytes(cells, 16) +
            light_map_table_bytes(MRT_BLOCK_ROWS, 16) +
-           s.texels * (sizeof(struct mrt_texel) + (2 + s.values) * VEC3_BYTES) +
+           s.texels * (sizeof(struct mrt_texel) + sizeof(struct mrt_gpu_area_light) +
+                       (1 + s.values) * VEC3_BYTES) +
            s.walls * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
            s.texels * s.k_b * s.number * (1 + s.values) + 3 * s.k_b * s.k_b * sizeof(float) +
            MRT_RESPONSES * s.texels * s.k_r * s.number * s.values +

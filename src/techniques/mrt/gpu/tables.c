@@ -1,6 +1,8 @@
 // Tables of texels, tiles, blocks, openings and borders.
 #include "techniques/mrt/gpu/upload.h"
 
+#include "frame/octahedral.h"
+
 #include <string.h>
 
 static uint32_t texels_of_tile(const struct mrt_runtime_input *input)
@@ -8,18 +10,32 @@ static uint32_t texels_of_tile(const struct mrt_runtime_input *input)
     return (uint32_t)(input->atlas->resolution * input->atlas->resolution);
 }
 
+static uint32_t packed(vec3s across)
+{
+    return glms_vec3_norm2(across) > 0.0f ? octahedral_pack(across) : 0;
+}
+
+static struct mrt_texel texel_of(const struct mrt_geometry_texel *from)
+{
+    return (struct mrt_texel){
+        .position = from->position,
+        .area_m2 = from->area_m2,
+        .normal = from->normal,
+        .found = from->found,
+        .reflectance = from->reflectance,
+        .sky = from->sky,
+        .emitted = from->emitted,
+        .reflected = { from->reflected.first, from->reflected.count },
+        .emitted_vector = { from->emitted_vector[0], from->emitted_vector[1],
+                            from->emitted_vector[2] },
+        .sky_vector = from->sky_vector,
+        .across = packed(from->across),
+    };
+}
+
 void mrt_fill_texels(const struct mrt_geometry_texel *from, size_t count, struct mrt_texel *out)
 {
-    for (size_t i = 0; i < count; i++)
-        out[i] =
-            (struct mrt_texel){ .position = from[i].position,
-                                .area_m2 = from[i].area_m2,
-                                .normal = from[i].normal,
-                                .found = from[i].found,
-                                .reflectance = from[i].reflectance,
-                                .sky = from[i].sky,
-                                .emitted = from[i].emitted,
-                                .reflected = { from[i].reflected.first, from[i].reflected.count } };
+    for (size_t i = 0; i < count; i++) out[i] = texel_of(&from[i]);
 }
 
 static void fill_texels(const struct mrt_runtime_input *input, void *items)

@@ -57,6 +57,7 @@ static enum sight look_at_wall(const struct geometry_job *job, const struct mrt_
             .emission = hit.emission,
             .found = true,
         };
+    out->across = mrt_wall_across(block, tile->face, s, t);
     out->area_m2 = mrt_wall_area(block, tile->face, s, t) / (float)(n * n);
     if (solid) return SIGHT_BACK;
     return !found ? SIGHT_NONE : hit.front ? SIGHT_FRONT : SIGHT_BACK;
@@ -87,9 +88,10 @@ static void trace_tile(void *user, size_t i)
     for (int k = 0; k < n * n; k++) sight[k] = look_at_wall(job, tile, k, &texels[k]);
     for (int k = 0; k < n * n; k++) {
         const int from = sight[k] == SIGHT_BACK ? nearest_front(sight, n, k) : -1;
-        const float area_m2 = texels[k].area_m2;
+        const struct mrt_geometry_texel own = texels[k];
         if (from >= 0) texels[k] = texels[from];
-        texels[k].area_m2 = area_m2;
+        texels[k].area_m2 = own.area_m2;
+        texels[k].across = own.across;
     }
 }
 

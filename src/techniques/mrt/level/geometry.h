@@ -20,6 +20,10 @@ struct mrt_geometry_texel {
     float area_m2;     // of the wall, or of the surface of clutter
     vec3s emitted;     // irradiance of emissive surfaces, lux (area_light.h)
     float sky;         // irradiance of a sky of radiance 1/π
+    // Integrals of that light's radiance times direction along the surface, world: of emissive
+    // surfaces by colour, of the sky. Parts along the normal mean nothing.
+    vec3s emitted_vector[3], sky_vector;
+    vec3s across; // of walls, unit: the first axis of the frame of irradiance by normal
     struct mrt_reflector_row reflected;
 };
 

@@ -67,3 +67,10 @@ vec3s mrt_wall_normal(const struct mrt_block *block, int face, float s, float t)
 {
     return glms_vec3_negate(vec3_unit(wall_cross(block, face, s, t)));
 }
+
+vec3s mrt_wall_across(const struct mrt_block *block, int face, float s, float t)
+{
+    const struct mrt_wall_place at = mrt_wall_place(block, face, s, t);
+    const vec3s along = mrt_block_is_tube(block) ? at.by_t : glms_vec3_negate(at.by_s);
+    return vec3_unit(glms_mat3_mulv(mrt_warp_jacobian(block->corner, at.position), along));
+}

@@ -40,6 +40,8 @@ vec3s mrt_block_middle(const struct mrt_block *block);
 float mrt_wall_area(const struct mrt_block *block, int face, float s, float t);
 // Towards the inside, in the scene; unit.
 vec3s mrt_wall_normal(const struct mrt_block *block, int face, float s, float t);
+// The first axis of the frame of mrt_point, in the scene; unit.
+vec3s mrt_wall_across(const struct mrt_block *block, int face, float s, float t);
 
 // Responses to light that enters by an opening are the same for all blocks of a level whose shape
 // and opening are equal: for a cube by its face, for a tube by its bend and its end.

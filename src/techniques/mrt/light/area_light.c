@@ -35,6 +35,16 @@ static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit
     mrt_reflectors_add_hit(view->hits, view->scene, ray, hit, at_hit);
 }
 
+// Less what uniform light of its irradiance would have: a control variate, whose part along the
+// surface is 0 in the mean.
+static vec3s vector_of(const struct texel_light *light, const float uniform[3])
+{
+    const float radiance = light->irradiance / GLM_PIf;
+    vec3s vector;
+    for (int k = 0; k < 3; k++) vector.raw[k] = light->vector[k] - radiance * uniform[k];
+    return vector;
+}
+
 static void gather(void *user, size_t i, struct mrt_reflector_hits *hits)
 {
     const struct job *job = user;
@@ -52,7 +62,11 @@ static void gather(void *user, size_t i, struct mrt_reflector_hits *hits)
     };
     texel_gather_light(job->scene, &receiver, add_hit, &view, &light);
     at->sky = light.sky.irradiance / GLM_PIf;
-    for (int c = 0; c < 3; c++) at->emitted.raw[c] = light.emitted[c].irradiance;
+    at->sky_vector = glms_vec3_divs(vector_of(&light.sky, light.uniform_vector), GLM_PIf);
+    for (int c = 0; c < 3; c++) {
+        at->emitted.raw[c] = light.emitted[c].irradiance;
+        at->emitted_vector[c] = vector_of(&light.emitted[c], light.uniform_vector);
+    }
 }
 
 static struct mrt_reflector_row *row_of(void *user, size_t i)
