@@ -103,13 +103,6 @@ void mrt_reflectors_finish(struct mrt_reflectors *r)
     *r = (struct mrt_reflectors){ 0 };
 }
 
-static bool grow(struct host *host, void *array, uint32_t room, size_t size)
-{
-    void **at = array, *more = host_realloc(host, *at, room, size);
-    if (more) *at = more;
-    return more;
-}
-
 static uint32_t slot_of(const struct mrt_reflectors *r, uint64_t key)
 {
     uint64_t mixed = key * UINT64_C(0x9E3779B97F4A7C15);
@@ -123,9 +116,11 @@ static bool make_room(struct mrt_reflectors *r)
 {
     const uint32_t room = r->room ? 2 * r->room : FIRST_ROOM;
     if (r->count < r->room) return true;
-    if (!grow(r->host, &r->at, room, sizeof *r->at) ||
-        !grow(r->host, &r->keys, room, sizeof *r->keys))
-        return false;
+    struct mrt_geometry_texel *at = host_realloc(r->host, r->at, room, sizeof *at);
+    if (at) r->at = at;
+    uint64_t *keys = at ? host_realloc(r->host, r->keys, room, sizeof *keys) : NULL;
+    if (!keys) return false;
+    r->keys = keys;
     host_free(r->host, r->slots);
     r->room = room;
     r->slot_count = SLOTS_PER_REFLECTOR * room;
@@ -158,7 +153,9 @@ static bool add_share(struct mrt_reflectors *r, const struct mrt_reflector_hit *
     if (!find(r, hit, &reflector)) return false;
     if (r->share_count == r->share_room) {
         const uint32_t room = r->share_room ? 2 * r->share_room : FIRST_ROOM;
-        if (!grow(r->host, &r->shares, room, sizeof *r->shares)) return false;
+        struct mrt_reflector_share *shares = host_realloc(r->host, r->shares, room, sizeof *shares);
+        if (!shares) return false;
+        r->shares = shares;
         r->share_room = room;
     }
     r->shares[r->share_count++] =
