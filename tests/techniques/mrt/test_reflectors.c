@@ -68,15 +68,20 @@ static void open_ground(struct place *p, float height)
     open_place(p, height, vec3_of(0, 0, 400), vec3_of(400, 0, 0));
 }
 
+static vec3s direction_of(const struct mrt_reflector_share *share)
+{
+    const int x = (int16_t)(share->direction & 0xffffu), y = (int16_t)(share->direction >> 16);
+    return octahedral_decode((vec2s){ { (float)x / 32767, (float)y / 32767 } });
+}
+
 // Irradiance by normal of reflectors of radiosity 1.
 static float irradiance(const struct place *p, const struct mrt_reflector_row *row, vec3s normal)
 {
     float sum = 0.0f;
     for (uint32_t k = row->first; k < row->first + row->count; k++) {
         const struct mrt_reflector_share *share = &p->reflectors.shares[k];
-        const int x = (int16_t)(share->direction & 0xffffu), y = (int16_t)(share->direction >> 16);
         float basis[9], weight[9];
-        sh_eval(3, octahedral_decode((vec2s){ { (float)x / 32767, (float)y / 32767 } }), basis);
+        sh_eval(3, direction_of(share), basis);
         sh_irradiance(3, basis, weight);
         sum += share->weight * sh_dot(3, weight, normal);
     }
@@ -104,6 +109,22 @@ TEST(a_point_above_ground_receives_its_radiosity)
     close_place(&p);
 }
 
+// Of a quarter of the sphere of radiance 1/π, above or below: ∫ ω dω / π along the surface is 1/2,
+// as its irradiance.
+static void check_vectors(const struct place *p, const struct mrt_geometry_texel *upright)
+{
+    const struct mrt_reflector_row row = upright->reflected;
+    double down = 0.0;
+    for (uint32_t k = row.first; k < row.first + row.count; k++) {
+        const vec3s way = direction_of(&p->reflectors.shares[k]);
+        const float cosine = fmaxf(glms_vec3_dot(way, upright->normal), 1e-3f);
+        down -= (double)(p->reflectors.shares[k].weight * way.y / cosine);
+    }
+    CHECK_NEAR(upright->sky_vector.y, 0.5, 0.02);
+    CHECK_NEAR(upright->sky_vector.z, 0, 0.02);
+    CHECK_NEAR(down, 0.5, 0.05);
+}
+
 // A texel that faces the ground sees no sky, one that is upright as much as ground.
 TEST(a_texel_receives_the_share_of_its_rays)
 {
@@ -124,6 +145,7 @@ TEST(a_texel_receives_the_share_of_its_rays)
         CHECK_NEAR(sum + texels[i].sky, 1, 1e-5);
         CHECK_NEAR(sum, i == 0 ? 1 : 0.5, 0.04);
     }
+    check_vectors(&p, &texels[1]);
     close_place(&p);
 }
 

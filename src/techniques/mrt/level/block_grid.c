@@ -95,7 +95,7 @@ static void place_nearest_first(struct mrt_block_grid *grid, const struct mrt_bl
 bool mrt_block_grid_init(struct host *host, const struct mrt_block_map *map, float margin,
                          int cells, struct mrt_block_grid *out)
 {
-    *out = (struct mrt_block_grid){ .host = host };
+    *out = (struct mrt_block_grid){ .host = host, .map = map };
     place_grid(out, map, margin, cells);
     out->lists = host_alloc(host, cells_of(out), sizeof *out->lists);
     if (!out->lists) return false;
@@ -128,6 +128,19 @@ struct mrt_block_list mrt_blocks_near(const struct mrt_block_grid *grid, vec3s p
         at[a] = (int)cell;
     }
     return grid->lists[(at[2] * grid->cells[1] + at[1]) * grid->cells[0] + at[0]];
+}
+
+bool mrt_is_in_a_block(const struct mrt_block_grid *grid, vec3s point)
+{
+    const struct mrt_block_list list = mrt_blocks_near(grid, point);
+    for (uint32_t k = 0; k < list.count; k++) {
+        const struct mrt_block *block = &grid->map->blocks[grid->candidates[list.first + k]];
+        vec3s cell;
+        if (mrt_warp_inverse(block->corner, point, &cell) &&
+            glms_vec3_max(glms_vec3_abs(cell)) <= MRT_IN_CELL)
+            return true;
+    }
+    return false;
 }
 
 float mrt_shortest_edge(const struct mrt_block_map *map)

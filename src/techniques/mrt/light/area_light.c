@@ -130,7 +130,7 @@ static struct mrt_geometry_texel *copy_of(struct host *host, const struct mrt_ge
 static bool light_probes(struct mrt_scene_images *images, const struct trace_scene *scene,
                          struct mrt_reflectors *reflectors, int probes, bool lit)
 {
-    const size_t count = (size_t)reflectors->map->count * (size_t)mrt_probes_of_block(probes);
+    const size_t count = (size_t)reflectors->grid.map->count * (size_t)mrt_probes_of_block(probes);
     if (probes == 0) return true;
     images->area_light = lit ? mrt_area_light_probes_create(scene, reflectors, probes)
                              : host_alloc(images->host, count, sizeof *images->area_light);
@@ -169,7 +169,7 @@ bool mrt_scene_images_init(struct mrt_reflectors *reflectors, const struct scene
                            struct mrt_scene_images *out)
 {
     struct host *host = reflectors->host;
-    const struct mrt_block_map *map = reflectors->map;
+    const struct mrt_block_map *map = reflectors->grid.map;
     const size_t texels = (size_t)atlas->texels;
     *out = (struct mrt_scene_images){ .host = host };
     struct trace_scene *scene = trace_scene_create(host, pose);

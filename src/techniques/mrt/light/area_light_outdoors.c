@@ -8,8 +8,6 @@ enum { MAX_POINTS = 12, RAYS = 128 }; // points along the longest side of the sc
 // Least part of all directions with the sky where nothing else than it is above: as map_cells.c.
 static const float OUTSIDE = 0.4f;
 
-static const float IN_CELL = 0.5f + 1e-3f; // points on a wall are the room's
-
 // Points at both ends of the longest side.
 static struct frame_probes grid_of(struct box3 bounds)
 {
@@ -23,17 +21,6 @@ static struct frame_probes grid_of(struct box3 bounds)
     }
     grid.slab = grid.count_z;
     return grid;
-}
-
-static bool is_in_block(const struct mrt_block_map *map, vec3s point)
-{
-    for (int b = 0; b < map->count; b++) {
-        vec3s cell;
-        if (mrt_warp_inverse(map->blocks[b].corner, point, &cell) &&
-            glms_vec3_max(glms_vec3_abs(cell)) <= IN_CELL)
-            return true;
-    }
-    return false;
 }
 
 // A sky of radiance 1/π gives each normal the irradiance 1, which is √4π Y₀.
@@ -71,7 +58,7 @@ bool mrt_outdoors_init(const struct trace_scene *scene, struct mrt_reflectors *r
     bool ok = out->probes && points && probe_of, any = false;
     for (int i = 0; ok && i < count; i++) {
         const vec3s position = probe_grid_point(out->grid, (uint32_t)i);
-        if (is_in_block(reflectors->map, position)) continue;
+        if (mrt_is_in_a_block(&reflectors->grid, position)) continue;
         probe_of[outside] = i;
         points[outside++].position = position;
     }

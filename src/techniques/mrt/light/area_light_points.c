@@ -118,7 +118,7 @@ struct mrt_area_light_probe *mrt_area_light_probes_create(const struct trace_sce
                                                           struct mrt_reflectors *reflectors, int p)
 {
     struct host *host = reflectors->host;
-    const struct mrt_block_map *map = reflectors->map;
+    const struct mrt_block_map *map = reflectors->grid.map;
     const int per_block = mrt_probes_of_block(p), count = map->count * per_block;
     struct mrt_area_light_probe *out = host_alloc(host, (size_t)count, sizeof *out);
     struct mrt_lit_point *points = host_alloc(host, (size_t)count, sizeof *points);

@@ -10,7 +10,6 @@
 
 enum { GRID_CELLS = 32, SLOTS_PER_REFLECTOR = 2, FIRST_ROOM = 256 };
 
-static const float IN_CELL = 0.5f + 1e-3f; // points on a wall are the room's
 // Surfaces behind a wall that its texels may stand for: as far as their rays (geometry.c).
 static const float BEHIND_WALL = 0.75f;
 static const float FACING = 0.5f;        // cosine
@@ -26,7 +25,7 @@ static bool is_of_block(const struct mrt_block *block, vec3s point, vec3s normal
     const vec3s out = glms_vec3_abs(cell);
     const float most = glms_vec3_max(out);
     if (!(most <= BEHIND_WALL)) return false;
-    if (most <= IN_CELL) return true;
+    if (most <= MRT_IN_CELL) return true;
     const int axis = most == out.x ? 0 : most == out.y ? 1 : 2;
     const mat3s jacobian = mrt_warp_jacobian(block->corner, cell);
     const vec3s across = vec3_unit(jacobian.col[axis]);
@@ -37,7 +36,7 @@ static bool is_of_a_block(const struct mrt_reflectors *r, vec3s point, vec3s nor
 {
     const struct mrt_block_list list = mrt_blocks_near(&r->grid, point);
     for (uint32_t k = 0; k < list.count; k++)
-        if (is_of_block(&r->map->blocks[r->grid.candidates[list.first + k]], point, normal))
+        if (is_of_block(&r->grid.map->blocks[r->grid.candidates[list.first + k]], point, normal))
             return true;
     return false;
 }
@@ -64,11 +63,13 @@ void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_
                             const struct ray *ray, const struct ray_hit *hit,
                             const struct texel_hit *at_hit)
 {
-    struct surface surface;
     float edge_m;
     if (!hits->of || at_hit->inside) return;
+    const vec3s position = glms_vec3_muladds(ray->direction, hit->distance, ray->origin);
+    const vec3s facet = scene->meshes[hit->geometry].facets[hit->triangle].normal;
+    if (is_of_a_block(hits->of, position, at_hit->back ? glms_vec3_negate(facet) : facet)) return;
+    struct surface surface;
     surface_at(scene, ray, hit, NULL, &surface);
-    if (is_of_a_block(hits->of, surface.position, surface.geometric)) return;
     const uint64_t key =
         key_of(hits->of, surface.position, surface.geometric, hit->distance, &edge_m);
     hits->at[hits->count++] = (struct mrt_reflector_hit){
@@ -86,9 +87,7 @@ void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_
 bool mrt_reflectors_init(struct host *host, const struct mrt_block_map *map,
                          struct mrt_reflectors *out)
 {
-    *out = (struct mrt_reflectors){ .host = host,
-                                    .map = map,
-                                    .least_m = TEXELS * mrt_shortest_edge(map) };
+    *out = (struct mrt_reflectors){ .host = host, .least_m = TEXELS * mrt_shortest_edge(map) };
     return mrt_block_grid_init(host, map, BEHIND_WALL - 0.5f, GRID_CELLS, &out->grid);
 }
 
@@ -98,6 +97,7 @@ void mrt_reflectors_finish(struct mrt_reflectors *r)
     mrt_block_grid_finish(&r->grid);
     host_free(r->host, r->at);
     host_free(r->host, r->keys);
+    host_free(r->host, r->newest);
     host_free(r->host, r->shares);
     host_free(r->host, r->slots);
     *r = (struct mrt_reflectors){ 0 };
@@ -119,8 +119,10 @@ static bool make_room(struct mrt_reflectors *r)
     struct mrt_geometry_texel *at = host_realloc(r->host, r->at, room, sizeof *at);
     if (at) r->at = at;
     uint64_t *keys = at ? host_realloc(r->host, r->keys, room, sizeof *keys) : NULL;
-    if (!keys) return false;
-    r->keys = keys;
+    if (keys) r->keys = keys;
+    uint32_t *newest = keys ? host_realloc(r->host, r->newest, room, sizeof *newest) : NULL;
+    if (!newest) return false;
+    r->newest = newest;
     host_free(r->host, r->slots);
     r->room = room;
     r->slot_count = SLOTS_PER_REFLECTOR * room;
@@ -136,6 +138,7 @@ static bool find(struct mrt_reflectors *r, const struct mrt_reflector_hit *hit, 
     const uint32_t slot = slot_of(r, hit->key);
     if (!r->slots[slot]) {
         r->keys[r->count] = hit->key;
+        r->newest[r->count] = 0;
         r->at[r->count] = (struct mrt_geometry_texel){ .position = hit->position,
                                                        .normal = hit->normal,
                                                        .reflectance = hit->reflectance,
@@ -147,10 +150,8 @@ static bool find(struct mrt_reflectors *r, const struct mrt_reflector_hit *hit, 
     return true;
 }
 
-static bool add_share(struct mrt_reflectors *r, const struct mrt_reflector_hit *hit, float weight)
+static bool add_share(struct mrt_reflectors *r, uint32_t reflector)
 {
-    uint32_t reflector;
-    if (!find(r, hit, &reflector)) return false;
     if (r->share_count == r->share_room) {
         const uint32_t room = r->share_room ? 2 * r->share_room : FIRST_ROOM;
         struct mrt_reflector_share *shares = host_realloc(r->host, r->shares, room, sizeof *shares);
@@ -158,8 +159,8 @@ static bool add_share(struct mrt_reflectors *r, const struct mrt_reflector_hit *
         r->shares = shares;
         r->share_room = room;
     }
-    r->shares[r->share_count++] =
-        (struct mrt_reflector_share){ reflector, octahedral_pack(hit->direction), weight };
+    r->shares[r->share_count++] = (struct mrt_reflector_share){ .reflector = reflector };
+    r->newest[reflector] = r->share_count;
     return true;
 }
 
@@ -170,6 +171,7 @@ enum { MOST_HITS = 1 << 17 };
 struct part {
     const struct mrt_reflector_gather *gather;
     struct mrt_reflector_hits *hits; // of each receiver
+    vec3s *ways;                     // [rays]
     size_t first;
 };
 
@@ -180,14 +182,28 @@ static void gather_one(void *user, size_t i)
     part->gather->gather(part->gather->user, part->first + i, part->hits ? &part->hits[i] : &none);
 }
 
+// One share for each reflector. ways: of the shares of a row, sums of directions.
 static bool add_row(struct mrt_reflectors *r, const struct part *part, size_t i)
 {
     const struct mrt_reflector_gather *g = part->gather;
     const struct mrt_reflector_hits *hits = &part->hits[i];
+    const uint32_t first = r->share_count;
+    for (uint32_t k = 0; k < hits->count; k++) {
+        const struct mrt_reflector_hit *hit = &hits->at[k];
+        uint32_t reflector;
+        if (!find(r, hit, &reflector)) return false;
+        if (r->newest[reflector] <= first) {
+            if (!add_share(r, reflector)) return false;
+            part->ways[r->share_count - 1 - first] = vec3_of(0, 0, 0);
+        }
+        const uint32_t share = r->newest[reflector] - 1;
+        r->shares[share].weight += g->weight;
+        part->ways[share - first] = glms_vec3_add(part->ways[share - first], hit->direction);
+    }
+    for (uint32_t k = first; k < r->share_count; k++)
+        r->shares[k].direction = octahedral_pack(part->ways[k - first]);
     *g->row_of(g->user, part->first + i) =
-        (struct mrt_reflector_row){ r->share_count, hits->count };
-    for (uint32_t k = 0; k < hits->count; k++)
-        if (!add_share(r, &hits->at[k], g->weight)) return false;
+        (struct mrt_reflector_row){ first, r->share_count - first };
     return true;
 }
 
@@ -212,12 +228,14 @@ bool mrt_reflectors_gather(struct mrt_reflectors *r, const struct mrt_reflector_
     const size_t most = MOST_HITS / (size_t)gather->rays;
     struct mrt_reflector_hit *hits = host_alloc(r->host, most * (size_t)gather->rays, sizeof *hits);
     part.hits = host_alloc(r->host, most, sizeof *part.hits);
-    bool ok = hits && part.hits;
+    part.ways = host_alloc(r->host, (size_t)gather->rays, sizeof *part.ways);
+    bool ok = hits && part.hits && part.ways;
     for (; ok && part.first < gather->count; part.first += most) {
         const size_t rest = gather->count - part.first;
         ok = gather_part(r, &part, rest < most ? rest : most, hits);
     }
     host_free(r->host, hits);
     host_free(r->host, part.hits);
+    host_free(r->host, part.ways);
     return ok;
 }

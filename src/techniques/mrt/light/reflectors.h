@@ -12,18 +12,18 @@
 // reflector's radiosity; at a point, its solid angle over π.
 struct mrt_reflector_share {
     uint32_t reflector;
-    uint32_t direction; // towards it: octahedral_pack
+    uint32_t direction; // towards it, of all rays the mean: octahedral_pack
     float weight;
 };
 
 struct mrt_reflectors {
     struct host *host;
     struct mrt_block_grid grid;
-    const struct mrt_block_map *map;
     float least_m; // edge of the smallest place
     // Texels without a wall; area_m2 is that of the place.
     struct mrt_geometry_texel *at;
     uint64_t *keys;
+    uint32_t *newest; // number of the newest share of each, from 1; 0: none
     uint32_t count, room;
     struct mrt_reflector_share *shares;
     uint32_t share_count, share_room;
