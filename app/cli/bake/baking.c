@@ -75,7 +75,7 @@ static bool load_from(struct baking *b, const char *path)
     return b->loaded;
 }
 
-// False: there is no file of it, or it does not fit, which a note says.
+// Returns whether the part is loaded; warns of a file that does not fit.
 static bool load_part(struct baking *b, int index)
 {
     struct ag_bake_part part;

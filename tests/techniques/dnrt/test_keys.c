@@ -1,6 +1,6 @@
 // Key frames of a mesh that an animation deforms.
 #include "frame/frame_fixture.h"
-#include "techniques/gi_baked.h"
+#include "techniques/dnrt/floor_fixture.h"
 
 #include "techniques/dnrt/dnrt_keys.h"
 
@@ -75,8 +75,6 @@ static void add_ball(struct frame_fixture *s)
 static float *render(struct gpu *gpu, const char *options, float bake_time, float time)
 {
     struct frame_fixture s;
-    struct gi_spec spec;
-    struct gi_baked baked;
     char text[192];
     snprintf(text, sizeof text, "%s+dnrt:size=16,rays=64%s", SOURCE, options);
     fixture_init(&s, gpu);
@@ -87,37 +85,11 @@ static float *render(struct gpu *gpu, const char *options, float bake_time, floa
     fixture_add_sun(&s, vec3_of(1, -0.3f, 0), vec3_of(3000, 3000, 3000));
     fixture_look(&s, vec3_of(0, 2.4f, 3.4f), vec3_of(0, 0.4f, -0.6f));
     s.input.want_id_layer = true;
-    fixture_open(&s);
-    pose_update(&s.pose, 0, bake_time);
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    CHECK(gi_bake_all(&baked, test_host(), &spec, &s.pose));
-    struct gi *gi =
-        gi_create_baked(test_host(), gpu, &spec, &baked.bakes, &s.pose, s.width, s.height);
-    assert_non_null(gi);
-    s.indirect = gi_hook(gi);
-    pose_update(&s.pose, 0, time);
-    fixture_render(&s);
-    float *irradiance = fixture_read(&s, READ_IRRADIANCE), *id = fixture_read(&s, READ_ID);
-    for (uint32_t i = 0; i < s.width * s.height; i++)
-        if (id[2 * i] != 0) // the floor's
-            memset(irradiance + 3 * (size_t)i, 0, 12);
-    free(id);
-    gi_destroy(gi);
-    gi_baked_finish(&baked);
-    gi_spec_finish(&spec);
+    float *irradiance = floor_irradiance(&s, gpu, text, bake_time, time);
     s.scene->animations = NULL;
     s.scene->animation_count = 0;
     fixture_finish(&s);
     return irradiance;
-}
-
-enum { PIXELS = 32 * 32 * 3 };
-
-static double difference(const float *a, const float *b)
-{
-    double sum = 0;
-    for (int i = 0; i < PIXELS; i++) sum += fabs((double)a[i] - (double)b[i]);
-    return sum;
 }
 
 // ---- tests
@@ -155,8 +127,8 @@ TEST_GPU(a_key_has_the_light_of_the_mesh_in_its_pose_to_the_bit)
 {
     float *still = render(gpu, "", 1, 1), *keyed = render(gpu, ",keys=3", 0, 1);
     float *other = render(gpu, "", 0, 1);
-    CHECK(memcmp(still, keyed, PIXELS * sizeof *still) == 0);
-    CHECK(difference(still, other) > 100);
+    CHECK(memcmp(still, keyed, FLOOR_VALUES * sizeof *still) == 0);
+    CHECK(floor_difference(still, other) > 100);
     free(still);
     free(keyed);
     free(other);
@@ -169,7 +141,7 @@ TEST_GPU(between_two_keys_the_light_is_their_mean)
     float *first = render(gpu, "", 0, 0.5f), *next = render(gpu, "", 1, 0.5f);
     float *half = render(gpu, ",keys=3", 0, 0.5f);
     double worst = 0, change = 0;
-    for (int i = 0; i < PIXELS; i++) {
+    for (int i = 0; i < FLOOR_VALUES; i++) {
         if (first[i] == 0 || next[i] == 0) continue; // the ball is there, or the sum ends at 0
         const double a = (double)first[i], b = (double)next[i];
         worst = fmax(worst, fabs((double)half[i] - 0.5 * (a + b)));
@@ -190,7 +162,7 @@ TEST_GPU(keys_bring_a_moment_close_to_its_pose)
     double error[3];
     for (int i = 0; i < 3; i++) {
         float *keyed = render(gpu, (const char *[]){ "", ",keys=3", ",keys=5" }[i], 0, 0.35f);
-        error[i] = difference(keyed, exact);
+        error[i] = floor_difference(keyed, exact);
         free(keyed);
     }
     print_message("1, 3 and 5 keys: %g, %g, %g lux from the pose's own\n", error[0], error[1],

@@ -1,6 +1,6 @@
 // Skinned objects: volumes turn with the joints' common ancestor.
 #include "frame/frame_fixture.h"
-#include "techniques/gi_baked.h"
+#include "techniques/dnrt/floor_fixture.h"
 
 #include "techniques/dnrt/dnrt_object.h"
 
@@ -156,8 +156,6 @@ enum what { RIGID, SKINNED, ALONE };
 static float *render(struct gpu *gpu, enum what what, float time)
 {
     struct frame_fixture s;
-    struct gi_spec spec;
-    struct gi_baked baked;
     struct character character;
     struct turn turn;
     fixture_init(&s, gpu);
@@ -178,37 +176,11 @@ static float *render(struct gpu *gpu, enum what what, float time)
     fixture_add_sun(&s, vec3_of(1, -0.3f, 0), vec3_of(3000, 3000, 3000));
     fixture_look(&s, vec3_of(0, 2.4f, 3.4f), vec3_of(0, 0.2f, -0.2f));
     s.input.want_id_layer = true;
-    fixture_open(&s);
-    pose_update(&s.pose, 0, 0);
-    CHECK(gi_spec_parse(&spec, test_host(),
-                        what == ALONE ? SOURCE : SOURCE "+dnrt:size=16,rays=1024"));
-    CHECK(gi_bake_all(&baked, test_host(), &spec, &s.pose));
-    struct gi *gi =
-        gi_create_baked(test_host(), gpu, &spec, &baked.bakes, &s.pose, s.width, s.height);
-    assert_non_null(gi);
-    s.indirect = gi_hook(gi);
-    pose_update(&s.pose, 0, time);
-    fixture_render(&s);
-    float *irradiance = fixture_read(&s, READ_IRRADIANCE), *id = fixture_read(&s, READ_ID);
-    for (uint32_t i = 0; i < s.width * s.height; i++)
-        if (id[2 * i] != 0) // the floor's
-            memset(irradiance + 3 * (size_t)i, 0, 12);
-    free(id);
-    gi_destroy(gi);
-    gi_baked_finish(&baked);
-    gi_spec_finish(&spec);
+    const char *gi = what == ALONE ? SOURCE : SOURCE "+dnrt:size=16,rays=1024";
+    float *irradiance = floor_irradiance(&s, gpu, gi, 0, time);
     leave(s.scene);
     fixture_finish(&s);
     return irradiance;
-}
-
-enum { VALUES = 32 * 32 * 3 };
-
-static double sum_of_differences(const float *a, const float *b)
-{
-    double sum = 0;
-    for (int i = 0; i < VALUES; i++) sum += fabs((double)a[i] - (double)b[i]);
-    return sum;
 }
 
 // Both are in the pose of the bake, then both have turned by a quarter. Volumes are of the same
@@ -220,8 +192,8 @@ TEST_GPU(a_turned_character_has_the_light_of_a_turned_rigid_object)
         float *rigid = render(gpu, RIGID, (float)turned);
         float *skinned = render(gpu, SKINNED, (float)turned);
         float *alone = render(gpu, ALONE, (float)turned);
-        const double change = sum_of_differences(rigid, alone);
-        const double error = sum_of_differences(rigid, skinned);
+        const double change = floor_difference(rigid, alone);
+        const double error = floor_difference(rigid, skinned);
         print_message("turned by %d degrees: change %g lux, of which the skin differs by %g\n",
                       90 * turned, change, error);
         CHECK(change > 1000 && error < 5e-3 * change);

@@ -4,6 +4,12 @@
 
 #include "frame/frame_fixture.h"
 
+// A small dictionary of mrt or drt: texels along an edge of a wall, modes of bases and responses.
+#define TRIAL_DICTIONARY(texels, prior, modes)                                                     \
+    ":texels=" #texels ",rays=256,prior_modes=" #prior ",modes=" #modes                            \
+    ",lightfield_positions=4,lightfield_directions=6,lightfield_modes=16,response_modes=" #modes   \
+    ",block_probes=2"
+
 // Irradiance over the pixels of the camera's image, scene's own unit (lux).
 struct trial_irradiance {
     double mean[3], least, most; // least and most: of all channels

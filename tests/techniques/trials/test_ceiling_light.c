@@ -2,9 +2,7 @@
 #include "techniques/trials/light_trial.h"
 #include "techniques/trials/light_trial_scenes.h"
 
-#define DICTIONARY                                                                                 \
-    ":texels=16,rays=256,prior_modes=32,modes=32,lightfield_positions=4,lightfield_directions=6,"  \
-    "lightfield_modes=16,response_modes=32,block_probes=2"
+#define DICTIONARY TRIAL_DICTIONARY(16, 32, 32)
 
 // A tenth is what few modes lose. mrt has no shadows of the box in indirect light.
 TEST_GPU(light_between_a_box_and_the_ceiling_stays_there)

@@ -2,9 +2,7 @@
 #include "techniques/trials/light_trial.h"
 #include "techniques/trials/light_trial_scenes.h"
 
-#define DICTIONARY                                                                                 \
-    ":texels=16,rays=256,prior_modes=16,modes=12,lightfield_positions=4,lightfield_directions=6,"  \
-    "lightfield_modes=16,response_modes=12,block_probes=2"
+#define DICTIONARY TRIAL_DICTIONARY(16, 16, 12)
 
 // A tenth is what a few modes lose at the second bounce, a fifth what coarse cells and cones do.
 TEST_GPU(light_of_a_room_passes_a_door)

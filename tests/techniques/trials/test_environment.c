@@ -9,14 +9,12 @@
 #include <stdlib.h>
 
 // Small bakes; values of light maps are half floats.
-#define RADIOSITY "radiosity:texels=4096"
-#define ORT       "ort:texels=1024,offsets=100,coordinates=charts"
-#define ORT_ROOM  "ort:texels=4096,offsets=400,coordinates=charts"
-#define DICTIONARY(texels)                                                                         \
-    ":texels=" #texels ",rays=256,prior_modes=16,modes=12,lightfield_positions=4,"                 \
-    "lightfield_directions=6,lightfield_modes=16,response_modes=12,block_probes=2"
-#define MRT "mrt" DICTIONARY(8)
-#define DRT "drt" DICTIONARY(8)
+#define RADIOSITY          "radiosity:texels=4096"
+#define ORT                "ort:texels=1024,offsets=100,coordinates=charts"
+#define ORT_ROOM           "ort:texels=4096,offsets=400,coordinates=charts"
+#define DICTIONARY(texels) TRIAL_DICTIONARY(texels, 16, 12)
+#define MRT                "mrt" DICTIONARY(8)
+#define DRT                "drt" DICTIONARY(8)
 
 static const double PI = 3.14159265358979;
 

@@ -14,13 +14,11 @@
 #define RADIOSITY_COARSE "radiosity:texels=4096"
 // Both have one dictionary. FINE, also of ort: a patch of 0.5 m is seen by texels of less than
 // that.
-#define DICTIONARY(texels)                                                                         \
-    ":texels=" #texels ",rays=256,prior_modes=16,modes=12,lightfield_positions=4,"                 \
-    "lightfield_directions=6,lightfield_modes=16,response_modes=12,block_probes=2"
-#define MRT      "mrt" DICTIONARY(8)
-#define DRT      "drt" DICTIONARY(8)
-#define MRT_FINE "mrt" DICTIONARY(16)
-#define DRT_FINE "drt" DICTIONARY(16)
+#define DICTIONARY(texels) TRIAL_DICTIONARY(texels, 16, 12)
+#define MRT                "mrt" DICTIONARY(8)
+#define DRT                "drt" DICTIONARY(8)
+#define MRT_FINE           "mrt" DICTIONARY(16)
+#define DRT_FINE           "drt" DICTIONARY(16)
 
 static double dark_room_share(struct gpu *gpu, const char *gi)
 {
