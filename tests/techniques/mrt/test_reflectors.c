@@ -109,8 +109,8 @@ TEST(a_point_above_ground_receives_its_radiosity)
     close_place(&p);
 }
 
-// Of a quarter of the sphere of radiance 1/π, above or below: ∫ ω dω / π along the surface is 1/2,
-// as its irradiance.
+// Light of a quarter of the sphere, of radiance 1/π, above or below, has a vector irradiance of 1/2
+// along the surface, as its irradiance.
 static void check_vectors(const struct place *p, const struct mrt_geometry_texel *upright)
 {
     const struct mrt_reflector_row row = upright->reflected;

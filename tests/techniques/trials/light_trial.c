@@ -142,6 +142,26 @@ struct trial_error trial_error_of(struct gpu *gpu, trial_build build, const char
     return error;
 }
 
+void trial_check_energy(struct gpu *gpu,
+                        void (*build)(struct frame_fixture *s, struct gpu *gpu, bool view),
+                        int samples, const struct trial_bounds *bounds, size_t count)
+{
+    for (int view = 0; view < 2; view++) {
+        struct frame_fixture s;
+        build(&s, gpu, view);
+        const struct trial_irradiance expected = trial_reference(&s, -1, samples);
+        fixture_finish(&s);
+        for (size_t i = 0; i < count; i++) {
+            build(&s, gpu, view);
+            const double share = trial_technique(&s, bounds[i].gi).mean[1] / expected.mean[1];
+            fixture_finish(&s);
+            print_message("%s: view %d: %.3f of the reference's %.3f lux\n", bounds[i].gi, view,
+                          share, expected.mean[1]);
+            CHECK(share >= bounds[i].least && share <= bounds[i].most);
+        }
+    }
+}
+
 struct trial_irradiance trial_object_irradiance(struct frame_fixture *s, int first)
 {
     struct trial_irradiance sum = { .least = HUGE_VAL };

@@ -28,6 +28,15 @@ struct trial_error {
 };
 typedef void (*trial_build)(struct frame_fixture *s, struct gpu *gpu);
 struct trial_error trial_error_of(struct gpu *gpu, trial_build build, const char *gi, int samples);
+// Bounds of the energy of a technique over that of the reference with all bounces.
+struct trial_bounds {
+    const char *gi;
+    double least, most;
+};
+// Checks both views of a scene.
+void trial_check_energy(struct gpu *gpu,
+                        void (*build)(struct frame_fixture *s, struct gpu *gpu, bool view),
+                        int samples, const struct trial_bounds *bounds, size_t count);
 // Renders an open fixture: the pixels of this instance and later ones.
 struct trial_irradiance trial_object_irradiance(struct frame_fixture *s, int first);
 // A movable box in a furnace of albedo 0.5 gets the irradiance of the walls, within 1 %.
