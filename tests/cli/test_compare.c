@@ -192,6 +192,19 @@ TEST(the_report_has_the_documented_fields_and_files)
     json_decref(printed);
 }
 
+// Noise of some samples is most of a good image's error, and little of a black one's.
+TEST(noise_that_hides_errors_is_named)
+{
+    require_device();
+    own_cache("share-cache");
+    const char *folder = path_of("share");
+    const struct run *r = run_expect(
+        0, SCENE " --frames 2 --spp 16 --gi radiosity:texels=4096,rays=64 -o", folder, NULL);
+    CHECK(strstr(r->out, "of the least relmse") && strstr(r->out, ": --spp "));
+    r = run_expect(0, SCENE " --frames 2 --spp 64 --gi none -o", folder, NULL);
+    CHECK(!strstr(r->out, "of the least relmse"));
+}
+
 // ---- errors known in advance
 
 static struct image read_layer(const char *path, const char *layer)

@@ -267,6 +267,29 @@ static void print_row(const struct comparison *c, const struct method *m, int wi
     putchar('\n');
 }
 
+// Noise of a quarter of the least relmse. Pixels where it darkens the reference then weigh most:
+// relmse prefers images that are too dark (docs/metrics.md).
+static const double NOISE_SHARE_WARNED = 0.25, NOISE_SHARE_WANTED = 0.1;
+
+static void print_noise_share(const struct comparison *c)
+{
+    const struct reference *t = &c->reference;
+    double least = INFINITY;
+    for (int i = 0; i < c->method_count; i++)
+        least = fmin(least, c->methods[i].image_error.metrics.relmse);
+    double share = t->noise_relmse / least;
+    if (t->spp < 1 || least <= 0.0 || !(share > NOISE_SHARE_WARNED)) return;
+    printf("\nthe reference's noise makes %.0f %% of the least relmse, which prefers dark images "
+           "then",
+           100.0 * fmin(share, 1.0));
+    // With more samples relmse nears the error itself, and noise falls as their number grows.
+    double error = fmax(least - t->noise_relmse, 0.1 * least);
+    double spp =
+        t->spp * t->noise_relmse * (1.0 - NOISE_SHARE_WANTED) / (error * NOISE_SHARE_WANTED);
+    if (!c->arguments->reference) printf(": --spp %.0f", exp2(ceil(log2(spp))));
+    putchar('\n');
+}
+
 void report_print(const struct comparison *c)
 {
     int width = widest_name(c);
@@ -279,6 +302,7 @@ void report_print(const struct comparison *c)
     if (c->direct_error_image)
         printf("\ndirect light alone, the same for all: relmse %.4g, flip %.4f of the image\n",
                c->direct_error.metrics.relmse, c->direct_error.metrics.flip);
+    print_noise_share(c);
 }
 
 // ---- bounds
