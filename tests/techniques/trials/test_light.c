@@ -1,24 +1,17 @@
 // Physical trials of the sources that trace light through the scene: thin walls, a plane's own
 // light, the sky, an empty room, small emitters. Each prints its figures.
-#include "techniques/trials/light_trial.h"
 #include "techniques/trials/light_trial_scenes.h"
+#include "techniques/trials/plane_trial.h"
+#include "techniques/trials/trial_bakes.h"
 
 #include <math.h>
 
-// Small bakes; the default has four times the texels.
-#define RADIOSITY "radiosity:texels=16384"
-#define ORT       "ort:texels=4096,offsets=400,coordinates=charts"
-#define PRT       "prt:texels=16384,rays=256"
-#define ORT_FINE  "ort:texels=8192,offsets=400,coordinates=charts"
+#define ORT_FINE "ort:texels=8192,offsets=400,coordinates=charts"
 // A scene of few surfaces; coarser texels would rather mix the light of both sides of a wall.
 #define RADIOSITY_COARSE "radiosity:texels=4096"
-// Both have one dictionary. FINE, also of ort: a patch of 0.5 m is seen by texels of less than
-// that.
-#define DICTIONARY(texels) TRIAL_DICTIONARY(texels, 16, 12)
-#define MRT                "mrt" DICTIONARY(8)
-#define DRT                "drt" DICTIONARY(8)
-#define MRT_FINE           "mrt" DICTIONARY(16)
-#define DRT_FINE           "drt" DICTIONARY(16)
+// Also of ort: a patch of 0.5 m is seen by texels of less than that.
+#define MRT_FINE "mrt" DICTIONARY(16)
+#define DRT_FINE "drt" DICTIONARY(16)
 
 static double dark_room_share(struct gpu *gpu, const char *gi)
 {
@@ -55,80 +48,17 @@ TEST_GPU(a_closed_room_beside_a_sunlit_one_stays_dark)
         CHECK(dark_room_share(gpu, cases[i].gi) <= cases[i].most);
 }
 
-static const float TILTS[] = { 0, 0.35f, 0.7853982f };
-enum { TILT_COUNT = sizeof TILTS / sizeof TILTS[0] };
+// Radians; planes of other tilts are in test_planes.c.
+static const float PLANE_TILT = 0.35f;
 
-// Irradiance in the middle of the plane; of the largest mean over the tilts.
-static double own_light(struct gpu *gpu, const char *gi, bool double_sided)
-{
-    double worst = 0;
-    for (int i = 0; i < TILT_COUNT; i++) {
-        struct frame_fixture s;
-        trial_open_plane(&s, gpu, &(struct trial_plane){ TILTS[i], double_sided, .sun = true });
-        const struct trial_irradiance e = trial_technique(&s, gi);
-        print_message("%s: plane, tilt %.2f, %s: %.4f of the sun, at most %.4f\n", gi,
-                      (double)TILTS[i], double_sided ? "double-sided" : "single-sided",
-                      e.mean[1] / 1000, e.most / 1000);
-        worst = fmax(worst, e.mean[1] / 1000);
-        fixture_finish(&s);
-    }
-    return worst;
-}
-
-// To mrt a plane inside a block is a part of its walls; to drt it is clutter.
 TEST_GPU(an_open_plane_in_the_sun_gets_nothing_of_its_own_light)
 {
-    const struct {
-        const char *gi;
-        double most;
-    } cases[] = { { "lpv", 0.01 },  { "holpv", 0.015 },
-                  { "vct", 0.01 },  { "vct:resolution=128", 0.01 },
-                  { RADIOSITY, 0 }, { ORT, 0 },
-                  { PRT, 0 },       { MRT, 0.15 },
-                  { DRT, 0 } };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
-        CHECK(fmax(own_light(gpu, cases[i].gi, false), own_light(gpu, cases[i].gi, true)) <=
-              cases[i].most);
-}
-
-// Least and largest irradiance of a pixel, largest error of the mean of a plane, relative to πL.
-struct sky_range {
-    double least, most, mean_error;
-};
-
-static struct sky_range sky_share(struct gpu *gpu, const char *gi)
-{
-    struct sky_range range = { HUGE_VAL, 0, 0 };
-    for (int i = 0; i < 2 * TILT_COUNT; i++) {
-        struct frame_fixture s;
-        trial_open_plane(&s, gpu, &(struct trial_plane){ TILTS[i / 2], i % 2, .sun = false });
-        const struct trial_irradiance e = trial_technique(&s, gi);
-        // A tilted plane's sky fills the sphere: a half of it is above the plane.
-        print_message("%s: sky, tilt %.2f, %s: %.4f, %.4f to %.4f of its irradiance\n", gi,
-                      (double)TILTS[i / 2], i % 2 ? "double-sided" : "single-sided",
-                      e.mean[1] / GLM_PI, e.least / GLM_PI, e.most / GLM_PI);
-        range.least = fmin(range.least, e.least / GLM_PI);
-        range.most = fmax(range.most, e.most / GLM_PI);
-        range.mean_error = fmax(range.mean_error, fabs(e.mean[1] / GLM_PI - 1));
-        fixture_finish(&s);
-    }
-    return range;
+    plane_trial_own_light(gpu, PLANE_TILT);
 }
 
 TEST_GPU(an_open_plane_gets_the_whole_sky)
 {
-    const struct {
-        const char *gi;
-        struct sky_range bound;
-    } cases[] = { { "lpv", { 0.77, 1.02, 0.1 } },   { "holpv", { 0.83, 1.13, 0.035 } },
-                  { "vct", { 0.98, 1.01, 0.02 } },  { RADIOSITY, { 0.999, 1.001, 0.001 } },
-                  { ORT, { 0.999, 1.001, 0.001 } }, { PRT, { 0.999, 1.001, 0.001 } },
-                  { MRT, { 0.44, 1.57, 0.34 } },    { DRT, { 0.999, 1.001, 0.001 } } };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        const struct sky_range got = sky_share(gpu, cases[i].gi), bound = cases[i].bound;
-        CHECK(got.least >= bound.least && got.most <= bound.most);
-        CHECK(got.mean_error <= bound.mean_error);
-    }
+    plane_trial_sky(gpu, PLANE_TILT);
 }
 
 typedef void (*trial_scene)(struct frame_fixture *s, struct gpu *gpu);
