@@ -36,21 +36,18 @@ layout(set = 0, binding = 7) uniform sampler2D albedo;
 layout(set = 0, binding = 8) uniform sampler2D material;
 layout(set = 0, binding = 9) uniform sampler2D dielectric; // FRAME_DIELECTRIC if `has_dielectric`
 layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D specular;
+#include "techniques/common/reflected.glsl"
 
 // irradiance: of the environment at the normal.
 vec3 reflected(ivec2 pixel, float z, vec3 n, vec3 irradiance)
 {
-    vec4 coat = BRDF_DEFAULT_DIELECTRIC;
-    if (push.has_dielectric != 0u) coat = texelFetch(dielectric, pixel, 0);
-    brdf_material m =
-        brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, coat);
+    brdf_material m = pixel_material(pixel, push.has_dielectric != 0u);
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
     vec3 to_viewer = normalize(frame_to_viewer(position));
     float alpha = brdf_alpha(m.roughness);
     vec3 lobe = environment_lobe(lobe_mean(n, to_viewer, alpha), lobe_deviation(alpha));
     vec3 radiance = mix(lobe, INV_PI * irradiance, lobe_roughness(m.roughness));
-    return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
-           min(push.strength * radiance, vec3(HALF_MAX));
+    return pixel_reflected(m, n, to_viewer, push.strength * radiance);
 }
 #endif
 

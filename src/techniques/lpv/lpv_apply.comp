@@ -20,6 +20,8 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define FRAME_CONSTANTS_BINDING 1
+#define FRAME_CONSTANTS_COPIED
+#define LPV_GRID_COPIED
 #include "core/sh.glsl"
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
@@ -37,8 +39,9 @@ layout(constant_id = LPV_CONSTANT_DAMPED) const bool LPV_DAMPED = false;
 
 layout(push_constant, scalar) uniform push_block
 {
-    lpv_apply_push push;
+    lpv_apply_push push_of_all;
 };
+lpv_apply_push push; // a copy, as FRAME_CONSTANTS_COPIED
 layout(set = 0, binding = 2) uniform sampler2D depth;
 layout(set = 0, binding = 3) uniform sampler2D normal;
 layout(set = 0, binding = 4) uniform sampler3D light;
@@ -112,6 +115,9 @@ vec3 surface_irradiance(vec3 surface, vec3 n)
 // of the coarsest cascade there is no light.
 void main()
 {
+    frame = frame_block;
+    lpv = lpv_block;
+    push = push_of_all;
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
     float z = texelFetch(depth, pixel, 0).r;

@@ -1,13 +1,22 @@
-// The uniform block of the grid (binding 0) and coordinates in the grid.
+// The uniform block of the grid (binding 0) and coordinates in the grid. With LPV_GRID_COPIED,
+// `lpv` is a copy that main begins with, as with FRAME_CONSTANTS_COPIED: lpv = lpv_block.
 #ifndef AG_LPV_GRID_GLSL
 #define AG_LPV_GRID_GLSL
 
 #include "techniques/lpv/lpv_shared.h"
 
+#ifdef LPV_GRID_COPIED
+layout(set = 0, binding = 0, scalar) uniform lpv_grid
+{
+    lpv_params lpv_block;
+};
+lpv_params lpv;
+#else
 layout(set = 0, binding = 0, scalar) uniform lpv_grid
 {
     lpv_params lpv;
 };
+#endif
 
 ivec3 lpv_cells()
 {

@@ -37,6 +37,7 @@ layout(set = 0, binding = 7) uniform sampler2D material;
 layout(set = 0, binding = 10) uniform sampler2D dielectric; // FRAME_DIELECTRIC if `has_dielectric`
 layout(set = 0, binding = 11) uniform sampler2D irradiance; // of the diffuse cones, scaled lux
 layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D specular;
+#include "techniques/common/reflected.glsl"
 
 // Tangent of the half-angle: a cone wider than 45° is no better resolved by the texels.
 const float WIDEST = 1.0;
@@ -59,11 +60,11 @@ vec3 reflected_radiance(ivec2 pixel, float z)
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg),
          to_viewer = normalize(frame_to_viewer(position));
-    vec2 roughness_metallic = texelFetch(material, pixel, 0).rg;
+    brdf_material m = pixel_material(pixel, set.has_dielectric != 0u);
     vec3 at = (position - clips.origin_m) / set.texel_m;
-    float tan_half = tan_half_angle(brdf_alpha(roughness_metallic.x));
+    float tan_half = tan_half_angle(brdf_alpha(m.roughness));
     float width = 2.0 * set.step_size * tan_half;
-    float rough = lobe_roughness(roughness_metallic.x);
+    float rough = lobe_roughness(m.roughness);
     if (set.tan_half > 0.0) rough = 0.0;
     vec3 radiance = texelFetch(irradiance, pixel, 0).rgb / PI;
     if (rough < 1.0) {
@@ -73,11 +74,7 @@ vec3 reflected_radiance(ivec2 pixel, float z)
         vec3 arriving = traced.rgb + (1.0 - traced.a) * environment_cone(direction, atan(tan_half));
         radiance = mix(set.gain * arriving, radiance, rough);
     }
-    vec4 lobe = BRDF_DEFAULT_DIELECTRIC;
-    if (set.has_dielectric != 0u) lobe = texelFetch(dielectric, pixel, 0);
-    brdf_material m = brdf_material_of(texelFetch(albedo, pixel, 0).rgb, roughness_metallic, lobe);
-    vec3 reflectance = brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo;
-    return reflectance * radiance;
+    return pixel_reflected(m, n, to_viewer, radiance);
 }
 
 void main()
