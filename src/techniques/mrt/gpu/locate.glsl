@@ -1,10 +1,14 @@
 // The block of a point, and the place in its cell [−½, ½]³: the inverse of the trilinear warp of
 // level/warp.c. Needs MRT_BLOCKS_BINDING; binding numbers MRT_CELLS_BINDING and
-// MRT_CANDIDATES_BINDING are the includer's.
+// MRT_CANDIDATES_BINDING are the includer's. With MRT_BLOCK_ROWS_BINDING affine blocks are read from
+// images.
 #ifndef AG_MRT_LOCATE_GLSL
 #define AG_MRT_LOCATE_GLSL
 
 #include "techniques/mrt/gpu/level.glsl"
+#ifdef MRT_BLOCK_ROWS_BINDING
+#include "techniques/mrt/gpu/block_rows.glsl"
+#endif
 
 // Lookup grid: the first candidate of each cell and the number of them.
 layout(set = 0, binding = MRT_CELLS_BINDING, scalar) readonly buffer mrt_cells
@@ -50,11 +54,33 @@ float largest_of(vec3 v)
     return max(max(abs(v.x), abs(v.y)), abs(v.z));
 }
 
+// The inverse of the affine part.
+vec3 affine_cell(uint block, vec3 world)
+{
+    vec3 cell, way = world - block_table[block].middle;
+    for (int a = 0; a < 3; a++) cell[a] = dot(block_table[block].inverse[a], way);
+    return cell;
+}
+
+mat3 affine_edges(uint block)
+{
+    mat3 edges;
+    for (int a = 0; a < 3; a++)
+        edges[a] = block_table[block].corner[1 << a] - block_table[block].corner[0];
+    return edges;
+}
+
 // From the affine part, which is exact for boxes; Newton's method otherwise.
 bool warp_inverse(uint block, vec3 world, out vec3 cell)
 {
-    vec3 way = world - block_table[block].middle;
-    for (int a = 0; a < 3; a++) cell[a] = dot(block_table[block].inverse[a], way);
+#ifdef MRT_BLOCK_ROWS_BINDING
+    vec3 rows[3];
+    if (AFFINE) {
+        cell = cell_by_rows(block, world, rows);
+        return true;
+    }
+#endif
+    cell = affine_cell(block, world);
     if (AFFINE) return true;
     float last = MRT_FAR;
     for (int i = 0; i < MRT_NEWTON_STEPS; i++) {
@@ -100,12 +126,11 @@ mrt_place locate(vec3 world)
 mat3 world_from_cell(mrt_place place)
 {
     mat3 jacobian;
-    if (AFFINE) {
-        vec3 low = block_table[place.block].corner[0];
-        for (int a = 0; a < 3; a++) jacobian[a] = block_table[place.block].corner[1 << a] - low;
-    } else {
-        warp_point(uint(place.block), place.cell, jacobian);
-    }
+#ifdef MRT_BLOCK_ROWS_BINDING
+    if (AFFINE) return edges_by_rows(uint(place.block));
+#endif
+    if (AFFINE) return affine_edges(uint(place.block));
+    warp_point(uint(place.block), place.cell, jacobian);
     return jacobian;
 }
 

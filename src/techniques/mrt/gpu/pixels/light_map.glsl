@@ -1,5 +1,5 @@
 // Light of a surface from the light map: of the wall that stands for it, or of several.
-// Needs locate.glsl, bricks.glsl, outdoors.glsl, lobe.glsl, MRT_TILES_BINDING.
+// Needs locate.glsl, block_rows.glsl, bricks.glsl, outdoors.glsl and lobe.glsl.
 #ifndef AG_MRT_LIGHT_MAP_GLSL
 #define AG_MRT_LIGHT_MAP_GLSL
 
@@ -16,10 +16,10 @@ const vec2 MRT_WALL_COSINE = vec2(0.35, 0.65);
 // Normals in the half floats of the frame differ this little from the wall's.
 const float MRT_ALONG_WALL = 1.0 - 1e-6;
 
-// The first texel of a tile.
-vec2 first_of(int tile)
+// One of the two faces of an axis.
+int face_of(int axis, bool high)
 {
-    return vec2(tile_table[tile].x, tile_table[tile].y);
+    return 2 * axis + (high ? 1 : 0);
 }
 
 vec3 light_map_uv(vec2 first, vec2 st)
@@ -77,15 +77,16 @@ float share_of_wall(float distance, float cosine)
            (1.0 - smoothstep(MRT_WALL_DISTANCE[0], MRT_WALL_DISTANCE[1], distance));
 }
 
-mrt_wall wall_of(mrt_place place, vec3 normal)
+// Of two opposite walls the surface faces one. `normal` is in the cell.
+mrt_wall wall_of(uint faces, vec3 cell, vec3 normal)
 {
     mrt_wall best = mrt_wall(-1, 0.0);
-    for (int f = 0; f < 6; f++) {
-        if (block_table[place.block].tile[f] < 0) continue;
-        float side = (f & 1) != 0 ? 1.0 : -1.0;
-        float distance = 0.5 - side * place.cell[f / 2];
-        float share = share_of_wall(distance, -side * normal[f / 2]);
-        if (share > best.share) best = mrt_wall(f, share);
+    for (int a = 0; a < 3; a++) {
+        bool high = normal[a] < 0.0;
+        float distance = 0.5 - (high ? cell[a] : -cell[a]);
+        float share = share_of_wall(distance, abs(normal[a]));
+        if (share > best.share && is_wall(faces, face_of(a, high)))
+            best = mrt_wall(face_of(a, high), share);
     }
     return best;
 }
@@ -98,12 +99,13 @@ vec3 walls_irradiance(mrt_place place, vec3 direction)
 {
     vec3 sum = vec3(0.0);
     float weights = 0.0;
+    uint block = uint(place.block), faces = faces_by_rows(block);
     for (int face = 0; face < 6; face++) {
-        int tile = block_table[place.block].tile[face];
-        if (tile < 0) continue;
+        if (!is_wall(faces, face)) continue;
         vec3 inner = -cube_from_face(face)[2];
         float cosine = max(dot(inner, direction), 0.0), weight = cosine * cosine + MRT_LEAST_WEIGHT;
-        sum += weight * wall_light(first_of(tile), face, place.cell, inner, vec3(0.0)).irradiance;
+        sum += weight * wall_light(tile_by_rows(block, face), face, place.cell, inner, vec3(0.0))
+                            .irradiance;
         weights += weight;
     }
     return weights > 0.0 ? sum / weights : vec3(0.0);
@@ -140,11 +142,12 @@ const float MRT_AWAY_COSINE = 0.5;
 float way_to_wall(mrt_place place, vec3 normal)
 {
     vec3 to = inverse(world_from_cell(place)) * normal;
+    uint faces = faces_by_rows(uint(place.block));
     float shortest = 0.0;
     for (int f = 0; f < 6; f++) {
         float side = (f & 1) != 0 ? 1.0 : -1.0, towards = side * to[f / 2];
         float distance = 0.5 - side * place.cell[f / 2];
-        if (block_table[place.block].tile[f] < 0 || distance > MRT_WALL_DISTANCE[0]) continue;
+        if (!is_wall(faces, f) || distance > MRT_WALL_DISTANCE[0]) continue;
         if (towards < MRT_AWAY_COSINE * length(to)) continue;
         shortest = max(distance / towards, 0.0) + level.offset_m;
     }
@@ -171,11 +174,12 @@ mrt_wall wall_beyond(vec3 world, vec3 normal, inout mrt_place place, inout vec3 
     none.face = -1;
     none.share = 0.0;
     int opening = -1;
+    uint faces = faces_by_rows(uint(place.block));
     float least = MRT_WALL_DISTANCE.x;
     for (int a = 0; a < 3; a++) {
-        int f = 2 * a + (place.cell[a] > 0.0 ? 1 : 0);
+        int f = face_of(a, place.cell[a] > 0.0);
         float distance = 0.5 - abs(place.cell[a]);
-        bool beside = abs(n[a]) < MRT_WALL_COSINE.x && block_table[place.block].neighbor[f] >= 0;
+        bool beside = abs(n[a]) < MRT_WALL_COSINE.x && is_opening(faces, f);
         if (!beside || distance > least) continue;
         least = distance;
         opening = f;
@@ -185,7 +189,7 @@ mrt_wall wall_beyond(vec3 world, vec3 normal, inout mrt_place place, inout vec3 
         next.outside > MRT_WALL_DISTANCE.x)
         return none;
     vec3 rotated = normal_in_cell(next, normal);
-    mrt_wall wall = wall_of(next, rotated);
+    mrt_wall wall = wall_of(faces_by_rows(uint(next.block)), next.cell, rotated);
     if (wall.share == 0.0) return none;
     place = next;
     n = rotated;
@@ -196,7 +200,7 @@ mrt_wall wall_beyond(vec3 world, vec3 normal, inout mrt_place place, inout vec3 
 mrt_light tube_light(mrt_place place, vec3 normal, mrt_lobe lobe)
 {
     mrt_tube_place at = tube_place(place.block, place.cell);
-    vec2 first = first_of(block_table[place.block].tile[0]);
+    vec2 first = tile_by_rows(uint(place.block), 0);
     vec2 st = vec2(at.around, at.along);
     vec3 n = normal_in_cell(place, normal) * at.frame;
     float share = share_of_wall(MRT_TUBE_RADIUS - length(at.off), n.z);
@@ -213,12 +217,12 @@ mrt_light room_light(vec3 position, vec3 normal, mrt_lobe lobe, mrt_place place)
 {
     if (TUBES) return tube_light(place, normal, lobe);
     vec3 n = normal_in_cell(place, normal);
-    mrt_wall wall = wall_of(place, n);
+    mrt_wall wall = wall_of(faces_by_rows(uint(place.block)), place.cell, n);
     if (wall.share == 0.0) wall = wall_beyond(position + level.offset_m * normal, normal, place, n);
     mrt_light on_wall = MRT_DARK, inside = MRT_DARK;
     if (wall.share > 0.0)
-        on_wall = wall_light(first_of(block_table[place.block].tile[wall.face]), wall.face,
-                             place.cell, n, direction_in_cell(place, lobe.along));
+        on_wall = wall_light(tile_by_rows(uint(place.block), wall.face), wall.face, place.cell, n,
+                             direction_in_cell(place, lobe.along));
     if (wall.share < 1.0)
         inside = PROBES ? bricks_light(place, normal, lobe) : walls_light(place, n, lobe);
     return mix_light(inside, on_wall, wall.share);

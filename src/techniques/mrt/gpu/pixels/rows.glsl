@@ -1,14 +1,11 @@
 // Pixels whose light needs one lookup: on a wall, or amid a block. Their blocks are affine cubes,
-// found by tables in images, of which a driver on a processor loads 16 bytes at once.
+// found by tables in images (block_rows.glsl).
 // Needs light_map.glsl; binding numbers MRT_BLOCK_ROWS_BINDING and MRT_CELL_ROWS_BINDING.
 #ifndef AG_MRT_ROWS_GLSL
 #define AG_MRT_ROWS_GLSL
 
-#include "techniques/common/light_map/table.glsl"
+#include "techniques/mrt/gpu/block_rows.glsl"
 
-// [block][MRT_BLOCK_ROWS]: rows of the warp's inverse, each with a component of the block's middle;
-// edges of the cell; the places of tiles in the light map by face, y above x, and two masks.
-layout(set = 0, binding = MRT_BLOCK_ROWS_BINDING, rgba32ui) uniform readonly uimage2D block_rows;
 // [cell of the lookup grid]: number of candidates and the first two of them.
 layout(set = 0, binding = MRT_CELL_ROWS_BINDING, rgba32ui) uniform readonly uimage2D cell_rows;
 
@@ -18,22 +15,11 @@ struct mrt_rows {
     vec3 cell;
 };
 
-uvec4 block_row(uint block, uint row)
-{
-    return imageLoad(block_rows, light_map_at(block * MRT_BLOCK_ROWS + row));
-}
-
 mrt_rows rows_of(uint block, vec3 world)
 {
     mrt_rows rows;
-    vec3 middle;
     rows.block = block;
-    for (uint a = 0u; a < 3u; a++) {
-        vec4 row = uintBitsToFloat(block_row(block, MRT_ROW_INVERSE + a));
-        rows.inverse[a] = row.xyz;
-        middle[a] = row.w;
-    }
-    for (int a = 0; a < 3; a++) rows.cell[a] = dot(rows.inverse[a], world - middle);
+    rows.cell = cell_by_rows(block, world, rows.inverse);
     return rows;
 }
 
@@ -60,19 +46,8 @@ bool find_rows(vec3 world, out mrt_rows rows)
 struct mrt_around {
     vec3 cell;
     vec3 normal; // in the cell
-    uvec4 tiles[2];
+    uint faces;  // faces_by_rows
 };
-
-bool has_wall(mrt_around around, int face)
-{
-    return (around.tiles[1].z & 1u << face) != 0u;
-}
-
-// One of the two faces of an axis.
-int face_of(int axis, bool high)
-{
-    return 2 * axis + (high ? 1 : 0);
-}
 
 // Whether way_to_wall finds none.
 bool faces_no_wall(mrt_rows rows, mrt_around around, vec3 normal)
@@ -84,24 +59,10 @@ bool faces_no_wall(mrt_rows rows, mrt_around around, vec3 normal)
     for (int a = 0; a < 3; a++) {
         bool high = to[a] > 0.0;
         float distance = 0.5 - (high ? rows.cell[a] : -rows.cell[a]);
-        none = none && !(has_wall(around, face_of(a, high)) && distance <= MRT_WALL_DISTANCE[0] &&
+        none = none && !(is_wall(around.faces, face_of(a, high)) && distance <= MRT_WALL_DISTANCE[0] &&
                          abs(to[a]) >= least);
     }
     return none;
-}
-
-// As wall_of: of two opposite walls the surface faces one.
-mrt_wall wall_around(mrt_around around)
-{
-    mrt_wall best = mrt_wall(-1, 0.0);
-    for (int a = 0; a < 3; a++) {
-        bool high = around.normal[a] < 0.0;
-        float distance = 0.5 - (high ? around.cell[a] : -around.cell[a]);
-        float share = share_of_wall(distance, abs(around.normal[a]));
-        if (share > best.share && has_wall(around, face_of(a, high)))
-            best = mrt_wall(face_of(a, high), share);
-    }
-    return best;
 }
 
 // Whether wall_beyond looks beyond no opening.
@@ -109,8 +70,7 @@ bool is_beside_no_opening(mrt_around around)
 {
     bool none = true;
     for (int a = 0; a < 3; a++) {
-        bool opening =
-            (around.tiles[1].z & MRT_ROW_OPENING << face_of(a, around.cell[a] > 0.0)) != 0u;
+        bool opening = is_opening(around.faces, face_of(a, around.cell[a] > 0.0));
         none = none && !(opening && 0.5 - abs(around.cell[a]) <= MRT_WALL_DISTANCE.x &&
                          abs(around.normal[a]) < MRT_WALL_COSINE.x);
     }
@@ -124,19 +84,15 @@ int plain_light(vec3 position, vec3 normal, mrt_lobe lobe, out mrt_light light)
 {
     mrt_rows rows;
     bool found = find_rows(position + level.offset_m * normal, rows);
-    mat3 edges;
-    for (uint a = 0u; a < 3u; a++)
-        edges[a] = uintBitsToFloat(block_row(rows.block, MRT_ROW_EDGES + a).xyz);
+    mat3 edges = edges_by_rows(rows.block);
     mrt_around around;
     around.cell = rows.cell;
     around.normal = normalize(normal * edges);
-    around.tiles =
-        uvec4[2](block_row(rows.block, MRT_ROW_TILES), block_row(rows.block, MRT_ROW_TILES + 1u));
+    around.faces = faces_by_rows(rows.block);
     found = found && faces_no_wall(rows, around, normal);
-    mrt_wall wall = wall_around(around);
+    mrt_wall wall = wall_of(around.faces, around.cell, around.normal);
     int face = max(wall.face, 0);
-    uint tile = face < 4 ? around.tiles[0][face & 3] : around.tiles[1][face & 3];
-    light = wall_light(vec2(tile & 0xffffu, tile >> 16), face, around.cell, around.normal,
+    light = wall_light(tile_by_rows(rows.block, face), face, around.cell, around.normal,
                        turned_by(edges, lobe.along));
     if (found && wall.share == 1.0) return MRT_OF_WALL;
     bool probes = PROBES && wall.share == 0.0 && is_beside_no_opening(around);
