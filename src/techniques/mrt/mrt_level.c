@@ -2,7 +2,7 @@
 #include "techniques/mrt/mrt_state.h"
 
 #include "techniques/mrt/objects/clutter_operators.h"
-#include "techniques/mrt/level/make_map.h"
+#include "techniques/mrt/level/map/make_map.h"
 
 // ---- the map
 

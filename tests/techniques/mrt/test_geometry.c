@@ -5,7 +5,7 @@
 #include "core/rng.h"
 
 #include "techniques/mrt/level/geometry.h"
-#include "techniques/mrt/level/make_map.h"
+#include "techniques/mrt/level/map/make_map.h"
 
 #include <math.h>
 

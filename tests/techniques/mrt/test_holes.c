@@ -2,7 +2,7 @@
 #include "framework/test.h"
 #include "techniques/mrt/mrt_map_fixture.h"
 
-#include "techniques/mrt/level/make_map.h"
+#include "techniques/mrt/level/map/make_map.h"
 
 #include <stdio.h>
 #include <string.h>

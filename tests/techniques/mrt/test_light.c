@@ -9,7 +9,7 @@
 #include "core/sampling.h"
 
 #include "techniques/mrt/level/geometry.h"
-#include "techniques/mrt/level/make_map.h"
+#include "techniques/mrt/level/map/make_map.h"
 #include "techniques/mrt/level/solver.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 // Block maps that are made from scenes without one.
 #include "framework/test.h"
 
-#include "techniques/mrt/level/make_map.h"
+#include "techniques/mrt/level/map/make_map.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -87,25 +87,41 @@ void trial_door(struct frame_fixture *s, struct gpu *gpu, bool back)
         fixture_look(s, vec3_of(0.3f, 1.5f, -1.8f), vec3_of(3, 1.6f, 2));
 }
 
-void trial_window(struct frame_fixture *s, struct gpu *gpu, bool towards_window)
+// Walls 0.2 thick around a room; its wall at high x has a window, unless that is empty.
+static void add_house(struct frame_fixture *s, struct box3 room, struct box3 window, int material)
 {
     const float t = 0.2f;
+    const vec3s low = room.min, high = room.max, a = window.min, b = window.max;
     const struct box3 slabs[] = {
-        { vec3_of(-2 - t, -t, -2 - t), vec3_of(2 + t, 0, 2 + t) }, // floor, ceiling
-        { vec3_of(-2 - t, 2.8f, -2 - t), vec3_of(2 + t, 2.8f + t, 2 + t) },
-        { vec3_of(-2 - t, 0, -2 - t), vec3_of(-2, 2.8f, 2 + t) }, // left, back, front
-        { vec3_of(-2, 0, -2 - t), vec3_of(2 + t, 2.8f, -2) },
-        { vec3_of(-2, 0, 2), vec3_of(2 + t, 2.8f, 2 + t) },
-        { vec3_of(2, 0, -2), vec3_of(2 + t, 2.8f, -0.8f) }, // around the window
-        { vec3_of(2, 0, 0.8f), vec3_of(2 + t, 2.8f, 2) },
-        { vec3_of(2, 0, -0.8f), vec3_of(2 + t, 0.9f, 0.8f) },
-        { vec3_of(2, 2.1f, -0.8f), vec3_of(2 + t, 2.8f, 0.8f) },
+        { vec3_of(low.x - t, low.y - t, low.z - t), vec3_of(high.x + t, low.y, high.z + t) },
+        { vec3_of(low.x - t, high.y, low.z - t), vec3_of(high.x + t, high.y + t, high.z + t) },
+        { vec3_of(low.x - t, low.y, low.z - t), vec3_of(low.x, high.y, high.z + t) },
+        { vec3_of(low.x, low.y, low.z - t), vec3_of(high.x + t, high.y, low.z) },
+        { vec3_of(low.x, low.y, high.z), vec3_of(high.x + t, high.y, high.z + t) },
     };
+    const struct box3 around[] = {
+        { vec3_of(high.x, low.y, low.z), vec3_of(high.x + t, high.y, a.z) },
+        { vec3_of(high.x, low.y, b.z), vec3_of(high.x + t, high.y, high.z) },
+        { vec3_of(high.x, low.y, a.z), vec3_of(high.x + t, a.y, b.z) },
+        { vec3_of(high.x, b.y, a.z), vec3_of(high.x + t, high.y, b.z) },
+    };
+    for (size_t i = 0; i < sizeof slabs / sizeof slabs[0]; i++)
+        fixture_box(s, slabs[i].min, slabs[i].max, false, material);
+    if (box3_is_empty(window))
+        fixture_box(s, vec3_of(high.x, low.y, low.z), vec3_of(high.x + t, high.y, high.z), false,
+                    material);
+    for (size_t i = 0; i < sizeof around / sizeof around[0] && !box3_is_empty(window); i++)
+        fixture_box(s, around[i].min, around[i].max, false, material);
+}
+
+void trial_window(struct frame_fixture *s, struct gpu *gpu, bool towards_window)
+{
+    const struct box3 room = { vec3_of(-2, 0, -2), vec3_of(2, 2.8f, 2) };
+    const struct box3 window = { vec3_of(2, 0.9f, -0.8f), vec3_of(2, 2.1f, 0.8f) };
     fixture_init(s, gpu);
     s->options.shadow_size = 1024;
     const int white = fixture_matte(s, grey(0.7f)), ground = fixture_matte(s, grey(0.4f));
-    for (size_t i = 0; i < sizeof slabs / sizeof slabs[0]; i++)
-        fixture_box(s, slabs[i].min, slabs[i].max, false, white);
+    add_house(s, room, window, white);
     fixture_box(s, vec3_of(-20, -0.4f, -20), vec3_of(20, -0.05f, 20), false, ground);
     fixture_add_sun(s, vec3_of(0, -1, -1), grey(20000));
     add_camera(s, vec3_of(0, 1.5f, 0));
@@ -113,6 +129,53 @@ void trial_window(struct frame_fixture *s, struct gpu *gpu, bool towards_window)
         fixture_look(s, vec3_of(-1.8f, 1.6f, 1.7f), vec3_of(1, 1.2f, -1));
     else
         fixture_look(s, vec3_of(1.6f, 1.6f, -1.7f), vec3_of(-1.5f, 1.2f, 1));
+}
+
+static struct box3 window_of(struct box3 room, float low, float high)
+{
+    const float middle = 0.5f * (room.min.z + room.max.z);
+    return (struct box3){ vec3_of(room.max.x, low, middle - 0.8f),
+                          vec3_of(room.max.x, high, middle + 0.8f) };
+}
+
+const struct box3 trial_street_rooms[TRIAL_STREET_ROOMS] = {
+    [TRIAL_STREET_SMALL] = { { { -2, 0, -2 } }, { { 2, 2.8f, 2 } } },
+    [TRIAL_STREET_LARGE] = { { { 8, 0, -3 } }, { { 12.5f, 4, 3 } } },
+    [TRIAL_STREET_DARK] = { { { -3, 0, -9 } }, { { 0, 2.6f, -5 } } },
+    [TRIAL_STREET_BACK] = { { { -5, 0, 6 } }, { { -1.1f, 3, 10 } } },
+    [TRIAL_STREET_FRONT] = { { { -0.9f, 0, 6 } }, { { 3, 3, 10 } } },
+};
+
+// A wall between two rooms with a door of 1 × 2.1.
+static void add_door(struct frame_fixture *s, struct box3 back, struct box3 front, int material)
+{
+    const float low = back.max.x, high = front.min.x, top = back.max.y;
+    const float middle = 0.5f * (back.min.z + back.max.z);
+    fixture_box(s, vec3_of(low, 0, back.min.z), vec3_of(high, top, middle - 0.5f), false, material);
+    fixture_box(s, vec3_of(low, 0, middle + 0.5f), vec3_of(high, top, back.max.z), false, material);
+    fixture_box(s, vec3_of(low, 2.1f, middle - 0.5f), vec3_of(high, top, middle + 0.5f), false,
+                material);
+}
+
+void trial_street(struct frame_fixture *s, struct gpu *gpu, enum trial_street_room room)
+{
+    const struct box3 *rooms = trial_street_rooms, at = rooms[room];
+    const struct box3 pair = box3_union(rooms[TRIAL_STREET_BACK], rooms[TRIAL_STREET_FRONT]);
+    fixture_init(s, gpu);
+    s->options.shadow_size = 2048;
+    const int white = fixture_matte(s, grey(0.7f)), ground = fixture_matte(s, grey(0.4f));
+    add_house(s, rooms[TRIAL_STREET_SMALL], window_of(rooms[TRIAL_STREET_SMALL], 0.9f, 2.1f),
+              white);
+    add_house(s, rooms[TRIAL_STREET_LARGE], window_of(rooms[TRIAL_STREET_LARGE], 1, 3), white);
+    add_house(s, rooms[TRIAL_STREET_DARK], box3_empty(), white);
+    add_house(s, pair, window_of(pair, 0.9f, 2.1f), white);
+    add_door(s, rooms[TRIAL_STREET_BACK], rooms[TRIAL_STREET_FRONT], white);
+    fixture_box(s, vec3_of(-20, -0.6f, -20), vec3_of(20, -0.2f, 20), false, ground);
+    fixture_box(s, vec3_of(14, -0.2f, -18), vec3_of(18, 12, -14), false, ground); // a tower
+    fixture_add_sun(s, vec3_of(0, -1, -1), grey(20000));
+    add_camera(s, vec3_of(-16, 2, 0)); // outdoors
+    fixture_look(s, vec3_of(at.max.x - 0.2f, 1.6f, at.max.z - 0.3f),
+                 vec3_of(at.min.x, 1.2f, at.min.z + 0.5f));
 }
 
 void trial_open_plane(struct frame_fixture *s, struct gpu *gpu, const struct trial_plane *plane)

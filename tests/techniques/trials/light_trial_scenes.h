@@ -20,6 +20,21 @@ void trial_door(struct frame_fixture *s, struct gpu *gpu, bool back);
 // or away from it.
 void trial_window(struct frame_fixture *s, struct gpu *gpu, bool towards_window);
 
+// A ground of 40 × 40 in the sun of 20000 lux with a tower of 12 and four houses, small in it:
+// walls 0.2 thick, albedo 0.7. A small one, a large one and one of two rooms, of which a door joins
+// the back one to the front one, have windows along which the sun comes; one is closed. The camera
+// is in a room, and looks away from the window or the door; the scene's own is outdoors.
+enum trial_street_room {
+    TRIAL_STREET_SMALL,
+    TRIAL_STREET_LARGE,
+    TRIAL_STREET_DARK,
+    TRIAL_STREET_BACK,
+    TRIAL_STREET_FRONT,
+    TRIAL_STREET_ROOMS
+};
+extern const struct box3 trial_street_rooms[TRIAL_STREET_ROOMS];
+void trial_street(struct frame_fixture *s, struct gpu *gpu, enum trial_street_room room);
+
 // A square plane of 6 in the sun (1000 lux) or under a uniform sky (1 cd/m²), tilted around z.
 struct trial_plane {
     float tilt_rad;

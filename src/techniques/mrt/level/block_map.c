@@ -29,6 +29,24 @@ void mrt_block_map_finish(struct mrt_block_map *map)
     *map = (struct mrt_block_map){ 0 };
 }
 
+bool mrt_block_map_append(const char *what, struct mrt_block_map *map, struct mrt_block_map *more)
+{
+    const int first = map->count;
+    struct mrt_block_map both;
+    if (!mrt_block_map_init(map->host, what, (size_t)first + (size_t)more->count, &both))
+        return false;
+    memcpy(both.blocks, map->blocks, (size_t)first * sizeof *both.blocks);
+    memcpy(both.blocks + first, more->blocks, (size_t)more->count * sizeof *both.blocks);
+    for (int b = first; b < both.count; b++)
+        for (int f = 0; f < CUBE_FACES; f++)
+            if (both.blocks[b].neighbor[f].block >= 0) both.blocks[b].neighbor[f].block += first;
+    mrt_block_map_finish(more);
+    host_free(map->host, map->blocks);
+    map->blocks = both.blocks;
+    map->count = both.count;
+    return true;
+}
+
 static float longest_edge(const struct mrt_block *block, int face)
 {
     float longest = 0.0f;

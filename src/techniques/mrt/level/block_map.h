@@ -28,6 +28,9 @@ bool mrt_block_map_init(struct host *host, const char *what, size_t count,
                         struct mrt_block_map *map);
 void mrt_block_map_finish(struct mrt_block_map *map); // accepts zero
 
+// Moves all blocks of `more`, with their neighbours, to the end of `map`. Names must differ.
+bool mrt_block_map_append(const char *what, struct mrt_block_map *map, struct mrt_block_map *more);
+
 // Opens two faces to each other. FAIL_FORMAT, with the names of the blocks, where one of them is
 // taken or their corners do not coincide.
 bool mrt_connect(const char *what, struct mrt_block_map *map, int block, int face, int other,

@@ -15,9 +15,14 @@ struct mrt_cell {
     unsigned hole; // bit f: a wall with holes, such as a door, does
 };
 
+struct mrt_regions;
+
 struct mrt_cells {
     struct raycast *raycast;
     struct box3 bounds;
+    float reach_m; // surfaces farther away enclose nothing: mrt_roof_reach of the scene
+    // Enclosed regions of the scene. NULL: the cells are those of one region.
+    const struct mrt_regions *regions;
     float plane[3][MRT_MAX_PLANES]; // ascending
     int planes[3];
     struct mrt_cell *cell; // x fastest

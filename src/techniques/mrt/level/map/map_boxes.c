@@ -1,39 +1,12 @@
-// map=single and map=auto.
-#include "make_map.h"
+// Cells become boxes, boxes between the same walls one, and boxes blocks.
+#include "map_boxes.h"
 
-#include "holes.h"
-#include "map_cells.h"
-
-#include "scene/view/defaults.h"
+#include "techniques/mrt/level/holes.h"
 
 #include <math.h>
 #include <stdio.h>
 
 static const float MAX_ASPECT = 1.6f; // of boxes that are made larger: the dictionary has cubes
-static const float FLAT = 0.05f;      // least edge of a single block, of the longest
-
-// A plane is in the middle of a flat block.
-static struct box3 box_of(struct box3 bounds)
-{
-    const vec3s size = box3_size(bounds);
-    const float least = FLAT * glms_vec3_max(size);
-    for (int a = 0; a < 3; a++) {
-        const float more = 0.5f * fmaxf(least - size.raw[a], 0.0f);
-        bounds.min.raw[a] -= more;
-        bounds.max.raw[a] += more;
-    }
-    return bounds;
-}
-
-bool mrt_map_single(struct host *host, const struct scene_pose *pose, struct mrt_block_map *map)
-{
-    if (!mrt_block_map_init(host, pose->scene->name, 1, map)) return false;
-    mrt_block_init(&map->blocks[0], "scene", MRT_BLOCK_CUBE);
-    mrt_block_set_box(&map->blocks[0], box_of(pose->bounds));
-    if (mrt_block_map_check(pose->scene->name, map)) return true;
-    mrt_block_map_finish(map);
-    return false;
-}
 
 // A union of cells, from plane low[a] to plane high[a].
 struct map_box {
@@ -47,6 +20,7 @@ struct map_boxes {
     struct map_box *boxes;
     int *box_of_cell; // −1: none
     int count;
+    int first; // number in the name of the first box
 };
 
 static void one_box_per_cell(struct map_boxes *boxes)
@@ -143,7 +117,7 @@ static void set_block(const struct map_boxes *boxes, int i, struct mrt_block *bl
     char name[MRT_NAME_BYTES];
     const struct map_box *from = &boxes->boxes[i];
     struct box3 box;
-    snprintf(name, sizeof name, "box %d", i);
+    snprintf(name, sizeof name, "box %d", boxes->first + i);
     for (int a = 0; a < 3; a++) {
         box.min.raw[a] = boxes->cells->plane[a][from->low[a]];
         box.max.raw[a] = boxes->cells->plane[a][from->high[a]];
@@ -202,11 +176,11 @@ static void keep_a_wall(struct map_boxes *boxes)
     }
 }
 
-static bool map_of_cells(struct host *host, const struct scene_pose *pose, struct mrt_cells *cells,
-                         struct mrt_block_map *map)
+bool mrt_map_of_cells(struct host *host, const char *what, struct mrt_cells *cells, int first,
+                      struct mrt_block_map *map)
 {
     size_t count = (size_t)mrt_cells_count(cells);
-    struct map_boxes boxes = { .cells = cells };
+    struct map_boxes boxes = { .cells = cells, .first = first };
     boxes.boxes = host_alloc(host, count, sizeof *boxes.boxes);
     boxes.box_of_cell = host_alloc(host, count, sizeof *boxes.box_of_cell);
     bool ok = boxes.boxes && boxes.box_of_cell;
@@ -214,53 +188,9 @@ static bool map_of_cells(struct host *host, const struct scene_pose *pose, struc
         one_box_per_cell(&boxes);
         while (merge_one(&boxes)) {}
         keep_a_wall(&boxes);
-        ok = boxes.count ? emit(host, pose->scene->name, &boxes, map)
-                         : mrt_map_single(host, pose, map);
+        ok = emit(host, what, &boxes, map);
     }
     host_free(host, boxes.box_of_cell);
     host_free(host, boxes.boxes);
-    return ok;
-}
-
-static bool any_free(const struct mrt_cells *cells)
-{
-    for (int i = 0; i < mrt_cells_count(cells); i++)
-        if (cells->cell[i].free) return true;
-    return false;
-}
-
-// The default camera is the seed if no other is inside a room.
-static bool fill(struct host *host, const struct scene_pose *pose, const vec3s *seeds, size_t count,
-                 struct mrt_cells *cells)
-{
-    if (!mrt_cells_fill(host, cells, seeds, count)) return false;
-    if (any_free(cells)) return true;
-    const vec3s eye = default_camera(pose).eye;
-    return mrt_cells_fill(host, cells, &eye, 1);
-}
-
-bool mrt_map_auto(struct host *host, const struct scene_pose *pose, const vec3s *seeds,
-                  size_t seed_count, struct mrt_block_map *map)
-{
-    struct raycast raycast = { 0 };
-    struct mrt_cells cells = { .raycast = &raycast, .bounds = pose->bounds };
-    *map = (struct mrt_block_map){ 0 };
-    bool ok = raycast_init(&raycast, host, pose);
-    if (ok) {
-        mrt_cells_find_planes(&cells);
-        ok = fill(host, pose, seeds, seed_count, &cells);
-    }
-    if (ok && mrt_cells_join_walls(&cells)) ok = fill(host, pose, seeds, seed_count, &cells);
-    if (ok) {
-        mrt_cells_snap(&cells);
-        mrt_cells_drop_planes(&cells, INFINITY);
-        mrt_cells_split(&cells);
-        ok = fill(host, pose, seeds, seed_count, &cells);
-    }
-    if (ok) {
-        ok = map_of_cells(host, pose, &cells, map);
-    }
-    host_free(host, cells.cell);
-    raycast_finish(&raycast);
     return ok;
 }

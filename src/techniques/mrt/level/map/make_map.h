@@ -9,8 +9,8 @@
 bool mrt_map_single(struct host *host, const struct scene_pose *pose, struct mrt_block_map *map);
 
 // Boxes in the free space that is connected with the seeds (positions of the camera and the
-// lights); openings where they touch. Walls that follow no axis are replaced by the box around
-// them. If no seed is inside a room, the default camera is
-// one; where that is outside too, the same as mrt_map_single.
+// lights), and in rooms that are too small in their scene for its planes; openings where they
+// touch. Walls that follow no axis are replaced by the box around them. If no seed is inside a
+// room, the default camera is one; without any room the same as mrt_map_single.
 bool mrt_map_auto(struct host *host, const struct scene_pose *pose, const vec3s *seeds,
                   size_t seed_count, struct mrt_block_map *map);

@@ -1,17 +1,16 @@
 // Free cells, and their walls.
-#include "holes.h"
 #include "map_cells.h"
+#include "map_outside.h"
 
 #include "core/host.h"
-#include "core/rng.h"
-#include "core/sampling.h"
+
+#include "techniques/mrt/level/holes.h"
 
 #include <math.h>
 
-enum { SAMPLES = 8, DIRECTIONS = 128 }; // along each edge of a face; around a point
-static const float OUTSIDE = 0.4f;      // least part of all directions without a surface
-static const float ALIGNED = 0.9f;      // cosine between a wall's normal and the axis
-static const float REACH = 0.25f;       // of a cell: surfaces this near to a face belong to it
+enum { SAMPLES = 8 };              // along each edge of a face
+static const float ALIGNED = 0.9f; // cosine between a wall's normal and the axis
+static const float REACH = 0.25f;  // of a cell: surfaces this near to a face belong to it
 
 void mrt_cell_place(const struct mrt_cells *cells, int i, int at[3])
 {
@@ -87,19 +86,6 @@ static void find_openings(struct mrt_cells *cells)
     }
 }
 
-// The middle of a room sees surfaces in most directions.
-static bool is_outside(const struct mrt_cells *cells, const int at[3])
-{
-    float far = 2.0f * glms_vec3_norm(box3_size(cells->bounds));
-    vec3s middle;
-    int escaped = 0;
-    for (int a = 0; a < 3; a++)
-        middle.raw[a] = cells->plane[a][at[a]] + 0.5f * size_along(cells, at, a);
-    for (uint32_t i = 0; i < DIRECTIONS; i++)
-        escaped += !raycast_blocked(cells->raycast, middle, sample_sphere(sobol_2d(i, 0)), far);
-    return (float)escaped > OUTSIDE * (float)DIRECTIONS;
-}
-
 static void free_cell_of(struct mrt_cells *cells, vec3s seed)
 {
     int at[3];
@@ -144,7 +130,7 @@ bool mrt_cells_fill(struct host *host, struct mrt_cells *cells, const vec3s *see
     for (int i = 0; i < mrt_cells_count(cells); i++) {
         int at[3];
         mrt_cell_place(cells, i, at);
-        cells->cell[i].outside = is_outside(cells, at);
+        cells->cell[i].outside = mrt_cell_is_outside(cells, at);
     }
     for (size_t i = 0; i < count; i++) free_cell_of(cells, seeds[i]);
     flood(cells);

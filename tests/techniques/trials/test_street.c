@@ -1,0 +1,87 @@
+// Light in houses that are small in their scene.
+#include "techniques/trials/light_trial.h"
+#include "techniques/trials/light_trial_scenes.h"
+
+#include "techniques/mrt/level/map/make_map.h"
+
+#define DICTIONARY TRIAL_DICTIONARY(16, 32, 32)
+
+static struct box3 box_of(const struct mrt_block *block)
+{
+    return (struct box3){ block->corner[0], block->corner[MRT_CORNERS - 1] };
+}
+
+static bool contains(struct box3 box, vec3s p)
+{
+    for (int a = 0; a < 3; a++)
+        if (p.raw[a] < box.min.raw[a] || p.raw[a] > box.max.raw[a]) return false;
+    return true;
+}
+
+// The box around all blocks whose middle is in the room.
+static struct box3 found_room(const struct mrt_block_map *map, struct box3 room)
+{
+    struct box3 found = box3_empty();
+    for (int b = 0; b < map->count; b++)
+        if (contains(room, box3_centre(box_of(&map->blocks[b]))))
+            found = box3_union(found, box_of(&map->blocks[b]));
+    return found;
+}
+
+// Blocks end in the walls, and are nowhere else.
+TEST_GPU(blocks_of_houses_are_their_rooms)
+{
+    struct frame_fixture s;
+    struct scene_pose pose;
+    struct mrt_block_map map;
+    trial_street(&s, gpu, TRIAL_STREET_SMALL);
+    const vec3s outdoors =
+        pose_init(&pose, s.scene, -1, 0.0f) ? pose_camera(&pose, 0).eye : vec3_of(0, 0, 0);
+    assert_true(mrt_map_auto(test_host(), &pose, &outdoors, 1, &map));
+    for (int r = 0; r < TRIAL_STREET_ROOMS; r++) {
+        const struct box3 room = trial_street_rooms[r], found = found_room(&map, room);
+        CHECK(glms_vec3_max(glms_vec3_abs(glms_vec3_sub(found.min, room.min))) < 0.2f);
+        CHECK(glms_vec3_max(glms_vec3_abs(glms_vec3_sub(found.max, room.max))) < 0.2f);
+    }
+    for (int b = 0; b < map.count; b++) {
+        int rooms = 0;
+        for (int r = 0; r < TRIAL_STREET_ROOMS; r++)
+            rooms += contains(trial_street_rooms[r], box3_centre(box_of(&map.blocks[b])));
+        CHECK(rooms == 1);
+    }
+    mrt_block_map_finish(&map);
+    pose_finish(&pose);
+    fixture_finish(&s);
+}
+
+static void check_room(struct gpu *gpu, enum trial_street_room room, const char *gi)
+{
+    struct frame_fixture s;
+    trial_street(&s, gpu, room);
+    const double expected = trial_reference(&s, -1, 1024).mean[1];
+    fixture_finish(&s);
+    trial_street(&s, gpu, room);
+    const double found = trial_technique(&s, gi).mean[1];
+    fixture_finish(&s);
+    print_message("%s: room %d: %.3f of the reference's %.3f lux\n", gi, (int)room,
+                  found / expected, expected);
+    CHECK(found >= 0.8 * expected && found <= 1.2 * expected);
+}
+
+// A fifth, as by the window of a single house.
+TEST_GPU(light_of_sunlit_ground_enters_small_houses)
+{
+    check_room(gpu, TRIAL_STREET_SMALL, "mrt" DICTIONARY);
+    check_room(gpu, TRIAL_STREET_LARGE, "mrt" DICTIONARY);
+    check_room(gpu, TRIAL_STREET_BACK, "mrt" DICTIONARY);
+    check_room(gpu, TRIAL_STREET_FRONT, "drt" DICTIONARY);
+}
+
+// The sun has 20000 lux.
+TEST_GPU(a_closed_house_in_the_sun_stays_dark)
+{
+    struct frame_fixture s;
+    trial_street(&s, gpu, TRIAL_STREET_DARK);
+    CHECK(trial_technique(&s, "mrt" DICTIONARY).mean[1] < 1e-3);
+    fixture_finish(&s);
+}
