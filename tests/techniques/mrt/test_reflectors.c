@@ -171,3 +171,45 @@ TEST(surfaces_of_a_block_are_no_reflectors)
     CHECK(reflectors_seen(-1.6f, across, along) > 0);
     CHECK(reflectors_seen(-1.2f, across, vec3_of(0, -0.15f, 0)) > 0);
 }
+
+// Below the ground there is no outdoors, though rays downward meet nothing.
+TEST(points_below_the_ground_are_not_outdoors)
+{
+    struct place p;
+    struct mrt_outdoors outdoors;
+    const struct box3 bounds = { vec3_of(-8, -6, -8), vec3_of(8, 4, 8) };
+    open_ground(&p, -3);
+    assert_true(mrt_outdoors_init(p.trace, &p.reflectors, bounds, &outdoors));
+    assert_non_null(outdoors.probes);
+    for (uint32_t i = 0; i < probe_grid_count(outdoors.grid); i++) {
+        const vec3s at = probe_grid_point(outdoors.grid, i);
+        const bool in_block = glms_vec3_max(glms_vec3_abs(at)) <= 1.001f;
+        if (at.y < -3.0f || in_block)
+            CHECK(outdoors.probes[i].open <= 0.1f);
+        else
+            CHECK(outdoors.probes[i].open == 1.0f);
+    }
+    mrt_outdoors_finish(&outdoors);
+    close_place(&p);
+}
+
+// Room for 12 points along the longest side at least, and not for many more than 4096 in all.
+TEST(outdoor_points_are_as_dense_as_their_number_allows)
+{
+    const vec3s sizes[] = { vec3_of(40, 6, 40), vec3_of(10, 10, 10), vec3_of(100, 0, 100),
+                            vec3_of(100, 1, 1) };
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        struct place p;
+        struct mrt_outdoors outdoors;
+        const struct box3 bounds = { glms_vec3_scale(sizes[i], -0.5f),
+                                     glms_vec3_scale(sizes[i], 0.5f) };
+        open_ground(&p, -60);
+        assert_true(mrt_outdoors_init(p.trace, &p.reflectors, bounds, &outdoors));
+        const float longest = glms_vec3_max(sizes[i]);
+        CHECK(outdoors.grid.spacing_m <= 1.0001f * longest / 11);
+        CHECK(probe_grid_count(outdoors.grid) >= 12);
+        CHECK(probe_grid_count(outdoors.grid) <= 3 * 4096);
+        mrt_outdoors_finish(&outdoors);
+        close_place(&p);
+    }
+}

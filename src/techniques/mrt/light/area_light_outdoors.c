@@ -1,18 +1,29 @@
 // Probes outside of all blocks.
 #include "techniques/mrt/light/area_light.h"
 
+#include "core/sh.h"
+
 #include <math.h>
 
-enum { MAX_POINTS = 12, RAYS = 128 }; // points along the longest side of the scene
+enum { LEAST_POINTS = 12, POINTS = 4096, RAYS = 128 }; // along the longest side; some, of all
 
 // Least part of all directions with the sky where nothing else than it is above: as map_cells.c.
 static const float OUTSIDE = 0.4f;
 
-// Points at both ends of the longest side.
+// Cubes between the points have an edge that gives POINTS of them. A side counts as no shorter than
+// one of LEAST_POINTS on the longest side.
+static float spacing_of(vec3s size)
+{
+    const float coarsest = glms_vec3_max(size) / (float)(LEAST_POINTS - 1);
+    const vec3s sides = glms_vec3_maxv(size, vec3_of(coarsest, coarsest, coarsest));
+    return fminf(coarsest, cbrtf(sides.x * sides.y * sides.z / (float)POINTS));
+}
+
+// Points at both ends of each side, or beyond.
 static struct frame_probes grid_of(struct box3 bounds)
 {
     const vec3s size = box3_size(bounds);
-    const float spacing = glms_vec3_max(size) / (float)(MAX_POINTS - 1);
+    const float spacing = spacing_of(size);
     struct frame_probes grid = { .first_m = bounds.min, .spacing_m = spacing };
     int32_t *const counts[3] = { &grid.count_x, &grid.count_y, &grid.count_z };
     for (int a = 0; a < 3; a++) {
@@ -29,13 +40,20 @@ static float sky_share(const struct mrt_area_light_probe *probe)
     return probe->sky[0] / sqrtf(4.0f * GLM_PIf);
 }
 
+// A place below the ground sees the sky below the horizon only.
+static float sky_above(const struct mrt_area_light_probe *probe)
+{
+    const float on_top = sh_dot(3, probe->sky, vec3_of(0, 1, 0));
+    return fmaxf(fminf(sky_share(probe), on_top), 0.0f);
+}
+
 // Premultiplied. Returns whether the point is outdoors.
 static bool place_point(const struct mrt_lit_point *point, struct mrt_reflectors *reflectors,
                         struct mrt_outdoor_probe *out)
 {
     const struct mrt_reflector_row row = point->light.reflected;
     out->light = point->light;
-    out->open = point->solid ? 0.0f : fminf(sky_share(&point->light) / OUTSIDE, 1.0f);
+    out->open = point->solid ? 0.0f : fminf(sky_above(&point->light) / OUTSIDE, 1.0f);
     for (int k = 0; k < MRT_PROBE_VALUES; k++) {
         out->light.emitted[k] = glms_vec3_scale(out->light.emitted[k], out->open);
         out->light.sky[k] *= out->open;
