@@ -4,7 +4,7 @@
 
 #define DICTIONARY TRIAL_DICTIONARY(16, 32, 32)
 
-// A fifth is what two bounces outdoors and few modes indoors lose.
+// A fifth is what coarse places outdoors and few modes indoors lose.
 TEST_GPU(light_of_sunlit_ground_enters_by_a_window)
 {
     static const struct trial_bounds bounds[] = { { "radiosity:texels=16384", 0.95, 1.05 },

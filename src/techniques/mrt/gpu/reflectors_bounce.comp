@@ -1,4 +1,4 @@
-// Radiosity of each reflector of direct light and of what other reflectors send of that.
+// Radiosity of each reflector of direct light and of what other reflectors send.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -11,7 +11,11 @@
 
 layout(local_size_x = MRT_LOCAL) in;
 
-layout(set = 0, binding = 5, scalar) writeonly buffer mrt_reflector_bounced
+layout(set = 0, binding = 5, scalar) readonly buffer mrt_reflector_direct
+{
+    vec3 reflector_direct_table[];
+};
+layout(set = 0, binding = 6, scalar) writeonly buffer mrt_reflector_bounced
 {
     vec3 reflector_bounced_table[];
 };
@@ -21,6 +25,6 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i >= level.reflectors) return;
     reflector_bounced_table[i] =
-        reflector_light_table[i] +
+        reflector_direct_table[i] +
         texel_table[i].reflectance * reflected_irradiance(texel_table[i].reflected);
 }
