@@ -1,7 +1,7 @@
 // The block of a point, and the place in its cell [−½, ½]³: the inverse of the trilinear warp of
 // level/warp.c. Needs MRT_BLOCKS_BINDING; binding numbers MRT_CELLS_BINDING and
-// MRT_CANDIDATES_BINDING are the includer's. With MRT_BLOCK_ROWS_BINDING affine blocks are read from
-// images.
+// MRT_CANDIDATES_BINDING are the includer's. With MRT_BLOCK_ROWS_BINDING affine blocks are read
+// from images.
 #ifndef AG_MRT_LOCATE_GLSL
 #define AG_MRT_LOCATE_GLSL
 

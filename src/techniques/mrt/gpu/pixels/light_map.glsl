@@ -77,7 +77,7 @@ float share_of_wall(float distance, float cosine)
            (1.0 - smoothstep(MRT_WALL_DISTANCE[0], MRT_WALL_DISTANCE[1], distance));
 }
 
-// Of two opposite walls the surface faces one. `normal` is in the cell.
+// A surface faces one of two opposite walls. `normal` is in the cell.
 mrt_wall wall_of(uint faces, vec3 cell, vec3 normal)
 {
     mrt_wall best = mrt_wall(-1, 0.0);
@@ -104,8 +104,8 @@ vec3 walls_irradiance(mrt_place place, vec3 direction)
         if (!is_wall(faces, face)) continue;
         vec3 inner = -cube_from_face(face)[2];
         float cosine = max(dot(inner, direction), 0.0), weight = cosine * cosine + MRT_LEAST_WEIGHT;
-        sum += weight * wall_light(tile_by_rows(block, face), face, place.cell, inner, vec3(0.0))
-                            .irradiance;
+        mrt_light light = wall_light(tile_by_rows(block, face), face, place.cell, inner, vec3(0.0));
+        sum += weight * light.irradiance;
         weights += weight;
     }
     return weights > 0.0 ? sum / weights : vec3(0.0);

@@ -59,8 +59,8 @@ bool faces_no_wall(mrt_rows rows, mrt_around around, vec3 normal)
     for (int a = 0; a < 3; a++) {
         bool high = to[a] > 0.0;
         float distance = 0.5 - (high ? rows.cell[a] : -rows.cell[a]);
-        none = none && !(is_wall(around.faces, face_of(a, high)) && distance <= MRT_WALL_DISTANCE[0] &&
-                         abs(to[a]) >= least);
+        bool wall = is_wall(around.faces, face_of(a, high));
+        none = none && !(wall && distance <= MRT_WALL_DISTANCE[0] && abs(to[a]) >= least);
     }
     return none;
 }
