@@ -1,7 +1,8 @@
 // Projection of direct light in blocks whose walls objects hide in part.
 #include "framework/test.h"
 
-#include "techniques/mrt/objects/clutter_operators.h"
+#include "techniques/mrt/level/projection.h"
+#include "techniques/mrt/objects/delta.h"
 
 #include <math.h>
 
@@ -72,4 +73,66 @@ TEST(where_all_is_hidden_there_is_no_light)
     open_projection(&p, 0, TEXELS);
     for (int m = 0; m < MODES; m++) CHECK(coefficient(&p, m, one) == 0.0);
     close_projection(&p);
+}
+
+// ---- fitted to the light of a block
+
+enum { EDGE = 4, OF_CUBE = 6 * EDGE * EDGE, FACE = EDGE * EDGE, FITTED = 2 };
+
+// In a box of 4 x 1 x 1 every texel has the mean of all walls by their areas: F. The modes are
+// constant and linear along it, and T_d→b fits them to texels without regard to their areas.
+static void open_fit(struct matrix_f32 *f, struct matrix_f32 *l_imp, struct matrix_f32 *t_db)
+{
+    const struct mrt_shape cube = mrt_cube(EDGE, 0);
+    float square = 0.0f;
+    assert_true(matrix_f32_init(test_host(), f, OF_CUBE, OF_CUBE) &&
+                matrix_f32_init(test_host(), l_imp, OF_CUBE, FITTED) &&
+                matrix_f32_init(test_host(), t_db, FITTED, OF_CUBE));
+    for (int t = 0; t < OF_CUBE; t++) {
+        const float x = mrt_shape_texel(&cube, t).position.x;
+        l_imp->at[t * FITTED] = 1.0f;
+        l_imp->at[t * FITTED + 1] = x;
+        square += x * x;
+        for (int to = 0; to < OF_CUBE; to++)
+            f->at[to * OF_CUBE + t] = (t / FACE < 2 ? 1.0f : 4.0f) / (18.0f * FACE);
+    }
+    for (int t = 0; t < OF_CUBE; t++) {
+        t_db->at[t] = 1.0f / OF_CUBE;
+        t_db->at[OF_CUBE + t] = l_imp->at[t * FITTED + 1] / square;
+    }
+}
+
+// Mean irradiance of light on one face.
+static double lit_by(const struct matrix_f32 *t_db, const struct matrix_f32 *u_b, int face)
+{
+    double sum = 0.0;
+    for (int m = 0; m < FITTED; m++) {
+        double b = 0.0;
+        for (int t = face * FACE; t < (face + 1) * FACE; t++)
+            b += (double)t_db->at[m * OF_CUBE + t];
+        sum += b * (double)u_b->at[m];
+    }
+    return sum;
+}
+
+TEST(fitted_light_has_the_energy_of_walls_of_unequal_areas)
+{
+    struct matrix_f32 f, l_imp, t_db, u_b;
+    const struct mrt_projection projection = { mrt_cube(EDGE, 0), glms_mat3_identity(), &f, &u_b,
+                                               &l_imp };
+    struct mrt_projection of = projection;
+    of.block_from_cell.m00 = 4.0f;
+    open_fit(&f, &l_imp, &t_db);
+    assert_true(matrix_f32_init(test_host(), &u_b, OF_CUBE, FITTED) &&
+                matrix_f32_multiply(test_host(), 1.0f, &f, NOT_TRANSPOSED, &l_imp, NOT_TRANSPOSED,
+                                    0.0f, &u_b));
+    CHECK_NEAR(lit_by(&t_db, &u_b, 0), 1.0 / 6.0, 1e-3);
+    CHECK(mrt_fit_projection(test_host(), &of, &t_db));
+    // The damping is a hundredth.
+    for (int face = 0; face < 6; face++)
+        CHECK_NEAR(lit_by(&t_db, &u_b, face), (face < 2 ? 1.0 : 4.0) / 18.0, 0.02 / 6.0);
+    matrix_f32_finish(test_host(), &f);
+    matrix_f32_finish(test_host(), &l_imp);
+    matrix_f32_finish(test_host(), &t_db);
+    matrix_f32_finish(test_host(), &u_b);
 }

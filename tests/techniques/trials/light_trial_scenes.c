@@ -344,6 +344,85 @@ void trial_ceiling_light(struct frame_fixture *s, struct gpu *gpu, float gap)
     fixture_look(s, vec3_of(2.7f, 3, 2.7f), vec3_of(-2, 0.5f, -2));
 }
 
+enum { BOX_VERTICES = 24, BOX_INDICES = 36 };
+
+// A box that is one connected mesh, as furniture of files is.
+static void add_solid(struct frame_fixture *s, vec3s min, vec3s max, int material)
+{
+    vec3s positions[BOX_VERTICES], normals[BOX_VERTICES] = { 0 };
+    uint32_t indices[BOX_INDICES];
+    for (uint32_t face = 0; face < 6; face++) {
+        const uint32_t axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3, first = 4 * face;
+        const bool high = face % 2;
+        for (uint32_t i = 0; i < 4; i++) {
+            positions[first + i].raw[axis] = high ? max.raw[axis] : min.raw[axis];
+            positions[first + i].raw[u] = i == 1 || i == 2 ? max.raw[u] : min.raw[u];
+            positions[first + i].raw[v] = i >= 2 ? max.raw[v] : min.raw[v];
+            normals[first + i].raw[axis] = high ? 1.0f : -1.0f;
+        }
+        const uint32_t corners[6] = { 0, 1, 2, 0, 2, 3 };
+        for (uint32_t i = 0; i < 6; i++) indices[6 * face + i] = first + corners[high ? i : 5 - i];
+    }
+    const int mesh = scene_add_mesh(s->scene, &(struct mesh){ .name = "solid",
+                                                              .vertex_count = BOX_VERTICES,
+                                                              .index_count = BOX_INDICES,
+                                                              .positions = positions,
+                                                              .normals = normals,
+                                                              .indices = indices,
+                                                              .material = material });
+    assert_true(mesh >= 0 && fixture_instance(s, mesh, NULL) >= 0);
+}
+
+static void begin_furnished_room(struct frame_fixture *s, struct gpu *gpu, bool second_view)
+{
+    fixture_init(s, gpu);
+    s->options.shadow_size = 1024;
+    const int white = fixture_matte(s, grey(0.7f));
+    const int materials[6] = { white, white, white, white, white, white };
+    add_walls(s, vec3_of(-3, 0, -3), vec3_of(3, 2.8f, 3), materials);
+    if (second_view)
+        fixture_look(s, vec3_of(-2.5f, 1.7f, -1.3f), vec3_of(1.5f, 0.7f, 2));
+    else
+        fixture_look(s, vec3_of(2.7f, 1.7f, 2.7f), vec3_of(-1.5f, 1, -2));
+}
+
+void trial_wardrobe(struct frame_fixture *s, struct gpu *gpu, bool second_view)
+{
+    begin_furnished_room(s, gpu, second_view);
+    const int wood = fixture_matte(s, grey(0.4f));
+    add_solid(s, vec3_of(-2.95f, 0, -1), vec3_of(-2.35f, 2.1f, 1), wood);
+    add_solid(s, vec3_of(0, 0.7f, -0.4f), vec3_of(1.6f, 0.75f, 0.4f), wood);
+    for (int leg = 0; leg < 4; leg++) {
+        const vec3s at = vec3_of(leg % 2 ? 1.49f : 0.05f, 0, leg / 2 ? 0.29f : -0.35f);
+        add_solid(s, at, glms_vec3_add(at, vec3_of(0.06f, 0.7f, 0.06f)), wood);
+    }
+    fixture_add_point(s, vec3_of(1, 2.4f, 1.2f), grey(200));
+}
+
+void trial_shade(struct frame_fixture *s, struct gpu *gpu, bool second_view)
+{
+    begin_furnished_room(s, gpu, second_view);
+    const int cloth = fixture_matte(s, grey(0.4f));
+    const float in = 0.28f, out = 0.3f;
+    add_solid(s, vec3_of(-out, 1.6f, -out), vec3_of(out, 1.9f, -in), cloth);
+    add_solid(s, vec3_of(-out, 1.6f, in), vec3_of(out, 1.9f, out), cloth);
+    add_solid(s, vec3_of(-out, 1.6f, -in), vec3_of(-in, 1.9f, in), cloth);
+    add_solid(s, vec3_of(in, 1.6f, -in), vec3_of(out, 1.9f, in), cloth);
+    fixture_add_point(s, vec3_of(0, 1.75f, 0), grey(200));
+}
+
+void trial_curtain(struct frame_fixture *s, struct gpu *gpu, bool second_view)
+{
+    struct material cloth = material_default();
+    begin_furnished_room(s, gpu, second_view);
+    cloth.base_color = vec4_of(grey(0.6f), 1);
+    cloth.metallic = 0;
+    cloth.double_sided = true;
+    fixture_quad(s, vec3_of(-2.9f, 0.1f, 1), vec3_of(-2.9f, 0.1f, -1), vec3_of(-2.9f, 2.3f, -1),
+                 vec3_of(-2.9f, 2.3f, 1), fixture_material(s, &cloth));
+    fixture_add_point(s, vec3_of(1, 2.4f, 1.2f), grey(200));
+}
+
 void trial_wall_before_slab(struct frame_fixture *s, struct gpu *gpu, float gap)
 {
     fixture_init(s, gpu);

@@ -64,6 +64,14 @@ void trial_panel(struct frame_fixture *s, struct gpu *gpu);
 // ceiling. The camera sees the floor and the walls.
 void trial_ceiling_light(struct frame_fixture *s, struct gpu *gpu, float gap);
 
+// A room of 6 × 2.8 × 6 (albedo 0.7) with a point light, in two views, and
+// a wardrobe of 0.6 × 2.1 × 2, 5 cm from a wall, and a table (albedo 0.4),
+void trial_wardrobe(struct frame_fixture *s, struct gpu *gpu, bool second_view);
+// the light in a shade of 0.6 × 0.3 × 0.6 that is open above and below (albedo 0.4),
+void trial_shade(struct frame_fixture *s, struct gpu *gpu, bool second_view);
+// a double-sided curtain of 2 × 2.2, 10 cm from a wall (albedo 0.6).
+void trial_curtain(struct frame_fixture *s, struct gpu *gpu, bool second_view);
+
 // A room of 4 × 3 × 4 with a point light; its left wall is white, and green in front of it at a
 // distance of `gap`; 0: green alone. The camera sees the floor next to that wall.
 void trial_wall_before_slab(struct frame_fixture *s, struct gpu *gpu, float gap);

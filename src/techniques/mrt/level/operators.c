@@ -26,7 +26,8 @@ static bool make_basis(const struct mrt_operators *o, const struct mrt_level *le
     const struct matrix_f32 *const light[] = { retraced ? &retraced->u_b : &element->u_b,
                                                retraced ? &retraced->u_vec : &element->u_vec,
                                                &element->u_bvol };
-    return mrt_rotate_columns(o->host, &turn, &element->t_db, &out->t_db) &&
+    return mrt_rotate_columns(o->host, &turn, retraced ? &retraced->t_db : &element->t_db,
+                              &out->t_db) &&
            turn_all(o, &turn, light, out->u) &&
            mrt_rotate_light(o->host, &turn, 0, MRT_IRRADIANCE, &element->l_imp, &out->l_imp);
 }

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 
 #include "techniques/mrt/dictionary/gather.h"
+#include "techniques/mrt/level/projection.h"
 
 #include <math.h>
 #include <string.h>
@@ -34,14 +35,13 @@ struct gather_job {
     const struct mrt_element *element;
     mat3s block_from_cell; // J of the warp
     struct mrt_rays rays;
+    struct matrix_f32 *rows; // F of all texels; NULL: not kept
     struct matrix_f32 *out;
     struct host *hosts; // [texels]: failures of tasks do not race
     bool *ok;
 };
 
-// Columns: the images in the cell of an orthonormal frame at a wall of the block, whose third axis
-// is the wall's normal.
-static mat3s cell_from_wall(mat3s block_from_cell, mat3s frame)
+mat3s mrt_cell_from_wall(mat3s block_from_cell, mat3s frame)
 {
     const mat3s cell_from_block = glms_mat3_inv(block_from_cell);
     mat3s wall;
@@ -60,19 +60,22 @@ static void gather_texel(void *user, size_t i)
     struct mrt_point point = mrt_shape_texel(&element->shape, (int)i);
     struct matrix_f32 rows = { 0 };
     struct matrix_f32 out = matrix_f32_block(job->out, i * values, 0, values, job->out->columns);
-    point.frame = cell_from_wall(job->block_from_cell, point.frame);
-    job->ok[i] = matrix_f32_init(host, &rows, values, element->l_imp.rows);
+    point.frame = mrt_cell_from_wall(job->block_from_cell, point.frame);
+    job->ok[i] = job->rows || matrix_f32_init(host, &rows, values, element->l_imp.rows);
+    if (job->rows) rows = matrix_f32_block(job->rows, i * values, 0, values, job->rows->columns);
     if (job->ok[i]) mrt_gather(&element->shape, point, &job->rays, rows.at, rows.stride);
     job->ok[i] = job->ok[i] && matrix_f32_multiply(host, 1.0f, &rows, NOT_TRANSPOSED,
                                                    &element->l_imp, NOT_TRANSPOSED, 0.0f, &out);
-    matrix_f32_finish(host, &rows);
+    if (!job->rows) matrix_f32_finish(host, &rows);
 }
 
 static bool gather(struct host *host, const struct mrt_element *element, mat3s block_from_cell,
-                   enum mrt_measure measure, struct matrix_f32 *out)
+                   enum mrt_measure measure, struct matrix_f32 *rows, struct matrix_f32 *out)
 {
     const size_t texels = element->l_imp.rows;
-    struct gather_job job = { .element = element, .block_from_cell = block_from_cell, .out = out };
+    struct gather_job job = {
+        .element = element, .block_from_cell = block_from_cell, .rows = rows, .out = out
+    };
     job.hosts = host_alloc(host, texels, sizeof *job.hosts);
     job.ok = host_alloc(host, texels, sizeof *job.ok);
     bool ok = job.hosts && job.ok && mrt_rays_init(host, measure, RAYS, &job.rays) &&
@@ -86,6 +89,20 @@ static bool gather(struct host *host, const struct mrt_element *element, mat3s b
     mrt_rays_finish(host, &job.rays);
     host_free(host, job.hosts);
     host_free(host, job.ok);
+    return ok;
+}
+
+static bool gather_irradiance(struct host *host, const struct mrt_element *element,
+                              mat3s block_from_cell, struct mrt_retraced *out)
+{
+    struct matrix_f32 f = { 0 };
+    const struct mrt_projection projection = { element->shape, block_from_cell, &f, &out->u_b,
+                                               &element->l_imp };
+    const bool ok = matrix_f32_init(host, &f, element->l_imp.rows, element->l_imp.rows) &&
+                    gather(host, element, block_from_cell, MRT_IRRADIANCE, &f, &out->u_b) &&
+                    matrix_f32_copy(host, &element->t_db, element->t_db.columns, &out->t_db) &&
+                    mrt_fit_projection(host, &projection, &out->t_db);
+    matrix_f32_finish(host, &f);
     return ok;
 }
 
@@ -109,8 +126,8 @@ static bool retrace_block(struct mrt_retraces *out, const struct mrt_block *bloc
     out->of_block[index] = out->count;
     struct mrt_retraced *to = &out->at[out->count++];
     *to = (struct mrt_retraced){ .cube = place->cube, .metric = metric };
-    return gather(out->host, element, j, MRT_IRRADIANCE, &to->u_b) &&
-           gather(out->host, element, j, MRT_VECTOR, &to->u_vec);
+    return gather_irradiance(out->host, element, j, to) &&
+           gather(out->host, element, j, MRT_VECTOR, NULL, &to->u_vec);
 }
 
 bool mrt_retraces_init(struct host *host, const struct mrt_block_map *map,
@@ -134,6 +151,7 @@ void mrt_retraces_finish(struct mrt_retraces *retraces)
     for (int i = 0; i < retraces->count; i++) {
         matrix_f32_finish(retraces->host, &retraces->at[i].u_b);
         matrix_f32_finish(retraces->host, &retraces->at[i].u_vec);
+        matrix_f32_finish(retraces->host, &retraces->at[i].t_db);
     }
     if (retraces->host) {
         host_free(retraces->host, retraces->at);

@@ -1,16 +1,16 @@
 // Bases of blocks that are far from cubes (Loos 2015, figure 3.4): the light of L_imp gathered
-// again by rays in the block's own proportions. T_d→b and light through openings stay those of the
-// cube.
+// again by rays in the block's own proportions, and T_d→b fitted to it (projection.h). L_imp and
+// light through openings stay those of the cube.
 #pragma once
 
 #include "techniques/mrt/dictionary/dictionary.h"
 #include "techniques/mrt/level/block_map.h"
 
-// U_b and U_vec of one cube of the dictionary in one shape, in the order of the cube's texels.
+// Operators of one cube of the dictionary in one shape, in the order of the cube's texels.
 struct mrt_retraced {
     int cube;
     mat3s metric; // JᵀJ of the warp from the cube's cell, with a trace of 3
-    struct matrix_f32 u_b, u_vec;
+    struct matrix_f32 u_b, u_vec, t_db;
 };
 
 struct mrt_retraces {
@@ -26,3 +26,7 @@ bool mrt_retraces_init(struct host *host, const struct mrt_block_map *map,
                        const struct mrt_cube_place *places, const struct mrt_dictionary *dictionary,
                        struct mrt_retraces *out);
 void mrt_retraces_finish(struct mrt_retraces *retraces); // accepts zero
+
+// Columns: the images in the cell of an orthonormal frame at a wall of the block, whose third axis
+// is the wall's normal. frame: that of the wall in the cell.
+mat3s mrt_cell_from_wall(mat3s block_from_cell, mat3s frame);

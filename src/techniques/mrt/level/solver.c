@@ -122,12 +122,14 @@ static bool copy_cube(struct mrt_solver *s, int cube)
 static bool copy_retraced(struct mrt_solver *s)
 {
     const struct mrt_retraces *from = &s->level->retraces;
+    s->t_retraced = host_alloc(s->host, (size_t)from->count, sizeof *s->t_retraced);
     s->u_retraced = host_alloc(s->host, (size_t)from->count, sizeof *s->u_retraced);
-    bool ok = s->u_retraced != NULL;
+    bool ok = s->t_retraced && s->u_retraced;
     for (int i = 0; ok && i < from->count; i++) {
-        s->u_retraced[i] =
-            copy_modes(s, from->at[i].cube, &from->at[i].u_b, 1, from->at[i].u_b.stride);
-        ok = s->u_retraced[i] != NULL;
+        const struct mrt_retraced *of = &from->at[i];
+        s->t_retraced[i] = copy_modes(s, of->cube, &of->t_db, of->t_db.stride, 1);
+        s->u_retraced[i] = copy_modes(s, of->cube, &of->u_b, 1, of->u_b.stride);
+        ok = s->t_retraced[i] && s->u_retraced[i];
     }
     return ok;
 }
@@ -246,8 +248,11 @@ void mrt_solver_finish(struct mrt_solver *solver)
             host_free(solver->host, solver->t_db[i]);
             host_free(solver->host, solver->u_b[i]);
         }
-        for (int i = 0; solver->u_retraced && i < solver->level->retraces.count; i++)
-            host_free(solver->host, solver->u_retraced[i]);
+        for (int i = 0; i < solver->level->retraces.count; i++) {
+            if (solver->t_retraced) host_free(solver->host, solver->t_retraced[i]);
+            if (solver->u_retraced) host_free(solver->host, solver->u_retraced[i]);
+        }
+        host_free(solver->host, solver->t_retraced);
         host_free(solver->host, solver->u_retraced);
         host_free(solver->host, solver->u_r);
         host_free(solver->host, solver->cube_texel);
@@ -278,6 +283,12 @@ static int planes_of(const struct mrt_solver *s, int block, float *planes[3])
     return length;
 }
 
+// −1: a block has the bases of its cube.
+static int retraced_of(const struct mrt_level *level, int block)
+{
+    return level->retraces.of_block ? level->retraces.of_block[block] : -1;
+}
+
 // b = T_d→b l_d. The padding is 0 and stays so.
 static void project_block(void *user, size_t i)
 {
@@ -291,7 +302,9 @@ static void project_block(void *user, size_t i)
     for (int t = level->first_texel[block]; t < level->first_texel[block + 1]; t++)
         for (int c = 0; c < 3; c++) planes[c][s->cube_texel[t]] = frame->radiosity[3 * t + c];
     const float *const light[3] = { planes[0], planes[1], planes[2] };
-    project(s->t_db[cube], length, k_b, length, light, s->b + i * 3 * (size_t)k_b);
+    const int retraced = retraced_of(level, block);
+    project(retraced < 0 ? s->t_db[cube] : s->t_retraced[retraced], length, k_b, length, light,
+            s->b + i * 3 * (size_t)k_b);
 }
 
 // r = T_b→r b for one entry, interleaved.
@@ -344,7 +357,7 @@ static void light_block(void *user, size_t i)
     float *planes[3];
     int length = planes_of(s, block, planes), k_b = level->k_b;
     memset(planes[0], 0, 3 * (size_t)length * sizeof *planes[0]);
-    const int retraced = level->retraces.of_block ? level->retraces.of_block[block] : -1;
+    const int retraced = retraced_of(level, block);
     const float *u_b = retraced < 0 ? s->u_b[level->place[block].cube] : s->u_retraced[retraced];
     expand(u_b, length, k_b, length, s->b + i * 3 * (size_t)k_b, planes);
     float *out = frame->irradiance + 3 * (size_t)first;

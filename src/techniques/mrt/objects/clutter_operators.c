@@ -12,7 +12,7 @@ struct builder {
     const struct mrt_clutter_changes *changes;
     struct mrt_clutter_rays rays; // of the next two
     struct trace_scene *objects;
-    const struct matrix_f32 **l_imp; // [blocks]
+    const struct matrix_f32 **l_imp, **t_db; // [blocks]
     struct mrt_delta_cache *cache;
     int *sources; // [blocks], of an opening
     bool *inside; // of each texel of the clutter, in its order
@@ -71,18 +71,13 @@ static void inpaint(const struct change *at, const struct grid_rows *grid, size_
         mrt_inpaint(&rows, at->s->rays.resolution, 1, values, inside);
 }
 
-// U_b + ΔU_b. U_b has the error of other rays, which does not cancel where nothing arrives.
-static void add_shadows(void *user, const struct grid_rows *grid)
+// U_b past clutter.
+static void replace_light(void *user, const struct grid_rows *grid)
 {
     const struct change *at = user;
-    const size_t values = (size_t)mrt_values_of(at->measure);
     for (size_t r = grid->own; r < grid->own + grid->count; r++)
-        for (size_t c = 0; c < at->rows->columns; c++) {
-            float *u = &at->rows->at[r * at->rows->stride + c];
-            *u = at->delta->open[r / values] == 0.0f
-                     ? 0.0f
-                     : *u + at->delta->b.at[r * at->delta->b.stride + c];
-        }
+        for (size_t c = 0; c < at->rows->columns; c++)
+            at->rows->at[r * at->rows->stride + c] = at->delta->b.at[r * at->delta->b.stride + c];
     inpaint(at, grid, grid->own);
 }
 
@@ -128,13 +123,10 @@ static bool replace_basis(struct builder *s, int block, const struct mrt_delta_b
     const struct mrt_block_basis *old = &to->bases[to->basis_of_block[block]];
     struct mrt_block_basis *basis = &to->bases[to->basis_count];
     to->basis_of_block[block] = to->basis_count++;
-    const bool ok = matrix_f32_copy(to->host, &old->t_db, old->t_db.columns, &basis->t_db) &&
-                    copy_light(to->host, old->u, basis->u);
-    if (!ok || (delta->of[MRT_IRRADIANCE].open &&
-                !mrt_weigh_projection(to->host, &old->l_imp, delta->of[MRT_IRRADIANCE].open,
-                                      &basis->t_db)))
+    if (!matrix_f32_copy(to->host, &delta->t_db, delta->t_db.columns, &basis->t_db) ||
+        !copy_light(to->host, old->u, basis->u))
         return false;
-    change_light(s, block, delta, -1, add_shadows, basis->u);
+    change_light(s, block, delta, -1, replace_light, basis->u);
     return true;
 }
 
@@ -394,6 +386,9 @@ static bool start(struct builder *s)
     s->sources = host_alloc(to->host, blocks, sizeof *s->sources);
     s->inside = host_alloc(to->host, clutter->charts.side_texel_count, sizeof *s->inside);
     s->to->rows = host_alloc(to->host, blocks, sizeof *s->to->rows);
+    s->rays.t_db = s->t_db = host_alloc(to->host, blocks, sizeof *s->t_db);
+    for (size_t b = 0; s->t_db && b < blocks; b++)
+        s->t_db[b] = &to->bases[to->basis_of_block[b]].t_db;
     for (size_t b = 0; s->l_imp && b < blocks; b++)
         s->l_imp[b] = &to->bases[to->basis_of_block[b]].l_imp;
     return s->l_imp && s->objects && s->sources && s->inside && s->to->rows;
@@ -423,6 +418,7 @@ bool mrt_operators_add_clutter(struct mrt_operators *operators, const struct mrt
     ok = ok && (!changes->gather || find_map_source(&s)) && mrt_order_faces(operators);
     trace_scene_destroy(s.objects);
     host_free(operators->host, s.l_imp);
+    host_free(operators->host, s.t_db);
     host_free(operators->host, s.sources);
     host_free(operators->host, s.inside);
     return ok;

@@ -33,10 +33,3 @@ bool mrt_operators_add_clutter(struct mrt_operators *operators, const struct mrt
 // as their c lights nothing: no ray from a texel, a probe or a face meets the underside of a box on
 // a floor.
 bool mrt_order_faces(struct mrt_operators *operators);
-
-// ---- weighted.c
-
-// Changes T_d→b (k_b × texels) so that direct light of texels that clutter hides has no part in it.
-// share: of each texel's rays, those that no clutter blocks.
-bool mrt_weigh_projection(struct host *host, const struct matrix_f32 *l_imp, const float *share,
-                          struct matrix_f32 *t_db);

@@ -1,14 +1,15 @@
-// Delta operators of blocks with clutter (Loos 2015, section 5.3), by rays in the block's cell that
-// meet clutter on their way to a wall.
+// Operators of blocks with clutter (Loos 2015, section 5.3), by rays in the proportions of the
+// block.
 //
 // Light is radiosity in (lm/m²) and irradiance out (lux), as in the dictionary: irradiance is the
 // mean, over cosine-distributed rays, of the radiosity where they end. b is the radiosity L_imp b
 // of walls, c that of faces of clutter. With the share V of rays to a wall texel that no clutter
 // blocks, the irradiance of a point is Σ V L_imp b + Σ (1 − V) c, so
-//     ΔU_b = −Σ over blocked rays of w L_imp at the wall behind the clutter,
+//     U_b + ΔU_b = Σ over rays that clutter does not block of w L_imp where they end,
 //     ΔU_c = Σ over blocked rays of w, into the column of the face that is hit first, from either
 //            side,
 // w being a ray's weight (dictionary/rays.h): by normal and at probes the same with their weights.
+// The same rays give T_d→b past clutter (weighted.c, level/projection.h).
 // Light of an opening has no L_imp: it is scaled by the share of its rays that are not blocked.
 #pragma once
 
@@ -24,7 +25,7 @@
 
 // Changes of the operators by clutter, at the points of a block: texels of its walls, or probes.
 struct mrt_delta {
-    struct matrix_f32 b;       // points · values × k_b: ΔU_b ≤ 0 for light ≥ 0
+    struct matrix_f32 b;       // points · values × k_b: U_b + ΔU_b
     struct matrix_f32 c;       // points · values × faces of the block: ΔU_c
     float (*kept)[CUBE_FACES]; // of each point, by opening: the share of rays that pass
     float *open;               // of each point: the share of rays that no clutter blocks
@@ -36,7 +37,8 @@ struct mrt_delta_block {
     bool touched; // some ray is blocked; else the operators are 0
     int first_face, face_count;
     struct mrt_delta of[MRT_MEASURES];
-    uint32_t *sight; // probe_sight.h; NULL: without probes
+    struct matrix_f32 t_db; // k_b × texels: T_d→b past clutter
+    uint32_t *sight;        // probe_sight.h; NULL: without probes
 };
 
 // Rays through a level that meet clutter: input of all of its operators, which are the same bits
@@ -44,6 +46,7 @@ struct mrt_delta_block {
 struct mrt_clutter_rays {
     const struct mrt_block_map *map;
     const struct matrix_f32 *const *l_imp; // of each block, in its frame: texels × k_b
+    const struct matrix_f32 *const *t_db;  // the same: k_b × texels
     int resolution;                        // of walls
     const struct mrt_clutter *clutter;
     const struct trace_scene *objects; // of the clutter alone
@@ -222,3 +225,10 @@ static inline int mrt_sight_edge(int p)
 
 // mrt_sight_edge³ voxels, x fastest. The same bits for any number of threads.
 void mrt_probe_sight(const struct mrt_clutter_cell *cell, uint32_t *voxels);
+
+// ---- weighted.c
+
+// Changes T_d→b (k_b × texels) so that direct light of texels that clutter hides has no part in it.
+// share: of each texel's rays, those that no clutter blocks.
+bool mrt_weigh_projection(struct host *host, const struct matrix_f32 *l_imp, const float *share,
+                          struct matrix_f32 *t_db);

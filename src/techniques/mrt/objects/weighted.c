@@ -7,7 +7,7 @@
 //     b = T_d→b (W l + (1 − μ) (1 − W) L_imp b), so b = A⁻¹ T_d→b W l,
 //     A = I − (1 − μ) T_d→b (1 − W) L_imp:
 // the fit to the texels that are not hidden. μ keeps b from growing without bound where few are.
-#include "techniques/mrt/objects/clutter_operators.h"
+#include "techniques/mrt/objects/delta.h"
 
 static const double DAMPING = 0.02;  // μ
 static const double SMALLEST = 0.05; // singular value of A that is still inverted

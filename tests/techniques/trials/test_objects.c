@@ -1,0 +1,30 @@
+// Rooms with objects: energy of indirect light in rooms that are no cubes.
+#include "techniques/trials/light_trial.h"
+#include "techniques/trials/light_trial_scenes.h"
+
+// Eight bounces of albedo 0.7 lack 3 % of the light.
+#define DICTIONARY TRIAL_DICTIONARY(16, 32, 32) ",bounces=16,warp=retrace"
+
+// A tenth: mrt has no light of objects and no shadows of them in indirect light.
+static const struct trial_bounds BOUNDS[] = { { "radiosity:texels=16384", 0.95, 1.05 },
+                                              { "mrt" DICTIONARY, 0.9, 1.1 },
+                                              { "drt" DICTIONARY, 0.95, 1.05 } };
+enum { COUNT = sizeof BOUNDS / sizeof BOUNDS[0] };
+
+TEST_GPU(light_of_a_room_with_a_wardrobe_close_to_a_wall)
+{
+    trial_check_energy(gpu, trial_wardrobe, 256, BOUNDS, COUNT);
+}
+
+// mrt takes the inside of the shade, which is the brightest surface, for a wall.
+TEST_GPU(light_of_a_shade)
+{
+    static const struct trial_bounds bounds[] = { { "radiosity:texels=16384", 0.95, 1.05 },
+                                                  { "drt" DICTIONARY, 0.95, 1.05 } };
+    trial_check_energy(gpu, trial_shade, 256, bounds, sizeof bounds / sizeof bounds[0]);
+}
+
+TEST_GPU(light_of_a_room_with_a_curtain)
+{
+    trial_check_energy(gpu, trial_curtain, 256, BOUNDS, COUNT);
+}
