@@ -61,7 +61,8 @@ struct ag_bake_estimate {
     uint64_t peak_memory_bytes; ///< beyond the scene
     uint32_t charts;            ///< of a light map; 0 where the technique has none
     float texels_per_m;         ///< of a light map, on all charts
-    uint64_t reserved[3];       ///< 0; see ABI in types.h
+    float utilisation;          ///< of a light map: texels on surfaces over all of its atlas
+    uint64_t reserved[2];       ///< 0; see ABI in types.h
 };
 /// Estimates the resources of ag_bake_run. probe: run a few tasks, about a second, to estimate the
 /// time; their results are kept. Thread: the context's.

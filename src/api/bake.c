@@ -241,7 +241,8 @@ enum ag_result ag_bake_estimate_cost(struct ag_bake *b, bool probe, struct ag_ba
                                       .file_bytes = estimate.file_bytes,
                                       .peak_memory_bytes = estimate.peak_memory_bytes,
                                       .charts = estimate.light_map.charts,
-                                      .texels_per_m = estimate.light_map.texels_per_m };
+                                      .texels_per_m = estimate.light_map.texels_per_m,
+                                      .utilisation = estimate.light_map.utilisation };
     return api_done(context, ok);
 }
 

@@ -92,7 +92,7 @@ bool bake_plan_part_is_loaded(const struct bake_plan *plan, int part);
 // A light map that the bake is for, so that estimates can say how fine it is.
 struct bake_light_map {
     uint32_t charts;
-    float texels_per_m;
+    float texels_per_m, utilisation; // utilisation: texels over places of the atlas
     // Adds the stages at another density to an empty plan; job: of the bake's own plan. For advice
     // where memory is short; NULL: there is none.
     bool (*plan_at)(struct bake_plan *plan, const void *job, float texels_per_m);

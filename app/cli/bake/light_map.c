@@ -226,14 +226,17 @@ static enum status report(const struct job *job)
 {
     struct ag_lightmap_info info;
     ag_lightmap_get_info(job->lightmap, &info);
-    note("light map of %dx%d, %d texels in %d charts, %.3g texels per metre; written: %s",
-         info.width, info.height, info.texels, info.charts, (double)info.texels_per_m,
-         job->folder.shown);
+    const double utilisation = (double)info.texels / ((double)info.width * (double)info.height);
+    note("light map of %dx%d, %d texels in %d charts, %.0f %% of it, %.3g texels per metre; "
+         "written: %s",
+         info.width, info.height, info.texels, info.charts, 100.0 * utilisation,
+         (double)info.texels_per_m, job->folder.shown);
     if (!job->arguments->json) return DONE;
-    return json_print(json_pack("{s:o, s:[i, i], s:i, s:i, s:o, s:b}", "output",
+    return json_print(json_pack("{s:o, s:[i, i], s:i, s:i, s:o, s:o, s:b}", "output",
                                 json_text(job->folder.shown), "size", info.width, info.height,
                                 "texels", info.texels, "charts", info.charts, "texels_per_m",
-                                json_double((double)info.texels_per_m), "back", info.has_back));
+                                json_double((double)info.texels_per_m), "utilisation",
+                                json_double(utilisation), "back", info.has_back));
 }
 
 // Everything that can fail before the work.

@@ -110,6 +110,12 @@ struct charts {
 bool charts_init(struct charts *out, struct host *host, const struct scene_pose *pose,
                  const struct charts_options *options);
 void charts_finish(struct charts *charts);
+// Texels over places of the atlas.
+static inline float charts_utilisation(const struct charts *charts)
+{
+    const float places = (float)charts->width * (float)charts->height;
+    return places > 0.0f ? (float)charts->texel_count / places : 0.0f;
+}
 // Bounds of the triangles in charts.
 struct box3 charts_bounds(const struct charts *charts);
 

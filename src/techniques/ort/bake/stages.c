@@ -84,8 +84,9 @@ static bool add_stages(struct bake_plan *plan, struct ort_scene *scene,
                                                 .finish = finish,
                                                 .destroy = destroy,
                                                 .bytes = prepared_bytes(map) });
-    bake_plan_set_light_map(
-        plan, (struct bake_light_map){ map->charts.count, map->charts.texels_per_m, plan_at });
+    bake_plan_set_light_map(plan,
+                            (struct bake_light_map){ map->charts.count, map->charts.texels_per_m,
+                                                     charts_utilisation(&map->charts), plan_at });
     return ort_add_texels(plan, scene) && ort_add_bounces(plan, scene) &&
            light_map_add_seams(plan, &scene->closing, &map->charts) && ort_add_links(plan, scene) &&
            ort_add_offsets(plan, scene) && ort_add_areas(plan, scene) && ort_add_maps(plan, scene);

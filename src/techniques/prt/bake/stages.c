@@ -58,8 +58,8 @@ static bool add_light_map(struct bake_plan *plan, struct prt_scene *scene)
 {
     const struct charts *charts = &scene->charts;
     if (scene->receivers.at_vertices) return true;
-    bake_plan_set_light_map(
-        plan, (struct bake_light_map){ charts->count, charts->texels_per_m, plan_at });
+    bake_plan_set_light_map(plan, (struct bake_light_map){ charts->count, charts->texels_per_m,
+                                                           charts_utilisation(charts), plan_at });
     return light_map_add_seams(plan, &scene->closing, charts);
 }
 

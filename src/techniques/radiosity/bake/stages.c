@@ -354,8 +354,9 @@ static bool add_stages(struct bake_plan *plan, struct job *job, const struct sce
                                                 .finish = finish,
                                                 .destroy = destroy,
                                                 .bytes = prepared_bytes(map) });
-    bake_plan_set_light_map(
-        plan, (struct bake_light_map){ map->charts.count, map->charts.texels_per_m, plan_at });
+    bake_plan_set_light_map(plan,
+                            (struct bake_light_map){ map->charts.count, map->charts.texels_per_m,
+                                                     charts_utilisation(&map->charts), plan_at });
     const uint64_t texels = light_map_rows(map->texel_count);
     const uint64_t clusters = radiosity_cluster_rows(map);
     const struct frame_probes grid = radiosity_probe_grid(map, &job->options);
