@@ -4,6 +4,9 @@
 #include "techniques/mrt/objects/clutter_operators.h"
 #include "techniques/mrt/level/map/make_map.h"
 
+#include <limits.h>
+#include <math.h>
+
 // ---- the map
 
 // Positions in the free space: cameras and lights.
@@ -304,10 +307,23 @@ static bool start_runtime(struct mrt *mrt)
     return ok;
 }
 
+// Each proportion takes about half a second of a processor: `auto` traces those of a home. A box
+// around a scene without a room, and one that is very flat, has surfaces but no walls: light in its
+// proportions is no truer than in a cube.
+static struct mrt_retrace_limits limits_of(int32_t warp, const struct mrt_block_map *map)
+{
+    static const struct mrt_retrace_limits LIMITS[] = {
+        [MRT_WARP_STRETCH] = { 0, 0.0f },
+        [MRT_WARP_RETRACE] = { INT_MAX, INFINITY },
+        [MRT_WARP_AUTO] = { 8, 16.0f },
+    };
+    return LIMITS[warp == MRT_WARP_AUTO && map->is_single ? MRT_WARP_STRETCH : warp];
+}
+
 bool mrt_make_level(struct mrt *mrt)
 {
     const struct mrt_level_options options = { .max_depth = mrt->options.depth,
-                                               .retrace = mrt->options.warp == MRT_WARP_RETRACE };
+                                               .retrace = limits_of(mrt->options.warp, &mrt->map) };
     const struct mrt_runtime_options runtime = mrt_runtime_options_of(&mrt->options);
     if (mrt->map.count == 0)
         return mrt_runtime_init_empty(&mrt->runtime, mrt->host, mrt->gpu, &runtime);

@@ -13,7 +13,7 @@
 #include "techniques/technique.h"
 
 enum mrt_map_choice { MRT_MAP_SCENE, MRT_MAP_AUTO, MRT_MAP_SINGLE };
-enum mrt_warp_choice { MRT_WARP_STRETCH, MRT_WARP_RETRACE };
+enum mrt_warp_choice { MRT_WARP_STRETCH, MRT_WARP_RETRACE, MRT_WARP_AUTO };
 enum mrt_solver_choice { MRT_SOLVER_GPU, MRT_SOLVER_CPU };
 enum mrt_precision { MRT_PRECISION_HALF, MRT_PRECISION_FLOAT };
 

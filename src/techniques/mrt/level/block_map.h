@@ -18,7 +18,8 @@ struct mrt_block_map {
     struct host *host;
     struct mrt_block *blocks;
     int count;
-    bool is_found; // in the free space of a scene
+    bool is_found;  // in the free space of a scene
+    bool is_single; // one block stands for the scene
     struct mrt_named_part *named;
     int named_count;
 };

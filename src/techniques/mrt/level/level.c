@@ -176,8 +176,9 @@ bool mrt_level_init(struct host *host, const struct mrt_block_map *map,
     bool ok = level->place && level->first_texel && level->entries && level->entry_of_face &&
               level->first_link && choose_shapes(level);
     if (ok) list_entries(level);
-    if (ok && options->retrace && level->maze != MRT_TUNNEL)
-        ok = mrt_retraces_init(host, map, level->place, dictionary, &level->retraces);
+    if (ok && options->retrace.most > 0 && level->maze != MRT_TUNNEL)
+        ok = mrt_retraces_init(host, map, level->place, dictionary, options->retrace,
+                               &level->retraces);
     ok = ok && add_holes(level) && propagate(level, options->max_depth);
     finish_holes(level);
     if (!ok) mrt_level_finish(level);

@@ -11,7 +11,8 @@ enum { MRT_LANES = 8 }; // of the solver
 
 struct mrt_level_options {
     int max_depth; // openings that light passes at most; 0: none
-    bool retrace;  // bases in the proportions of the blocks, where they are cubes
+    struct mrt_retrace_limits
+        retrace; // bases in the proportions of the blocks, where they are cubes
 };
 
 // Light enters `block` by an opening, or by holes of a wall.
@@ -33,7 +34,7 @@ struct mrt_level {
     int resolution;                          // texels along an edge of a wall
     int k_b, k_rlf, k_r;
     struct mrt_cube_place *place; // [blocks]
-    struct mrt_retraces retraces; // empty without `retrace`
+    struct mrt_retraces retraces; // of the limits `retrace`
     int *first_texel;             // [blocks + 1], of the level
     struct mrt_entry *entries;    // in the order of blocks, then faces
     int entry_count;

@@ -115,24 +115,77 @@ static int find(const struct mrt_retraces *retraces, int cube, mat3s metric)
     return -1;
 }
 
-static bool retrace_block(struct mrt_retraces *out, const struct mrt_block *block, int index,
-                          const struct mrt_cube_place *place, const struct mrt_element *element)
+static float edge_ratio(mat3s j)
+{
+    float shortest = INFINITY, longest = 0.0f;
+    for (int a = 0; a < 3; a++) {
+        const float edge = glms_vec3_norm(j.col[a]);
+        shortest = fminf(shortest, edge);
+        longest = fmaxf(longest, edge);
+    }
+    return longest / shortest;
+}
+
+static float wall_area(mat3s j)
+{
+    float area = 0.0f;
+    for (int a = 0; a < 3; a++)
+        area += 2.0f * glms_vec3_norm(glms_vec3_cross(j.col[a], j.col[(a + 1) % 3]));
+    return area;
+}
+
+// The index of the block's proportions, which is added if it is new; −1: a cube's, or too flat.
+static int add_block(struct mrt_retraces *out, const struct mrt_block *block,
+                     const struct mrt_cube_place *place, float flattest)
 {
     const mat3s j =
         glms_mat3_mul(mrt_warp_jacobian(block->corner, GLMS_VEC3_ZERO), place->block_from_cube);
     const mat3s metric = metric_of(j);
-    out->of_block[index] = find(out, place->cube, metric);
-    if (out->of_block[index] >= 0 || same_metric(metric, glms_mat3_identity())) return true;
-    out->of_block[index] = out->count;
-    struct mrt_retraced *to = &out->at[out->count++];
-    *to = (struct mrt_retraced){ .cube = place->cube, .metric = metric };
-    return gather_irradiance(out->host, element, j, to) &&
-           gather(out->host, element, j, MRT_VECTOR, NULL, &to->u_vec);
+    if (same_metric(metric, glms_mat3_identity()) || edge_ratio(j) > flattest) return -1;
+    int index = find(out, place->cube, metric);
+    if (index < 0) {
+        index = out->count++;
+        out->at[index] =
+            (struct mrt_retraced){ .cube = place->cube, .metric = metric, .block_from_cell = j };
+    }
+    out->at[index].area += wall_area(j);
+    return index;
+}
+
+static int rank_of(const struct mrt_retraces *out, int index)
+{
+    int rank = 0;
+    for (int i = 0; i < out->count; i++)
+        if (out->at[i].area > out->at[index].area ||
+            (out->at[i].area == out->at[index].area && i < index))
+            rank++;
+    return rank;
+}
+
+// Leaves the proportions of most area, in their order.
+static bool keep_largest(struct mrt_retraces *out, int blocks, int most)
+{
+    int *to = host_alloc(out->host, (size_t)out->count, sizeof *to), kept = 0;
+    if (!to) return false;
+    for (int i = 0; i < out->count; i++) to[i] = rank_of(out, i) < most ? kept++ : -1;
+    for (int i = 0; i < out->count; i++)
+        if (to[i] >= 0) out->at[to[i]] = out->at[i];
+    for (int b = 0; b < blocks; b++)
+        if (out->of_block[b] >= 0) out->of_block[b] = to[out->of_block[b]];
+    out->count = kept;
+    host_free(out->host, to);
+    return true;
+}
+
+static bool retrace(struct host *host, const struct mrt_element *element, struct mrt_retraced *to)
+{
+    return gather_irradiance(host, element, to->block_from_cell, to) &&
+           gather(host, element, to->block_from_cell, MRT_VECTOR, NULL, &to->u_vec);
 }
 
 bool mrt_retraces_init(struct host *host, const struct mrt_block_map *map,
                        const struct mrt_cube_place *places, const struct mrt_dictionary *dictionary,
-                       struct mrt_retraces *out)
+                       struct mrt_retrace_limits limits, struct mrt_retraces *out)
 {
     const size_t blocks = (size_t)map->count;
     *out = (struct mrt_retraces){ .host = host };
@@ -140,8 +193,10 @@ bool mrt_retraces_init(struct host *host, const struct mrt_block_map *map,
     out->of_block = host_alloc(host, blocks, sizeof *out->of_block);
     bool ok = out->at && out->of_block;
     for (int b = 0; ok && b < map->count; b++)
-        ok = retrace_block(out, &map->blocks[b], b, &places[b],
-                           &dictionary->element[places[b].cube]);
+        out->of_block[b] = add_block(out, &map->blocks[b], &places[b], limits.flattest);
+    if (ok && out->count > limits.most) ok = keep_largest(out, map->count, limits.most);
+    for (int i = 0; ok && i < out->count; i++)
+        ok = retrace(host, &dictionary->element[out->at[i].cube], &out->at[i]);
     if (!ok) mrt_retraces_finish(out);
     return ok;
 }

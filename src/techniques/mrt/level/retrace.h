@@ -9,7 +9,9 @@
 // Operators of one cube of the dictionary in one shape, in the order of the cube's texels.
 struct mrt_retraced {
     int cube;
-    mat3s metric; // JᵀJ of the warp from the cube's cell, with a trace of 3
+    mat3s metric;          // JᵀJ of the warp from the cube's cell, with a trace of 3
+    mat3s block_from_cell; // J
+    float area;            // of the walls of all its blocks, m²
     struct matrix_f32 u_b, u_vec, t_db;
 };
 
@@ -20,11 +22,18 @@ struct mrt_retraces {
     int *of_block; // index in `at`; −1: the dictionary's own bases
 };
 
+// The proportions that are traced: those of most wall area, of blocks whose longest edge is at most
+// `flattest` times the shortest.
+struct mrt_retrace_limits {
+    int most; // number of proportions
+    float flattest;
+};
+
 // Blocks of equal cube and proportions share their bases; a block that is a cube keeps the
 // dictionary's. The warp is taken as that of the block's middle, an affine one.
 bool mrt_retraces_init(struct host *host, const struct mrt_block_map *map,
                        const struct mrt_cube_place *places, const struct mrt_dictionary *dictionary,
-                       struct mrt_retraces *out);
+                       struct mrt_retrace_limits limits, struct mrt_retraces *out);
 void mrt_retraces_finish(struct mrt_retraces *retraces); // accepts zero
 
 // Columns: the images in the cell of an orthonormal frame at a wall of the block, whose third axis

@@ -28,6 +28,7 @@ static struct box3 box_of(struct box3 bounds)
 bool mrt_map_single(struct host *host, const struct scene_pose *pose, struct mrt_block_map *map)
 {
     if (!mrt_block_map_init(host, pose->scene->name, 1, map)) return false;
+    map->is_single = true;
     mrt_block_init(&map->blocks[0], "scene", MRT_BLOCK_CUBE);
     mrt_block_set_box(&map->blocks[0], box_of(pose->bounds));
     if (mrt_block_map_check(pose->scene->name, map)) return true;
