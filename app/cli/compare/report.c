@@ -279,14 +279,15 @@ static void print_noise_share(const struct comparison *c)
         least = fmin(least, c->methods[i].image_error.metrics.relmse);
     double share = t->noise_relmse / least;
     if (t->spp < 1 || least <= 0.0 || !(share > NOISE_SHARE_WARNED)) return;
-    printf("\nthe reference's noise makes %.0f %% of the least relmse, which prefers dark images "
-           "then",
+    printf("\nthe reference's noise makes at least %.0f %% of the least relmse, which prefers dark "
+           "images then",
            100.0 * fmin(share, 1.0));
-    // With more samples relmse nears the error itself, and noise falls as their number grows.
+    // With more samples relmse nears the error itself, and noise falls as their number grows. Of
+    // few samples the noise is underestimated: pixels that it darkens show little of it.
     double error = fmax(least - t->noise_relmse, 0.1 * least);
     double spp =
         t->spp * t->noise_relmse * (1.0 - NOISE_SHARE_WANTED) / (error * NOISE_SHARE_WANTED);
-    if (!c->arguments->reference) printf(": --spp %.0f", exp2(ceil(log2(spp))));
+    if (!c->arguments->reference) printf(": --spp %.0f or more", exp2(ceil(log2(spp))));
     putchar('\n');
 }
 

@@ -3,7 +3,7 @@
 #include "techniques/trials/light_trial_scenes.h"
 
 // Eight bounces of albedo 0.7 lack 3 % of the light.
-#define DICTIONARY TRIAL_DICTIONARY(16, 32, 32) ",bounces=16,warp=retrace"
+#define DICTIONARY TRIAL_DICTIONARY(16, 32, 32) ",bounces=16"
 
 // A tenth: mrt has no light of objects and no shadows of them in indirect light.
 static const struct trial_bounds BOUNDS[] = { { "radiosity:texels=16384", 0.95, 1.05 },

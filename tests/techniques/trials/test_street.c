@@ -13,9 +13,7 @@ static struct box3 box_of(const struct mrt_block *block)
 
 static bool contains(struct box3 box, vec3s p)
 {
-    for (int a = 0; a < 3; a++)
-        if (p.raw[a] < box.min.raw[a] || p.raw[a] > box.max.raw[a]) return false;
-    return true;
+    return box3_intersects(box, (struct box3){ p, p });
 }
 
 // The box around all blocks whose middle is in the room.

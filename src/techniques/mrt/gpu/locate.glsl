@@ -54,7 +54,19 @@ float largest_of(vec3 v)
     return max(max(abs(v.x), abs(v.y)), abs(v.z));
 }
 
-// The inverse of the affine part.
+// The inverse of the affine part, and the edges of an affine block.
+#ifdef MRT_BLOCK_ROWS_BINDING
+vec3 affine_cell(uint block, vec3 world)
+{
+    vec3 rows[3];
+    return cell_by_rows(block, world, rows);
+}
+
+mat3 affine_edges(uint block)
+{
+    return edges_by_rows(block);
+}
+#else
 vec3 affine_cell(uint block, vec3 world)
 {
     vec3 cell, way = world - block_table[block].middle;
@@ -69,17 +81,11 @@ mat3 affine_edges(uint block)
         edges[a] = block_table[block].corner[1 << a] - block_table[block].corner[0];
     return edges;
 }
+#endif
 
 // From the affine part, which is exact for boxes; Newton's method otherwise.
 bool warp_inverse(uint block, vec3 world, out vec3 cell)
 {
-#ifdef MRT_BLOCK_ROWS_BINDING
-    vec3 rows[3];
-    if (AFFINE) {
-        cell = cell_by_rows(block, world, rows);
-        return true;
-    }
-#endif
     cell = affine_cell(block, world);
     if (AFFINE) return true;
     float last = MRT_FAR;
@@ -126,9 +132,6 @@ mrt_place locate(vec3 world)
 mat3 world_from_cell(mrt_place place)
 {
     mat3 jacobian;
-#ifdef MRT_BLOCK_ROWS_BINDING
-    if (AFFINE) return edges_by_rows(uint(place.block));
-#endif
     if (AFFINE) return affine_edges(uint(place.block));
     warp_point(uint(place.block), place.cell, jacobian);
     return jacobian;

@@ -83,9 +83,7 @@ static struct box3 bounds_of(const struct mrt_cells *cells, const int at[3])
 
 static bool contains(struct box3 box, vec3s p)
 {
-    for (int a = 0; a < 3; a++)
-        if (p.raw[a] < box.min.raw[a] || p.raw[a] > box.max.raw[a]) return false;
-    return true;
+    return box3_intersects(box, (struct box3){ p, p });
 }
 
 static float common_share(struct box3 cell, struct box3 room)
