@@ -64,11 +64,6 @@ TEST(the_command_of_a_view_renders_its_image)
 {
     require_display();
     check_command(CORNELL LEAST " --gi lpv:dim=16", "");
-    check_command("view @atrium --quiet --gi vct:resolution=32+vo" LEAST, "look 2,3,1 -4,1,0\n");
-    check_command("view @cornell:light=point --quiet --gi vct:resolution=16 --size 700x790 "
-                  "--scale 0.1",
-                  "tab Method\nclick debug view\nwait 2\nclick radiance\nwait 2\n"
-                  "gi vct:resolution=32\n");
     check_command("view @maze --quiet --gi ambient+gtao" SMALL,
                   "camera far\nexposure 9.3\nlayer irradiance\n");
 }

@@ -2,7 +2,7 @@
 // layers, and the first method has its image and its bytes on the device again.
 // AFTERGLOW_TEST_VIEW_TECHNIQUES=lpv,radiosity tests each option of these alone, with bakes.
 #include "cli/cheap_bakes.h"
-#include "cli/window.h"
+#include "cli/view_run.h"
 
 #include <afterglow/afterglow.h>
 
@@ -12,7 +12,6 @@
 #include <string.h>
 
 enum { SCRIPT_SIZE = 262144, SPEC_SIZE = 4096, VALUE_SIZE = 64 };
-#define CORNELL   "view @cornell:light=point --quiet"
 #define MAX_BYTES 60000000u
 
 // Two values that exclude each other are an error only on a device, or in a bake.
@@ -268,4 +267,13 @@ TEST(the_method_that_was_chosen_last_is_shown)
          "settle\nsave first.png\ngi radiosity:texels=2048,rays=64\nwait 1\ngi none\nsettle\n"
          "save last.png\n");
     check_equal("first.png", "last.png");
+}
+
+TEST(the_command_of_a_method_renders_its_image)
+{
+    require_display();
+    check_command("view @atrium --quiet --gi vct:resolution=32+vo" LEAST, "look 2,3,1 -4,1,0\n");
+    check_command(CORNELL " --gi vct:resolution=16 --size 700x790 --scale 0.1",
+                  "tab Method\nclick debug view\nwait 2\nclick radiance\nwait 2\n"
+                  "gi vct:resolution=32\n");
 }

@@ -1,5 +1,5 @@
 // Physical trials of the sources that trace light through the scene: thin walls, a plane's own
-// light, the sky, an empty room, small emitters. Each prints its figures.
+// light, an empty room, small emitters. Each prints its figures.
 #include "techniques/trials/light_trial_scenes.h"
 #include "techniques/trials/plane_trial.h"
 #include "techniques/trials/trial_bakes.h"
@@ -48,17 +48,13 @@ TEST_GPU(a_closed_room_beside_a_sunlit_one_stays_dark)
         CHECK(dark_room_share(gpu, cases[i].gi) <= cases[i].most);
 }
 
-// Radians; planes of other tilts are in test_planes.c.
+// Radians.
 static const float PLANE_TILT = 0.35f;
 
+// Below a sky, and with other tilts: test_planes.c.
 TEST_GPU(an_open_plane_in_the_sun_gets_nothing_of_its_own_light)
 {
     plane_trial_own_light(gpu, PLANE_TILT);
-}
-
-TEST_GPU(an_open_plane_gets_the_whole_sky)
-{
-    plane_trial_sky(gpu, PLANE_TILT);
 }
 
 typedef void (*trial_scene)(struct frame_fixture *s, struct gpu *gpu);
