@@ -8,12 +8,15 @@ endforeach()
 target_compile_definitions(test_cli PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
 add_dependencies(test_cli afterglow)
 if(AFTERGLOW_VIEWER)
-  foreach(name view view_blocks view_edits view_inspect view_methods view_paint view_random view_scene view_window)
-    ag_test(cli/${name} USES image api LIBRARIES ag_test_program TIMEOUT 600)
+  foreach(name blocks edits inspect methods paint random scene scripts window)
+    ag_test(cli/view/${name} USES image api LIBRARIES ag_test_program TIMEOUT 600)
   endforeach()
-  target_sources(test_cli PRIVATE ${CMAKE_CURRENT_LIST_DIR}/cheap_bakes.c ${CMAKE_CURRENT_LIST_DIR}/view_random.c ${CMAKE_CURRENT_LIST_DIR}/view_run.c ${CMAKE_CURRENT_LIST_DIR}/window.c)
-  target_compile_definitions(test_cli PRIVATE
+  foreach(fixture cheap_bakes view_random view_run window)
+    target_sources(test_cli_view PRIVATE ${CMAKE_CURRENT_LIST_DIR}/view/${fixture}.c)
+  endforeach()
+  target_compile_definitions(test_cli_view PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>"
     IMAGE_LIGHT="${CMAKE_SOURCE_DIR}/tests/fuzz/corpus/gltf/image_light.gltf")
+  add_dependencies(test_cli_view afterglow)
 endif()
 
 # The program with a technique that bakes in no time.
@@ -75,5 +78,5 @@ set_tests_properties(cli.bake cli.environment cli.info cli.interrupt cli.render 
   examples.embed_1 examples.embed_2 examples.embed_3 bench.frame
   PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
 if(AFTERGLOW_VIEWER)
-  set_tests_properties(cli.view cli.view_methods cli.view_random cli.view_window PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
+  set_tests_properties(cli.view.methods cli.view.random cli.view.scripts cli.view.window PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
 endif()

@@ -1,5 +1,5 @@
 // view: what is changed is undone, kept in sessions, and survives other scenes and a lost device.
-#include "cli/view_run.h"
+#include "cli/view/view_run.h"
 
 #include <stdio.h>
 #include <stdlib.h>

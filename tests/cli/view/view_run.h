@@ -1,7 +1,7 @@
 // Files and images that scripts of the viewer save, and the command of a view.
 #pragma once
 
-#include "cli/window.h"
+#include "cli/view/window.h"
 
 #include "image/png_file.h"
 

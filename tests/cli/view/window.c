@@ -1,4 +1,4 @@
-#include "cli/window.h"
+#include "cli/view/window.h"
 
 #include <poll.h>
 #include <signal.h>

@@ -1,6 +1,6 @@
-#include "cli/view_random.h"
+#include "cli/view/view_random.h"
 
-#include "cli/cheap_bakes.h"
+#include "cli/view/cheap_bakes.h"
 
 #include <afterglow/afterglow.h>
 

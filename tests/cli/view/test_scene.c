@@ -1,5 +1,5 @@
 // view: changes of the scene, in the image, undone, in session files.
-#include "cli/view_run.h"
+#include "cli/view/view_run.h"
 
 #include "image/exr.h"
 

@@ -1,6 +1,6 @@
 // The viewer's window: minimised, resized and closed under a window manager, where there is one; on
 // a display of high density.
-#include "cli/window.h"
+#include "cli/view/window.h"
 
 #include "image/png_file.h"
 

@@ -1,5 +1,5 @@
 // view: painted light in undo, in sessions, and on other texels.
-#include "cli/view_run.h"
+#include "cli/view/view_run.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 // view: values of pixels, probes, painted light, and errors to the reference.
-#include "cli/view_run.h"
+#include "cli/view/view_run.h"
 
 #include "image/exr.h"
 

@@ -2,8 +2,8 @@
 // the end, with as many bytes on the device. AFTERGLOW_TEST_VIEW_RANDOM=SECONDS[,SEED[,SCENE]]:
 // longer scripts for that time, from that seed on; a script that fails is kept in the folder in
 // which the test began.
-#include "cli/view_random.h"
-#include "cli/window.h"
+#include "cli/view/view_random.h"
+#include "cli/view/window.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // view: scripts under a virtual display.
-#include "cli/view_run.h"
+#include "cli/view/view_run.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 // view with each technique, options at both ends of their ranges: no message of the validation
 // layers, and the first method has its image and its bytes on the device again.
 // AFTERGLOW_TEST_VIEW_TECHNIQUES=lpv,radiosity tests each option of these alone, with bakes.
-#include "cli/cheap_bakes.h"
-#include "cli/view_run.h"
+#include "cli/view/cheap_bakes.h"
+#include "cli/view/view_run.h"
 
 #include <afterglow/afterglow.h>
 

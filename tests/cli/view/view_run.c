@@ -1,4 +1,4 @@
-#include "cli/view_run.h"
+#include "cli/view/view_run.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "cli/cheap_bakes.h"
+#include "cli/view/cheap_bakes.h"
 
 #include <stddef.h>
 #include <string.h>

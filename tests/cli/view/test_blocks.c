@@ -1,5 +1,5 @@
 // view: the block map is edited, written and used.
-#include "cli/view_run.h"
+#include "cli/view/view_run.h"
 
 #define MAZE    "view @maze --quiet --size 480x360 --scale 0.25 --exposure 8 --camera far"
 #define METHOD  "mrt:texels=6,rays=1024,modes=12,response_modes=12"
