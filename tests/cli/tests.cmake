@@ -2,11 +2,17 @@
 add_library(ag_test_program STATIC ${CMAKE_CURRENT_LIST_DIR}/program.c)
 target_compile_definitions(ag_test_program PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
 target_link_libraries(ag_test_program PUBLIC ag_test_framework PkgConfig::JANSSON PRIVATE afterglow_flags)
-foreach(name usage info environment diff reference render compare interrupt hostile lightmap lightmap_lights export unwrap scale complete)
+foreach(name usage info environment diff reference render interrupt hostile lightmap lightmap_lights export unwrap scale complete)
   ag_test(cli/${name} USES image LIBRARIES ag_test_program)
 endforeach()
-target_compile_definitions(test_cli PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
-add_dependencies(test_cli afterglow)
+foreach(name folders references report)
+  ag_test(cli/compare/${name} USES image LIBRARIES ag_test_program)
+endforeach()
+target_sources(test_cli_compare PRIVATE ${CMAKE_CURRENT_LIST_DIR}/compare/compare_run.c)
+foreach(program test_cli test_cli_compare)
+  target_compile_definitions(${program} PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
+  add_dependencies(${program} afterglow)
+endforeach()
 if(AFTERGLOW_VIEWER)
   foreach(name blocks edits inspect methods paint random scene scripts window)
     ag_test(cli/view/${name} USES image api LIBRARIES ag_test_program TIMEOUT 600)
@@ -74,7 +80,7 @@ set_tests_properties(bench.frame PROPERTIES TIMEOUT 300 LABELS examples PASS_REG
 
 # Drivers leave memory behind when they are unloaded, without a name by which to suppress it. What of ours lives on a device
 # is held to account by the tests of gpu, frame and api.
-set_tests_properties(cli.bake cli.environment cli.info cli.interrupt cli.render cli.compare examples.minimal examples.textured examples.measure examples.side_by_side examples.balls examples.views examples.host examples.engine
+set_tests_properties(cli.bake cli.environment cli.info cli.interrupt cli.render cli.compare.folders cli.compare.references cli.compare.report examples.minimal examples.textured examples.measure examples.side_by_side examples.balls examples.views examples.host examples.engine
   examples.embed_1 examples.embed_2 examples.embed_3 bench.frame
   PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
 if(AFTERGLOW_VIEWER)
