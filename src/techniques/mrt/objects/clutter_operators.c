@@ -414,6 +414,7 @@ bool mrt_operators_add_clutter(struct mrt_operators *operators, const struct mrt
                          .cache = cache };
     int opening = 0;
     bool ok = start(&s);
+    if (ok) mrt_delta_cache_begin(cache, &s.rays);
     for (int b = 0; ok && b < level->map->count; b++) ok = add_block(&s, b, &opening);
     ok = ok && (!changes->gather || find_map_source(&s)) && mrt_order_faces(operators);
     trace_scene_destroy(s.objects);

@@ -1,15 +1,14 @@
 #include "techniques/mrt/objects/delta_cache.h"
 
-#include "core/hash.h"
-
-#include <math.h>
+#include "core/parallel.h"
 
 bool mrt_delta_cache_init(struct mrt_delta_cache *out, struct host *host, int blocks)
 {
     *out = (struct mrt_delta_cache){ .host = host, .count = blocks };
     out->blocks = host_alloc(host, (size_t)blocks, sizeof *out->blocks);
     out->entries = host_alloc(host, (size_t)blocks * CUBE_FACES, sizeof *out->entries);
-    return out->blocks && out->entries;
+    out->contents = host_alloc(host, (size_t)blocks, sizeof *out->contents);
+    return out->blocks && out->entries && out->contents;
 }
 
 void mrt_delta_cache_finish(struct mrt_delta_cache *cache)
@@ -24,6 +23,7 @@ void mrt_delta_cache_finish(struct mrt_delta_cache *cache)
         mrt_delta_entry_finish(&cache->entries[i].entry);
     host_free(cache->host, cache->blocks);
     host_free(cache->host, cache->entries);
+    host_free(cache->host, cache->contents);
     *cache = (struct mrt_delta_cache){ 0 };
 }
 
@@ -90,18 +90,14 @@ static struct hash128 add_faces(struct hash128 key, const struct mrt_clutter *cl
 }
 
 // Rays of faces go through openings: all clutter may block them.
-static struct hash128 gather_key(const struct mrt_clutter *clutter, int block)
+static struct hash128 gather_key(const struct mrt_delta_cache *cache,
+                                 const struct mrt_clutter *clutter, int block)
 {
-    const vec3s far = vec3_of(INFINITY, INFINITY, INFINITY);
-    struct box3 everything = { glms_vec3_negate(far), far }, unused = box3_empty();
+    struct box3 unused = box3_empty();
     int first;
     const int faces = mrt_faces_of_block(clutter, block, &first);
-    struct hash128 key = add_faces((struct hash128){ 0 }, clutter, first, faces, &unused);
-    // Columns of all faces.
-    key = hash128_add(key, clutter->chart_faces,
-                      clutter->first_chart_face[clutter->charts.count] *
-                          sizeof *clutter->chart_faces);
-    return add_triangles(key, clutter, block, first, everything);
+    const struct hash128 key = add_faces((struct hash128){ 0 }, clutter, first, faces, &unused);
+    return hash128_add(key, &cache->everything, sizeof cache->everything);
 }
 
 // Blocks that rays reach through an opening. Writes the number of openings behind it, −1: none.
@@ -116,17 +112,11 @@ static void find_reached(const struct mrt_block_map *map, int first, int depth, 
             }
 }
 
-static struct hash128 entry_key(const struct mrt_clutter_rays *rays, const int *openings)
+static struct hash128 entry_key(const struct mrt_delta_cache *cache, const int *openings)
 {
     struct hash128 key = { 0 };
-    for (int b = 0; b < rays->map->count; b++) {
-        int first;
-        const int faces = mrt_faces_of_block(rays->clutter, b, &first);
-        if (openings[b] < 0) continue;
-        key = hash128_add(key, &faces, sizeof faces);
-        key =
-            add_triangles(key, rays->clutter, b, first, mrt_bounds_of_block(&rays->map->blocks[b]));
-    }
+    for (int b = 0; b < cache->count; b++)
+        if (openings[b] >= 0) key = hash128_add(key, &cache->contents[b], sizeof *cache->contents);
     return key;
 }
 
@@ -140,13 +130,43 @@ static struct hash128 transfer_key(const struct mrt_clutter_rays *rays, int bloc
     return add_triangles(key, rays->clutter, block, first, box);
 }
 
-static struct hash128 delta_key(const struct mrt_clutter_rays *rays, int block)
+// Clutter in the bounds of a block, with its faces there.
+static struct hash128 content_of(const struct mrt_clutter_rays *rays, int block)
 {
     int first;
     const int faces = mrt_faces_of_block(rays->clutter, block, &first);
     const struct hash128 key = hash128_add((struct hash128){ 0 }, &faces, sizeof faces);
     return add_triangles(key, rays->clutter, block, first,
                          mrt_bounds_of_block(&rays->map->blocks[block]));
+}
+
+// All triangles, and the columns of all faces.
+static struct hash128 everything_of(const struct mrt_clutter *clutter)
+{
+    const struct charts *charts = &clutter->charts;
+    struct hash128 key = { 0 };
+    for (uint32_t t = 0; t < charts->triangle_count; t++)
+        key = add_triangle(key, clutter, &charts->triangles[t], (int)charts->triangles[t].chart);
+    return hash128_add(key, clutter->chart_faces,
+                       clutter->first_chart_face[charts->count] * sizeof *clutter->chart_faces);
+}
+
+struct contents {
+    struct mrt_delta_cache *cache;
+    const struct mrt_clutter_rays *rays;
+};
+
+static void find_content(void *user, size_t block)
+{
+    const struct contents *job = user;
+    job->cache->contents[block] = content_of(job->rays, (int)block);
+}
+
+void mrt_delta_cache_begin(struct mrt_delta_cache *cache, const struct mrt_clutter_rays *rays)
+{
+    struct contents job = { cache, rays };
+    cache->everything = everything_of(rays->clutter);
+    parallel_for((size_t)cache->count, 1, find_content, &job);
 }
 
 // ---- operators
@@ -163,7 +183,7 @@ const struct mrt_delta_block *mrt_kept_delta(struct mrt_delta_cache *cache,
                                              const struct mrt_clutter_rays *rays, int block)
 {
     struct mrt_kept_block *at = &cache->blocks[block];
-    if (!is_kept(&at->of_delta, delta_key(rays, block))) {
+    if (!is_kept(&at->of_delta, cache->contents[block])) {
         mrt_delta_block_finish(&at->delta);
         if (!mrt_delta_block_init(&at->delta, cache->host, rays, block)) return NULL;
         cache->traced += at->delta.touched;
@@ -177,7 +197,7 @@ const struct mrt_gather_faces *mrt_kept_gather(struct mrt_delta_cache *cache,
                                                const struct mrt_clutter_rays *rays, int block)
 {
     struct mrt_kept_block *at = &cache->blocks[block];
-    if (!is_kept(&at->of_gathered, gather_key(rays->clutter, block))) {
+    if (!is_kept(&at->of_gathered, gather_key(cache, rays->clutter, block))) {
         mrt_gather_faces_finish(&at->gathered);
         if (!mrt_gather_faces_init(&at->gathered, cache->host, rays, block)) return NULL;
         at->of_gathered.valid = true;
@@ -209,7 +229,7 @@ const struct mrt_delta_entry *mrt_kept_entry(struct mrt_delta_cache *cache,
     int *openings = host_alloc(cache->host, (size_t)cache->count, sizeof *openings);
     if (!openings) return NULL;
     find_reached(rays->map, beyond, rays->depth, openings);
-    const struct hash128 key = entry_key(rays, openings);
+    const struct hash128 key = entry_key(cache, openings);
     host_free(cache->host, openings);
     if (!is_kept(&at->kept, key)) {
         mrt_delta_entry_finish(&at->entry);

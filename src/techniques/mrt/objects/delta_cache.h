@@ -27,6 +27,8 @@ struct mrt_delta_cache {
     struct host *host; // of the operators
     struct mrt_kept_block *blocks;
     struct mrt_kept_entry *entries; // [blocks][faces of the cube]
+    struct hash128 *contents;       // [blocks]: of the clutter in each of them
+    struct hash128 everything;      // of all clutter
     int count;
     int traced; // blocks whose operators changed in the last update
 };
@@ -34,6 +36,8 @@ struct mrt_delta_cache {
 // mrt_delta_cache_finish accepts zero.
 bool mrt_delta_cache_init(struct mrt_delta_cache *out, struct host *host, int blocks);
 void mrt_delta_cache_finish(struct mrt_delta_cache *cache);
+// Before the operators of an update, which have the same rays.
+void mrt_delta_cache_begin(struct mrt_delta_cache *cache, const struct mrt_clutter_rays *rays);
 
 // The operators of a block or an opening, kept or new; NULL: failed or stopped. Faces are numbered
 // as the clutter of the rays does.
