@@ -21,6 +21,17 @@ vec3s sample_hemisphere_uniform(vec2s u)
     return direction_of(u.x, u.y);
 }
 
+vec2s sample_disk_inverse(vec2s disk)
+{
+    const bool wide = fabsf(disk.x) > fabsf(disk.y);
+    const float along = wide ? disk.x : disk.y, across = wide ? disk.y : disk.x;
+    if (along == 0.0f) return (vec2s){ { 0.5f, 0.5f } };
+    const float radius = copysignf(glms_vec2_norm(disk), along);
+    const float other = radius * atanf(across / along) * (4.0f / GLM_PIf);
+    const vec2s square = { { wide ? radius : other, wide ? other : radius } };
+    return (vec2s){ { 0.5f + 0.5f * square.x, 0.5f + 0.5f * square.y } };
+}
+
 // Digits of an index mirrored at the radix point.
 static double radical_inverse(int index, int base)
 {

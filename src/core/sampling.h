@@ -12,6 +12,7 @@ vec3s sample_hemisphere_uniform(vec2s u);              // around +z, density 1/(
 // moved so that their mean is 0; in −½…½. (0, 0) for a count below 2.
 vec2s sample_jitter(int index, int count);
 static inline vec2s sample_disk(vec2s u);     // concentric (Shirley & Chiu 1997), unit disk
+vec2s sample_disk_inverse(vec2s disk);        // the point of the unit square
 static inline vec2s sample_triangle(vec2s u); // barycentric b1, b2, uniform by area
 
 // ---- inline, for the path tracer

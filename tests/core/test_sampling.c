@@ -131,6 +131,18 @@ TEST(disk_map_is_concentric)
     }
 }
 
+TEST(disk_map_has_an_inverse)
+{
+    struct rng rng = rng_for(3, 2, 1);
+    for (int i = 0; i < 1000; i++) {
+        const vec2s u = rng_vec2(&rng), back = sample_disk_inverse(sample_disk(u));
+        CHECK_NEAR(back.x, u.x, 1e-6);
+        CHECK_NEAR(back.y, u.y, 1e-6);
+    }
+    const vec2s centre = sample_disk_inverse((vec2s){ { 0.0f, 0.0f } });
+    CHECK(centre.x == 0.5f && centre.y == 0.5f);
+}
+
 TEST(triangle_samples_are_uniform_by_area)
 {
     enum { N = 16 };

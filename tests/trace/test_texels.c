@@ -91,6 +91,40 @@ TEST(small_emitter_is_sampled)
     fixture_finish(&s);
 }
 
+// Rays are denser in some cells: half a sky and the other half an emissive wall keep their light,
+// and shares of all rays sum to 1.
+static void add_share(void *user, const struct ray *ray, const struct ray_hit *hit, vec3s local,
+                      const struct texel_hit *at_hit)
+{
+    (void)ray, (void)hit, (void)local;
+    *(double *)user += (double)at_hit->share;
+}
+
+TEST(rays_that_are_denser_in_cells_keep_the_mean)
+{
+    struct trace_fixture s;
+    uint8_t further[64];
+    double shares = 0;
+    fixture_init(&s);
+    const int emitter = fixture_diffuse(&s, vec3_of(0, 0, 0), vec3_of(2, 2, 2));
+    fixture_disk(&s, vec3_of(0, 0, -1), vec3_of(0, 0, 1), 1e7f, 64, emitter);
+    struct trace_scene *scene = open_trace(&s);
+    for (int i = 0; i < 64; i++) further[i] = i % 3 == 0 ? 16 : i % 3 == 1 ? 2 : 0;
+    const struct texel_receiver receiver = { .position = vec3_of(0, 0, 0),
+                                             .normal = vec3_of(0, 1, 0),
+                                             .rays = 256,
+                                             .light_samples = 64,
+                                             .seed = 5,
+                                             .cells = { 8, further } };
+    struct texel_lights light;
+    texel_gather_light(scene, &receiver, add_share, &shares, &light);
+    check_along(&light.sky, receiver.normal, 1.5708, 0.01);
+    check_along(&light.emitted[1], receiver.normal, 2 * 1.5708, 0.02);
+    CHECK_NEAR(shares + (double)light.sky.irradiance / 3.14159265, 1.0, 1e-5);
+    trace_scene_destroy(scene);
+    fixture_finish(&s);
+}
+
 static bool is_behind_wall(bool double_sided)
 {
     struct trace_fixture s;

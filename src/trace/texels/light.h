@@ -6,12 +6,27 @@
 #include "scene/emission_basis.h"
 #include "trace/trace_scene.h"
 
+// Further rays of a surface in cells of its hemisphere: side × side squares of the unit square that
+// sample_hemisphere_cosine takes, of equal irradiance in uniform light.
+struct texel_cells {
+    uint32_t side;          // side² divides the number of rays; 0: no cells
+    const uint8_t *further; // [side²], rays of a cell beside its part of all: a power of two, or 0
+};
+
+// The cell of a point of the unit square.
+static inline uint32_t texel_cell_at(uint32_t side, vec2s at)
+{
+    const uint32_t x = (uint32_t)(at.x * (float)side), y = (uint32_t)(at.y * (float)side);
+    return (y < side ? y : side - 1) * side + (x < side ? x : side - 1);
+}
+
 // A surface, whose rays are cosine-distributed, or a point with uniform rays: normal 0.
 struct texel_receiver {
     vec3s position, normal; // position: offset against self-intersection
     int rays, light_samples;
     uint32_t first; // of the rays' points in the Sobol sequence
     uint32_t seed;
+    struct texel_cells cells;
     const struct emission_basis *emission; // of the trace scene's materials; NULL: no columns
 };
 
@@ -29,7 +44,9 @@ struct texel_hit {
     uint32_t mesh;     // in trace_scene.meshes
     vec3s emission;    // cd/m²; 0: none
     float pdf;         // of light_sample_emitter, sr⁻¹
+    float share;       // of the surface's irradiance in uniform light that the ray stands for
 };
+// Without its share.
 struct texel_hit texel_hit_at(const struct trace_scene *scene, const struct ray *ray,
                               const struct ray_hit *hit);
 

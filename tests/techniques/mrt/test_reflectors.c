@@ -135,7 +135,8 @@ TEST(a_texel_receives_the_share_of_its_rays)
     };
     bool lit;
     open_ground(&p, -3);
-    assert_true(mrt_area_light_texels(p.trace, &p.reflectors, texels, 2, &lit));
+    assert_true(mrt_area_light_texels(p.trace, &p.reflectors,
+                                      &(struct mrt_texel_list){ texels, 2, 1 }, &lit));
     CHECK(lit);
     for (int i = 0; i < 2; i++) {
         float sum = 0.0f;

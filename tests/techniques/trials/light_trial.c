@@ -201,3 +201,24 @@ void trial_object_in_furnace(struct gpu *gpu, const char *gi)
     CHECK(e.least > 0.99 * expected && e.most < 1.01 * expected);
     baked_fixture_close(&run, &s);
 }
+
+static double difference_at(const float *image, int size, int reach, int x, int y)
+{
+    double sum = 0;
+    for (int dy = -reach; dy <= reach; dy++)
+        for (int dx = -reach; dx <= reach; dx++)
+            sum += (double)image[3 * ((y + dy) * size + x + dx) + 1];
+    const double mean = sum / ((2 * reach + 1) * (2 * reach + 1));
+    return (double)image[3 * (y * size + x) + 1] / mean - 1;
+}
+
+double trial_mottle(const float *image, int size, int reach)
+{
+    double squares = 0, count = 0;
+    for (int y = reach; y < size - reach; y++)
+        for (int x = reach; x < size - reach; x++, count++) {
+            const double difference = difference_at(image, size, reach, x, y);
+            squares += difference * difference;
+        }
+    return sqrt(squares / count);
+}

@@ -39,5 +39,8 @@ void trial_check_energy(struct gpu *gpu,
                         int samples, const struct trial_bounds *bounds, size_t count);
 // Renders an open fixture: the pixels of this instance and later ones.
 struct trial_irradiance trial_object_irradiance(struct frame_fixture *s, int first);
+// Root mean square of the relative differences of pixels from the mean of the square around them,
+// of an image of size × size pixels (RGB, of which green counts), but for `reach` along its edges.
+double trial_mottle(const float *image, int size, int reach);
 // A movable box in a furnace of albedo 0.5 gets the irradiance of the walls, within 1 %.
 void trial_object_in_furnace(struct gpu *gpu, const char *gi);

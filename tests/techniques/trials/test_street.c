@@ -2,7 +2,11 @@
 #include "techniques/trials/light_trial.h"
 #include "techniques/trials/light_trial_scenes.h"
 
+#include "techniques/gi_fixture.h"
 #include "techniques/mrt/level/map/make_map.h"
+
+#include <math.h>
+#include <stdlib.h>
 
 #define DICTIONARY TRIAL_DICTIONARY(16, 32, 32)
 
@@ -73,6 +77,27 @@ TEST_GPU(light_of_sunlit_ground_enters_small_houses)
     check_room(gpu, TRIAL_STREET_LARGE, "mrt" DICTIONARY);
     check_room(gpu, TRIAL_STREET_BACK, "mrt" DICTIONARY);
     check_room(gpu, TRIAL_STREET_FRONT, "drt" DICTIONARY);
+}
+
+// The wall opposite to the window, of which 2.4 m are seen: light changes slowly along it.
+TEST_GPU(light_of_sunlit_ground_is_even_on_a_wall)
+{
+    enum { SIZE = 48, REACH = 9 }; // of pixels of 5 cm
+    struct frame_fixture s;
+    trial_street(&s, gpu, TRIAL_STREET_SMALL);
+    s.width = s.height = SIZE;
+    fixture_look(&s, vec3_of(1.4f, 1.4f, 0), vec3_of(-2, 1.4f, 0));
+    s.input.camera.vertical_fov_rad = 2 * atanf(1.2f / 3.4f);
+    fixture_open(&s);
+    struct gi *gi = gi_fixture_light(&s, "mrt" DICTIONARY);
+    fixture_render(&s);
+    float *e = fixture_read(&s, READ_IRRADIANCE);
+    const double mottle = trial_mottle(e, SIZE, REACH);
+    print_message("a wall opposite to a window: deviation %.4f\n", mottle);
+    CHECK(mottle < 0.02);
+    free(e);
+    gi_destroy(gi);
+    fixture_finish(&s);
 }
 
 // The sun has 20000 lux.

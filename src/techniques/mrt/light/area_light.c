@@ -1,7 +1,6 @@
 // Irradiance of emissive surfaces and of the sky at texels.
 #include "techniques/mrt/light/area_light.h"
 
-#include "core/parallel.h"
 #include "core/rng.h"
 
 #include <string.h>
@@ -9,8 +8,8 @@
 enum {
     PROBES = 8,
     LEAST_RAYS = 64,
-    MOST_RAYS = 1024,
-    ALL_RAYS = 1 << 22, // of all texels, while each has LEAST_RAYS
+    MOST_RAYS = 512,
+    ALL_RAYS = 1 << 21, // of all texels, while each has LEAST_RAYS
     LIGHT_SAMPLES = 128,
 };
 
@@ -19,6 +18,7 @@ static const float RAY_OFFSET = 1e-3f; // m, along the normal
 struct job {
     const struct trace_scene *scene;
     struct mrt_geometry_texel *texels;
+    struct mrt_ray_cells cells;
     int rays;
 };
 
@@ -51,14 +51,17 @@ static void gather(void *user, size_t i, struct mrt_reflector_hits *hits)
     struct mrt_geometry_texel *at = &job->texels[i];
     struct view view = { job->scene, hits };
     struct texel_lights light;
+    uint8_t further[MRT_MOST_CELLS];
     at->reflected = (struct mrt_reflector_row){ 0 };
     if (!at->found) return;
+    if (job->cells.side) mrt_ray_cells_of(&job->cells, i, further);
     const struct texel_receiver receiver = {
         .position = glms_vec3_muladds(at->normal, RAY_OFFSET, at->position),
         .normal = at->normal,
         .rays = job->rays,
         .light_samples = job->scene->lights.has_emitters ? LIGHT_SAMPLES : 0,
         .seed = pcg_hash((uint32_t)i) | 1u,
+        .cells = { job->cells.side, further },
     };
     texel_gather_light(job->scene, &receiver, add_hit, &view, &light);
     at->sky = light.sky.irradiance / GLM_PIf;
@@ -78,13 +81,13 @@ static struct mrt_reflector_row *row_of(void *user, size_t i)
 static bool gather_all(struct job *job, struct mrt_reflectors *reflectors, size_t count, int rays)
 {
     job->rays = rays;
-    return mrt_reflectors_gather(reflectors,
-                                 &(struct mrt_reflector_gather){ .gather = gather,
-                                                                 .row_of = row_of,
-                                                                 .user = job,
-                                                                 .count = count,
-                                                                 .rays = rays,
-                                                                 .weight = 1.0f / (float)rays });
+    return mrt_reflectors_gather(
+        reflectors, &(struct mrt_reflector_gather){ .gather = gather,
+                                                    .row_of = row_of,
+                                                    .user = job,
+                                                    .count = count,
+                                                    .rays = rays + (int)job->cells.most,
+                                                    .weight = 1.0f });
 }
 
 // A power of two, for which points of the Sobol sequence are spread most evenly.
@@ -95,17 +98,27 @@ static int rays_of(size_t texels)
     return rays;
 }
 
+static bool gather_light(struct job *job, struct mrt_reflectors *reflectors,
+                         const struct mrt_texel_list *texels)
+{
+    const int rays = rays_of(texels->count);
+    const bool ok = mrt_ray_cells_init(job->scene, reflectors, texels, rays, &job->cells) &&
+                    gather_all(job, reflectors, texels->count, rays);
+    mrt_ray_cells_finish(&job->cells);
+    return ok;
+}
+
 // Without emitters a few rays tell whether the sky is seen at all.
 bool mrt_area_light_texels(const struct trace_scene *scene, struct mrt_reflectors *reflectors,
-                           struct mrt_geometry_texel *texels, size_t count, bool *lit)
+                           const struct mrt_texel_list *texels, bool *lit)
 {
-    struct job job = { .scene = scene, .texels = texels };
+    struct job job = { .scene = scene, .texels = texels->at };
     *lit = scene->lights.has_emitters;
     if (!*lit) {
-        if (!gather_all(&job, NULL, count, PROBES)) return false;
-        for (size_t i = 0; i < count; i++) *lit = *lit || texels[i].sky > 0.0f;
+        if (!gather_all(&job, NULL, texels->count, PROBES)) return false;
+        for (size_t i = 0; i < texels->count; i++) *lit = *lit || texels->at[i].sky > 0.0f;
     }
-    return !*lit || gather_all(&job, reflectors, count, rays_of(count));
+    return !*lit || gather_light(&job, reflectors, texels);
 }
 
 static struct mrt_geometry_texel *geometry_of(struct host *host, const struct scene_pose *walls,
@@ -142,11 +155,15 @@ static bool light_reflectors(const struct trace_scene *scene, struct mrt_reflect
 {
     const size_t count = reflectors->count;
     struct mrt_geometry_texel *texels = copy_of(reflectors->host, reflectors->at, count);
-    bool lit, ok = texels && mrt_area_light_texels(scene, reflectors, texels, count, &lit);
+    bool lit;
+    bool ok = texels &&
+              mrt_area_light_texels(scene, reflectors,
+                                    &(struct mrt_texel_list){ .at = texels, .count = count }, &lit);
     if (ok) {
         memcpy(reflectors->at, texels, count * sizeof *texels);
-        ok = mrt_area_light_texels(scene, NULL, reflectors->at + count, reflectors->count - count,
-                                   &lit);
+        const struct mrt_texel_list seen = { .at = reflectors->at + count,
+                                             .count = reflectors->count - count };
+        ok = mrt_area_light_texels(scene, NULL, &seen, &lit);
     }
     host_free(reflectors->host, texels);
     return ok;
@@ -154,10 +171,12 @@ static bool light_reflectors(const struct trace_scene *scene, struct mrt_reflect
 
 static bool light_all(struct mrt_scene_images *images, const struct trace_scene *scene,
                       const struct scene_pose *pose, struct mrt_reflectors *reflectors,
-                      size_t texels, int probes)
+                      const struct mrt_atlas *atlas, int probes)
 {
+    const struct mrt_texel_list texels = { images->geometry, (size_t)atlas->texels,
+                                           atlas->resolution };
     bool lit;
-    return mrt_area_light_texels(scene, reflectors, images->geometry, texels, &lit) &&
+    return mrt_area_light_texels(scene, reflectors, &texels, &lit) &&
            light_probes(images, scene, reflectors, probes, lit) &&
            mrt_outdoors_init(scene, reflectors, pose->bounds, &images->outdoors) &&
            light_reflectors(scene, reflectors);
@@ -178,7 +197,7 @@ bool mrt_scene_images_init(struct mrt_reflectors *reflectors, const struct scene
                         : walls == pose ? mrt_geometry_create(host, map, atlas, scene)
                                         : geometry_of(host, walls, map, atlas);
     const bool ok =
-        scene && out->geometry && light_all(out, scene, pose, reflectors, texels, probes);
+        scene && out->geometry && light_all(out, scene, pose, reflectors, atlas, probes);
     trace_scene_destroy(scene);
     return ok;
 }

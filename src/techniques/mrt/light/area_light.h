@@ -3,7 +3,7 @@
 #pragma once
 
 #include "techniques/common/probes/grid.h"
-#include "techniques/mrt/light/reflectors.h"
+#include "techniques/mrt/light/ray_cells.h"
 #include "techniques/mrt/level/probes.h"
 
 // ---- area_light_points.c: by uniform rays and samples of the emitters
@@ -69,5 +69,5 @@ bool mrt_scene_images_init(struct mrt_reflectors *reflectors, const struct scene
 // Light at texels. lit: whether there are emitters or sky. reflectors: NULL for their own light.
 // false: out of memory.
 bool mrt_area_light_texels(const struct trace_scene *scene, struct mrt_reflectors *reflectors,
-                           struct mrt_geometry_texel *texels, size_t count, bool *lit);
+                           const struct mrt_texel_list *texels, bool *lit);
 void mrt_scene_images_finish(struct mrt_scene_images *images); // accepts zero

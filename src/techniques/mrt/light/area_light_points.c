@@ -35,7 +35,8 @@ static bool gather_rays(const struct job *job, const struct texel_receiver *at,
             for (int i = 0; i < MRT_PROBE_VALUES; i++) out->sky[i] += weight[i];
             continue;
         }
-        const struct texel_hit at_hit = texel_hit_at(job->scene, &ray, &hit);
+        struct texel_hit at_hit = texel_hit_at(job->scene, &ray, &hit);
+        at_hit.share = 1.0f / (float)job->rays.count;
         const float density = texel_sample_density(at, ray.direction, at_hit.pdf);
         backs += at_hit.back;
         mrt_reflectors_add_hit(hits, job->scene, &ray, &hit, &at_hit);
@@ -84,13 +85,13 @@ bool mrt_area_light_points(const struct trace_scene *scene, struct mrt_reflector
     struct host *host = reflectors->host;
     struct job job = { .scene = scene, .points = points };
     if (!mrt_rays_init(host, MRT_PROBE, rays, &job.rays)) return false;
-    const bool ok = mrt_reflectors_gather(
-        reflectors, &(struct mrt_reflector_gather){ .gather = gather,
-                                                    .row_of = row_of,
-                                                    .user = &job,
-                                                    .count = count,
-                                                    .rays = rays,
-                                                    .weight = 4.0f / (float)rays });
+    const bool ok =
+        mrt_reflectors_gather(reflectors, &(struct mrt_reflector_gather){ .gather = gather,
+                                                                          .row_of = row_of,
+                                                                          .user = &job,
+                                                                          .count = count,
+                                                                          .rays = rays,
+                                                                          .weight = 4.0f });
     mrt_rays_finish(host, &job.rays);
     return ok;
 }

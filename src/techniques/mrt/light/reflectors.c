@@ -59,15 +59,22 @@ static uint64_t key_of(const struct mrt_reflectors *r, vec3s point, vec3s normal
     return key;
 }
 
+bool mrt_reflectors_have(const struct mrt_reflectors *r, const struct trace_scene *scene,
+                         const struct ray *ray, const struct ray_hit *hit,
+                         const struct texel_hit *at_hit)
+{
+    if (at_hit->inside) return false;
+    const vec3s position = glms_vec3_muladds(ray->direction, hit->distance, ray->origin);
+    const vec3s facet = scene->meshes[hit->geometry].facets[hit->triangle].normal;
+    return !is_of_a_block(r, position, at_hit->back ? glms_vec3_negate(facet) : facet);
+}
+
 void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_scene *scene,
                             const struct ray *ray, const struct ray_hit *hit,
                             const struct texel_hit *at_hit)
 {
     float edge_m;
-    if (!hits->of || at_hit->inside) return;
-    const vec3s position = glms_vec3_muladds(ray->direction, hit->distance, ray->origin);
-    const vec3s facet = scene->meshes[hit->geometry].facets[hit->triangle].normal;
-    if (is_of_a_block(hits->of, position, at_hit->back ? glms_vec3_negate(facet) : facet)) return;
+    if (!hits->of || !mrt_reflectors_have(hits->of, scene, ray, hit, at_hit)) return;
     struct surface surface;
     surface_at(scene, ray, hit, NULL, &surface);
     const uint64_t key =
@@ -79,6 +86,7 @@ void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_
         .reflectance = surface_reflectance(&surface),
         .direction = ray->direction,
         .area_m2 = edge_m * edge_m,
+        .share = at_hit->share,
     };
 }
 
@@ -197,8 +205,9 @@ static bool add_row(struct mrt_reflectors *r, const struct part *part, size_t i)
             part->ways[r->share_count - 1 - first] = vec3_of(0, 0, 0);
         }
         const uint32_t share = r->newest[reflector] - 1;
-        r->shares[share].weight += g->weight;
-        part->ways[share - first] = glms_vec3_add(part->ways[share - first], hit->direction);
+        r->shares[share].weight += g->weight * hit->share;
+        part->ways[share - first] =
+            glms_vec3_muladds(hit->direction, hit->share, part->ways[share - first]);
     }
     for (uint32_t k = first; k < r->share_count; k++)
         r->shares[k].direction = octahedral_pack(part->ways[k - first]);

@@ -42,6 +42,7 @@ struct mrt_reflector_hit {
     uint64_t key;
     vec3s position, normal, reflectance, direction;
     float area_m2;
+    float share; // of the ray
 };
 
 // The hits of one receiver.
@@ -51,14 +52,20 @@ struct mrt_reflector_hits {
     uint32_t count;
 };
 
-// Adds the hit unless a block has the surface, or it is seen from inside a solid.
+// Whether the hit is one of a reflector: no block has the surface, and it is not seen from inside a
+// solid.
+bool mrt_reflectors_have(const struct mrt_reflectors *reflectors, const struct trace_scene *scene,
+                         const struct ray *ray, const struct ray_hit *hit,
+                         const struct texel_hit *at_hit);
+
+// Adds the hit if it is one of a reflector, with the share of the ray (texel_hit).
 void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_scene *scene,
                             const struct ray *ray, const struct ray_hit *hit,
                             const struct texel_hit *at_hit);
 
-// Calls `gather` for each receiver, on all cores, and keeps what it adds: at most `rays` hits, each
-// of this weight. Afterwards *row_of(user, i) has the receiver's shares. reflectors NULL: it
-// gathers alone. false: out of memory.
+// Calls `gather` for each receiver, on all cores, and keeps what it adds: at most `rays` hits, of
+// this weight times the share of the ray. Afterwards *row_of(user, i) has the receiver's shares.
+// reflectors NULL: it gathers alone. false: out of memory.
 struct mrt_reflector_gather {
     void (*gather)(void *user, size_t i, struct mrt_reflector_hits *hits);
     struct mrt_reflector_row *(*row_of)(void *user, size_t i);

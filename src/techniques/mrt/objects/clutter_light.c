@@ -32,7 +32,9 @@ struct mrt_geometry_texel *mrt_clutter_light_create(struct host *host,
     struct trace_scene *scene = trace_scene_create(host, pose);
     bool ok = out && objects && scene, lit;
     for (size_t i = 0; ok && i < count; i++) out[i] = look_at(objects, clutter, clutter->texels[i]);
-    ok = ok && mrt_area_light_texels(scene, reflectors, out, count, &lit);
+    // Four in a row of the atlas are neighbours.
+    const struct mrt_texel_list texels = { out, count, 2 };
+    ok = ok && mrt_area_light_texels(scene, reflectors, &texels, &lit);
     trace_scene_destroy(objects);
     trace_scene_destroy(scene);
     if (ok) return out;
