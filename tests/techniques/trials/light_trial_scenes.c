@@ -411,16 +411,64 @@ void trial_shade(struct frame_fixture *s, struct gpu *gpu, bool second_view)
     fixture_add_point(s, vec3_of(0, 1.75f, 0), grey(200));
 }
 
-void trial_curtain(struct frame_fixture *s, struct gpu *gpu, bool second_view)
+static int add_double_sided(struct frame_fixture *s, float albedo)
 {
     struct material cloth = material_default();
-    begin_furnished_room(s, gpu, second_view);
-    cloth.base_color = vec4_of(grey(0.6f), 1);
+    cloth.base_color = vec4_of(grey(albedo), 1);
     cloth.metallic = 0;
     cloth.double_sided = true;
-    fixture_quad(s, vec3_of(-2.9f, 0.1f, 1), vec3_of(-2.9f, 0.1f, -1), vec3_of(-2.9f, 2.3f, -1),
-                 vec3_of(-2.9f, 2.3f, 1), fixture_material(s, &cloth));
+    return fixture_material(s, &cloth);
+}
+
+// Before the wall at x = −3.
+static void add_curtain(struct frame_fixture *s, float gap, int material)
+{
+    const float x = -3 + gap;
+    fixture_quad(s, vec3_of(x, 0.1f, 1), vec3_of(x, 0.1f, -1), vec3_of(x, 2.3f, -1),
+                 vec3_of(x, 2.3f, 1), material);
+}
+
+void trial_curtain(struct frame_fixture *s, struct gpu *gpu, bool second_view)
+{
+    begin_furnished_room(s, gpu, second_view);
+    add_curtain(s, 0.1f, add_double_sided(s, 0.6f));
     fixture_add_point(s, vec3_of(1, 2.4f, 1.2f), grey(200));
+}
+
+static void add_horizontal(struct frame_fixture *s, vec2s min, vec2s max, float y, int material)
+{
+    fixture_quad(s, vec3_of(min.x, y, max.y), vec3_of(max.x, y, max.y), vec3_of(max.x, y, min.y),
+                 vec3_of(min.x, y, min.y), material);
+}
+
+void trial_sheets(struct frame_fixture *s, struct gpu *gpu, bool second_view)
+{
+    begin_furnished_room(s, gpu, second_view);
+    const int cloth = add_double_sided(s, 0.6f), wood = add_double_sided(s, 0.4f);
+    add_curtain(s, 0.08f, cloth);
+    add_horizontal(s, (vec2s){ { -1, -0.9f } }, (vec2s){ { 2.2f, 0.9f } }, 0.03f, cloth); // rug
+    add_horizontal(s, (vec2s){ { 0, -0.4f } }, (vec2s){ { 1.6f, 0.4f } }, 0.7f, wood);
+    add_horizontal(s, (vec2s){ { 0.4f, -0.3f } }, (vec2s){ { 1.2f, 0.3f } }, 0.76f, cloth);
+    // Seat, cushion, back and arms of a sofa.
+    fixture_box(s, vec3_of(-1.2f, 0.1f, -2.9f), vec3_of(1.2f, 0.4f, -2), false, cloth);
+    add_horizontal(s, (vec2s){ { -1, -2.6f } }, (vec2s){ { 1, -2 } }, 0.47f, cloth);
+    fixture_box(s, vec3_of(-1.2f, 0.4f, -2.9f), vec3_of(1.2f, 0.9f, -2.7f), false, cloth);
+    fixture_box(s, vec3_of(-1.25f, 0.1f, -2.9f), vec3_of(-1.15f, 0.6f, -2), false, cloth);
+    fixture_box(s, vec3_of(1.15f, 0.1f, -2.9f), vec3_of(1.25f, 0.6f, -2), false, cloth);
+    fixture_add_point(s, vec3_of(1, 2.4f, 1.2f), grey(200));
+}
+
+void trial_lined_room(struct frame_fixture *s, struct gpu *gpu, float gap)
+{
+    fixture_init(s, gpu);
+    s->options.shadow_size = 1024;
+    const int wall = add_double_sided(s, 0.5f);
+    const int walls[6] = { wall, wall, wall, wall, wall, wall };
+    const vec3s min = vec3_of(-3, 0, -3), max = vec3_of(3, 3, 3), gaps = vec3_of(gap, gap, gap);
+    add_walls(s, min, max, walls);
+    if (gap > 0) add_walls(s, glms_vec3_sub(min, gaps), glms_vec3_add(max, gaps), walls);
+    fixture_add_point(s, vec3_of(1, 2.4f, 1.2f), grey(200));
+    fixture_look(s, vec3_of(2.7f, 1.7f, 2.7f), vec3_of(-1.5f, 1, -2));
 }
 
 void trial_wall_before_slab(struct frame_fixture *s, struct gpu *gpu, float gap)

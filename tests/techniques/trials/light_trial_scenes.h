@@ -69,8 +69,14 @@ void trial_ceiling_light(struct frame_fixture *s, struct gpu *gpu, float gap);
 void trial_wardrobe(struct frame_fixture *s, struct gpu *gpu, bool second_view);
 // the light in a shade of 0.6 × 0.3 × 0.6 that is open above and below (albedo 0.4),
 void trial_shade(struct frame_fixture *s, struct gpu *gpu, bool second_view);
-// a double-sided curtain of 2 × 2.2, 10 cm from a wall (albedo 0.6).
+// a double-sided curtain of 2 × 2.2, 10 cm from a wall (albedo 0.6),
 void trial_curtain(struct frame_fixture *s, struct gpu *gpu, bool second_view);
+// or furniture of double-sided sheets (albedo 0.4 and 0.6), some of them 3 to 8 cm from others.
+void trial_sheets(struct frame_fixture *s, struct gpu *gpu, bool second_view);
+
+// A room of 6 × 3 × 6 (albedo 0.5, double-sided) with a point light. Walls like these are hidden
+// behind it, at a distance of `gap`; 0: none.
+void trial_lined_room(struct frame_fixture *s, struct gpu *gpu, float gap);
 
 // A room of 4 × 3 × 4 with a point light; its left wall is white, and green in front of it at a
 // distance of `gap`; 0: green alone. The camera sees the floor next to that wall.

@@ -40,12 +40,9 @@ ivec3 block_texel; // first texel of the block
 uint block_face;
 
 const float ONE_SURFACE = 0.9; // least cosine between normals of one surface: 26 degrees
-
-// Largest distance from the plane of the first voxel: a quarter of the block, in voxels.
-float max_plane_distance()
-{
-    return 0.5 * float(VCT_BLOCK);
-}
+// Largest distance from the plane of the first face, in voxels: a surface further behind is another
+// one, with its own light.
+const float PLANE_DISTANCE = 1.0;
 
 // The voxels of a block that have the invocation's face are stored in rows of texels along x, 8
 // bits per texel. Per row: those without a part yet, and those of the current part. Each invocation
@@ -127,15 +124,17 @@ struct vct_part {
     vec3 normal;
     vec3 position; // voxels from the block's corner × weight
     float weight;
-    bool covers; // whether they cover any area
+    vec3 first_normal;
+    float outermost; // largest distance of a face along `first_normal`, from the block's corner
+    bool covers;     // whether they cover any area
 };
 
 // Takes the first face without a part and all others with its normal and plane, on its side of
 // partitions. False: none is left.
 bool next_part(out vct_part part)
 {
-    part = vct_part(vec3(0.0), vec3(0.0), 0.0, false);
-    vec3 first_normal = vec3(0.0), first_position = vec3(0.0);
+    part = vct_part(vec3(0.0), vec3(0.0), 0.0, vec3(0.0), -1e6, false);
+    vec3 first_position = vec3(0.0);
     ivec3 first_side = ivec3(0);
     bool first = true;
     uint row = 0u, rest = rows_left[own(0u)], taken = 0u;
@@ -158,11 +157,11 @@ bool next_part(out vct_part part)
             vct_unpack_surface(texelFetch(vct_surfaces, vct_surface_texel(slot), 0));
         vec3 position = vec3(voxel_of(row, bit)) + 0.5 + surface.position;
         if (first) {
-            first_normal = surface.normal;
+            part.first_normal = surface.normal;
             first_position = position;
             first_side = side_of(ivec3(voxel_of(row, bit)));
-        } else if (dot(surface.normal, first_normal) < ONE_SURFACE ||
-                   abs(dot(position - first_position, first_normal)) > max_plane_distance() ||
+        } else if (dot(surface.normal, part.first_normal) < ONE_SURFACE ||
+                   abs(dot(position - first_position, part.first_normal)) > PLANE_DISTANCE ||
                    side_of(ivec3(voxel_of(row, bit))) != first_side) {
             continue;
         }
@@ -172,6 +171,7 @@ bool next_part(out vct_part part)
         part.position += surface.weight * position;
         part.weight += surface.weight;
         part.covers = part.covers || surface.covers;
+        if (surface.covers) part.outermost = max(part.outermost, dot(position, part.first_normal));
     }
 }
 
@@ -187,13 +187,22 @@ void store_part(uint part)
     }
 }
 
+// Start of the part's rays, from the block's corner: the mean of its faces, moved out to the
+// outermost one. A start behind a double-sided surface would see its back alone.
+vec3 start_of(vct_part part)
+{
+    vec3 mean = part.position / max(part.weight, 1.0);
+    float behind = part.outermost - dot(mean, part.first_normal);
+    return mean + max(behind, 0.0) * part.first_normal;
+}
+
 uint enter(vct_part part, uint number)
 {
     if (!part.covers) return VCT_NO_SLOT;
     uint place = atomicAdd(counts.count, 1u);
     atomicMax(counts.groups[0], place / VCT_BLOCK_LOCAL + 1u);
     atomicMax(counts.turn_groups[0], place / (VCT_BLOCK_LOCAL * VCT_PARTS_EACH) + 1u);
-    vec3 position = vec3(2 * block_texel) + part.position / max(part.weight, 1.0);
+    vec3 position = vec3(2 * block_texel) + start_of(part);
     uint tile = vct_morton(uvec2(vct_morton(uvec2(block_texel.xy)), block_texel.z));
     uvec3 block = uvec3(block_texel) / VCT_BLOCK;
     vct_part_record record = vct_part_record(position, normalize(part.normal),
