@@ -71,6 +71,7 @@ struct vct_history_params {
     float scale;       // radiance scale of this frame over that of the previous one
     uint32_t known;    // bool: the history is valid
     uint32_t follow;   // VCT_KEEP, …
+    float added;       // weight of this frame where pixels do not move, frames
 };
 
 #ifndef AG_GLSL
@@ -79,7 +80,7 @@ _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 28 * 4,
 _Static_assert(sizeof(struct vct_small_emitter) == (2 + 9 * VCT_EMITTER_POINTS) * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_specular_params) == 7 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_history_params) == 19 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_history_params) == 20 * 4, "layout is shared with GLSL");
 #endif
 
 #endif

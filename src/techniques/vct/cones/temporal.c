@@ -14,7 +14,9 @@
 // random numbers, but only to shorten the history.
 //
 // While light changes, the rotation is therefore held in three of four frames. In the fourth one
-// (1) takes the last difference as expected, and its possible error reduces w.
+// (1) takes the last difference as expected, and its possible error reduces w. Each of the four
+// adds a quarter of a frame to the mean: a rotation's noise, added by one of them alone, would be a
+// pulse. A rotation from before the change has been added already.
 #include "techniques/vct/cones/temporal.h"
 
 #include "techniques/vct/vct_state.h"
@@ -22,8 +24,6 @@
 #include <math.h>
 
 static const float STILL_FRAMES = 4096.0f; // maximum weight while nothing changes
-
-enum { HELD_FRAMES = 3 }; // of four with one rotation, while light changes
 
 void vct_temporal_invalidate(struct vct_temporal *t)
 {
@@ -56,14 +56,17 @@ static float history_weight(uint32_t still, int32_t most)
     return fmaxf((float)most, fminf(grown, STILL_FRAMES));
 }
 
-// Selects the rotation of this frame and how the history follows.
+// Selects the rotation of this frame, its weight in the mean and how the history follows.
 static void follow(struct vct_temporal *t, bool moves, bool settles)
 {
-    t->held = moves && t->held < HELD_FRAMES ? t->held + 1 : 0;
+    t->held = moves && t->held < VCT_ROTATION_FRAMES - 1 ? t->held + 1 : 0;
     t->params.follow = t->held > 0 ? VCT_FOLLOW_KNOWN
                        : moves     ? VCT_FOLLOW_EXPECTED
                        : settles   ? VCT_SETTLE
                                    : VCT_KEEP;
+    const bool first = t->held == 0;
+    if (first) t->whole = !moves;
+    t->params.added = !t->whole ? 1.0f / (float)VCT_ROTATION_FRAMES : first ? 1.0f : 0.0f;
 }
 
 void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, int32_t most,

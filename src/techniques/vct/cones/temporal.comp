@@ -213,10 +213,9 @@ void main()
         float added = 1.0; // frames
         if (set.follow != VCT_KEEP && old.w > 0.0) {
             old = follow(history_sample(old, history.now, history.change), mean, moves, known);
-            // A held rotation adds nothing to the mean.
-            added = set.follow == VCT_FOLLOW_KNOWN && !moves ? 0.0 : 1.0;
+            if (!moves) added = set.added;
         }
-        mean = added == 0.0 ? old.rgb : (old.w * old.rgb + added * mean) / (old.w + added);
+        mean = (old.w * old.rgb + added * mean) / (old.w + added);
         frames = min(old.w + added, set.most);
         stored = vec2(distance_m, packed_normal(n));
     }

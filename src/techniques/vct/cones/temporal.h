@@ -4,6 +4,8 @@
 #include "techniques/common/kept.h"
 #include "techniques/vct/cones/cones_shared.h"
 
+enum { VCT_ROTATION_FRAMES = 4 }; // with one rotation, while light changes
+
 struct vct_temporal {
     // Ping-pong: of this frame and of the previous one.
     gpu_image now[2];           // RGBA16F: irradiance of the frame alone
@@ -15,6 +17,7 @@ struct vct_temporal {
     struct kept kept;           // known: the history is valid
     uint32_t number;            // rotations since the history began
     int held;                   // frames with the rotation of this one before it
+    bool whole;                 // the first of them has added it to the mean with its whole weight
     uint32_t still;             // frames since anything changed
     struct frame_camera camera; // of the previous frame
     struct vct_history_params params; // of the frame being recorded
