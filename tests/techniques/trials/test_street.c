@@ -79,15 +79,24 @@ TEST_GPU(light_of_sunlit_ground_enters_small_houses)
     check_room(gpu, TRIAL_STREET_FRONT, "drt" DICTIONARY);
 }
 
-// The wall opposite to the window, of which 2.4 m are seen: light changes slowly along it.
+enum { SIZE = 48, REACH = 9 }; // of pixels of 5 cm
+
+// The side of a wall of the small house, 20 cm thick, that is towards or away from the room: 2.4 m
+// of it fill the image.
+static void open_wall(struct frame_fixture *s, struct gpu *gpu, bool outer)
+{
+    const float wall = trial_street_rooms[TRIAL_STREET_SMALL].min.x, way = outer ? -4.0f : 3.4f;
+    trial_street(s, gpu, TRIAL_STREET_SMALL);
+    s->width = s->height = SIZE;
+    fixture_look(s, vec3_of(wall + way, 1.4f, 0), vec3_of(wall, 1.4f, 0));
+    s->input.camera.vertical_fov_rad = 2 * atanf(1.2f / 3.4f);
+}
+
+// Light changes slowly along the wall opposite to the window.
 TEST_GPU(light_of_sunlit_ground_is_even_on_a_wall)
 {
-    enum { SIZE = 48, REACH = 9 }; // of pixels of 5 cm
     struct frame_fixture s;
-    trial_street(&s, gpu, TRIAL_STREET_SMALL);
-    s.width = s.height = SIZE;
-    fixture_look(&s, vec3_of(1.4f, 1.4f, 0), vec3_of(-2, 1.4f, 0));
-    s.input.camera.vertical_fov_rad = 2 * atanf(1.2f / 3.4f);
+    open_wall(&s, gpu, false);
     fixture_open(&s);
     struct gi *gi = gi_fixture_light(&s, "mrt" DICTIONARY);
     fixture_render(&s);
@@ -98,6 +107,21 @@ TEST_GPU(light_of_sunlit_ground_is_even_on_a_wall)
     free(e);
     gi_destroy(gi);
     fixture_finish(&s);
+}
+
+// Sunlit ground lights it, which the room behind it hardly sees.
+TEST_GPU(the_outer_side_of_a_thin_wall_has_light_of_the_outdoors)
+{
+    struct frame_fixture s;
+    open_wall(&s, gpu, true);
+    const double expected = trial_reference(&s, -1, 64).mean[1];
+    fixture_finish(&s);
+    open_wall(&s, gpu, true);
+    const double found = trial_technique(&s, "mrt" DICTIONARY).mean[1];
+    fixture_finish(&s);
+    print_message("the outer side of a wall: %.3f of the reference's %.1f lux\n", found / expected,
+                  expected);
+    CHECK(found >= 0.8 * expected && found <= 1.2 * expected);
 }
 
 // The sun has 20000 lux.

@@ -231,7 +231,18 @@ mrt_light room_light(vec3 position, vec3 normal, mrt_lobe lobe, mrt_place place)
 // Edges beyond its block over which a surface outdoors blends out of the light of the room.
 const float MRT_LEAVING = 0.25;
 
-// Beyond its block an enclosed surface, such as that of a niche, has the light of the room.
+// How much a surface faces away from its block along an axis across which it is beyond: the outer
+// side of a wall does, the reveals and the back of a niche do not.
+float facing_away(mrt_place place, vec3 normal)
+{
+    vec3 away = sign(place.cell) * normal_in_cell(place, normal);
+    vec3 beyond = mix(vec3(0.0), away, greaterThan(abs(place.cell), vec3(0.5)));
+    float cosine = max(max(beyond.x, beyond.y), beyond.z);
+    return smoothstep(MRT_WALL_COSINE[0], MRT_WALL_COSINE[1], cosine);
+}
+
+// Beyond its block an enclosed surface, such as that of a niche, has the light of the room; so has
+// one nearby that does not face away from the block.
 mrt_light level_light(vec3 position, vec3 normal, mrt_lobe lobe)
 {
     mrt_place place =
@@ -241,7 +252,8 @@ mrt_light level_light(vec3 position, vec3 normal, mrt_lobe lobe)
     if (place.block < 0 || place.outside > 0.0)
         outdoors = outdoor_light(position, normal, lobe, open);
     if (place.block < 0) return scaled_light(outdoors, open);
-    float share = open * smoothstep(0.0, MRT_LEAVING, place.outside);
+    float left = smoothstep(0.0, MRT_LEAVING, place.outside);
+    float share = open * max(left, facing_away(place, normal));
     if (share == 1.0) return outdoors;
     return mix_light(room_light(position, normal, lobe, place), outdoors, share);
 }
