@@ -77,7 +77,7 @@ static bool list_points(struct seam_closing *c)
 bool seam_closing_init(struct seam_closing *out, struct host *host, const struct charts *charts,
                        const struct trace_scene *trace)
 {
-    *out = (struct seam_closing){ .host = host, .charts = charts };
+    *out = (struct seam_closing){ .host = host, .charts = charts, .trace = trace };
     const bool ok = charts_seams_init(&out->seams, charts, CHART_SEAM_POINTS) &&
                     remove_divided(out, trace) && list_points(out);
     if (!ok) seam_closing_finish(out);

@@ -10,11 +10,12 @@ struct seam_closing_scratch;
 struct seam_closing {
     struct host *host;
     const struct charts *charts;
+    const struct trace_scene *trace;
     struct chart_seams seams; // without points that a wall divides
     uint32_t *first;          // [places + 1] of the place, in `points`
     uint32_t *points;         // those at each place
 };
-// trace: of the same pose.
+// trace: of the same pose; outlives it.
 bool seam_closing_init(struct seam_closing *out, struct host *host, const struct charts *charts,
                        const struct trace_scene *trace);
 void seam_closing_finish(struct seam_closing *closing);

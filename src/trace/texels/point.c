@@ -2,6 +2,7 @@
 // texel of a ledge whose larger part is in a wall still has light.
 #include "trace/texels/inside.h"
 #include "trace/texels/texels.h"
+#include "trace/trace_scene.h"
 
 #include <limits.h>
 #include <math.h>
@@ -136,27 +137,57 @@ static int least_crossings(const struct search *s)
     return least;
 }
 
-// The point nearest to the mean of all points with at most `most` crossings, and the share that
-// these points have.
-static struct texel_point middle_of(const struct search *s, int most)
+static bool sees(const struct search *s, vec3s from, vec3s to)
+{
+    static const float HEIGHT = 0.25f; // in texels
+    const vec3s way = glms_vec3_sub(to, from);
+    const vec3s normal = chart_texel_normal(s->charts, s->texel);
+    from = glms_vec3_muladds(normal, HEIGHT / s->charts->texels_per_m, from);
+    return glms_vec3_norm2(way) == 0.0f || !trace_occluded(s->scene, from, way, 1.0f);
+}
+
+// A wall divides the texel if the first open point does not see all others: keeps those on the side
+// that has more of them. The order stays.
+static void keep_larger_side(struct search *s)
+{
+    bool seen[ACROSS * ACROSS];
+    int seen_count = 0, kept = 0;
+    for (int i = 0; i < s->count; i++) {
+        seen[i] = sees(s, s->points[0].at, s->points[i].at);
+        seen_count += seen[i];
+    }
+    const bool side = 2 * seen_count >= s->count;
+    for (int i = 0; i < s->count; i++)
+        if (seen[i] == side) s->points[kept++] = s->points[i];
+    s->count = kept;
+}
+
+static void keep_open(struct search *s, int most)
+{
+    int kept = 0;
+    for (int i = 0; i < s->count; i++)
+        if (s->points[i].crossings <= most) s->points[kept++] = s->points[i];
+    s->count = kept;
+}
+
+// The point nearest to the mean of all points with at most `most` crossings on one side of walls,
+// and the share that those on all sides have.
+static struct texel_point middle_of(struct search *s, int most)
 {
     vec3s middle = vec3_of(0, 0, 0);
     struct texel_point point = { .share = 0.0f };
     float nearest = INFINITY;
-    int open = 0;
-    for (int i = 0; i < s->count; i++) {
-        if (s->points[i].crossings > most) continue;
-        middle = glms_vec3_add(middle, s->points[i].at);
-        open++;
-    }
-    middle = glms_vec3_divs(middle, (float)open);
+    keep_open(s, most);
+    point.share = (float)s->count / (float)s->tried;
+    keep_larger_side(s);
+    for (int i = 0; i < s->count; i++) middle = glms_vec3_add(middle, s->points[i].at);
+    middle = glms_vec3_divs(middle, (float)s->count);
     for (int i = 0; i < s->count; i++) {
         const float distance2 = glms_vec3_distance2(s->points[i].at, middle);
-        if (s->points[i].crossings > most || distance2 >= nearest) continue;
+        if (distance2 >= nearest) continue;
         nearest = distance2;
         point.position = s->points[i].at;
     }
-    point.share = (float)open / (float)s->tried;
     return point;
 }
 

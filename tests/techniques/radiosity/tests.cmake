@@ -1,5 +1,5 @@
 ag_technique_tests(radiosity/bake radiosity/damage radiosity/frames radiosity/light radiosity/seams radiosity/views)
-foreach(name corridor mottle probes)
+foreach(name corridor mottle probes walls)
   ag_test(techniques/radiosity/${name} USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
 endforeach()
 set_tests_properties(techniques.radiosity.corridor techniques.radiosity.mottle PROPERTIES TIMEOUT 900)

@@ -18,7 +18,8 @@
 #include "core/half.glsl"
 #include "techniques/common/light_map/lookup.glsl"
 #include "techniques/common/light_map/surface.glsl"
-#include "techniques/common/light_map/map_shared.h"
+#define LIGHT_MAP_WALLS_BINDING 17
+#include "techniques/common/light_map/walls.glsl"
 #if SPECULAR && !REFLECTED
 layout(constant_id = LIGHT_MAP_APPLY_MIRRORS) const bool MIRRORS = false;
 #define ENVIRONMENT_MAP_BINDING       14
@@ -91,6 +92,7 @@ void shade(ivec2 pixel)
     vec2 per_size = vec2(push.per_width, push.per_height);
     light_map_light light = light_map_light(vec3(0.0), mat3(0.0));
     bool in_map = place.z >= 0.0;
+    place.xy = in_map ? light_map_before_wall(place) : place.xy;
     if (in_map) light = light_map_lookup(light_map, per_size, place, s.normal);
     imageStore(irradiance, pixel, vec4(light.irradiance, in_map ? 1.0 : 0.0));
 #if SPECULAR

@@ -79,7 +79,7 @@ void light_map_list(const struct light_map *map, size_t base, struct gpu_objects
     // Created by light_map_upload.
     GPU_ADD(out, base, { GPU_IMAGE, .member = MEMBER(owners) },
             { GPU_IMAGE, .member = MEMBER(seam_places) },
-            { GPU_IMAGE, .member = MEMBER(seam_rows) },
+            { GPU_IMAGE, .member = MEMBER(seam_rows) }, { GPU_IMAGE, .member = MEMBER(walls) },
             { GPU_IMAGE, .member = MEMBER(visible_sky) },
             { GPU_BUFFER, .member = MEMBER(surfaces.first) },
             { GPU_BUFFER, .member = MEMBER(surfaces.triangles) });
@@ -120,6 +120,32 @@ static bool upload_triangles(struct light_map *map, uint32_t instances)
     return light_map_buffer_upload(map->host, map->gpu, "first_triangles", first,
                                    ((size_t)instances + 1) * sizeof *first, &map->surfaces.first) &&
            ok;
+}
+
+// Gutters have none: pixels are at places of texels.
+static bool upload_walls(struct light_map *map, const struct tensors *bake)
+{
+    const struct charts *charts = map->charts;
+    const size_t places = (size_t)charts->width * charts->height;
+    struct gpu_image_desc desc = light_map_image(charts, "walls", 1);
+    const struct pair *of_texel = TENSORS_EXPECT(map->host, bake, LIGHT_MAP_WALL, TENSOR_U32,
+                                                 light_map_rows(charts->side_texel_count), 2);
+    struct pair *walls = of_texel ? host_alloc(map->host, places, sizeof *walls) : NULL;
+    desc.format = GPU_RG32U;
+    desc.usage = GPU_SAMPLED;
+    bool ok = walls && gpu_image_create(map->gpu, &desc, &map->walls);
+    for (uint32_t side = 0; ok && side < desc.depth; side++) {
+        for (size_t i = 0; i < places; i++) {
+            const uint32_t texel = chart_texel_of_place(charts, side * places + i);
+            walls[i] = (struct pair){ 0, 0 };
+            if (texel == CHART_NONE) continue;
+            const struct chart_texel *t = chart_texel_of(charts, texel);
+            if (i == (size_t)t->y * charts->width + t->x) walls[i] = of_texel[texel];
+        }
+        ok = gpu_image_upload(map->gpu, map->walls, 0, side, walls, places * sizeof *walls);
+    }
+    host_free(map->host, walls);
+    return ok;
 }
 
 static bool find_rows(const struct light_map *map, const struct tensors *bake, uint32_t places,
@@ -167,9 +193,9 @@ bool light_map_upload(struct light_map *map, uint32_t instances, const uint32_t 
     struct chart_seams seams;
     struct light_map_seam_rows rows;
     if (!charts_seams_init(&seams, map->charts, CHART_SEAM_POINTS)) return false;
-    const bool ok = find_rows(map, bake, seams.count, &rows) && upload_owners(map, nearest_valid) &&
-                    upload_places(map, &seams) && upload_rows(map, &rows, nearest_valid) &&
-                    upload_triangles(map, instances) &&
+    const bool ok = find_rows(map, bake, seams.count, &rows) && upload_walls(map, bake) &&
+                    upload_owners(map, nearest_valid) && upload_places(map, &seams) &&
+                    upload_rows(map, &rows, nearest_valid) && upload_triangles(map, instances) &&
                     (map->specular != LIGHT_MAP_SPECULAR ||
                      light_map_upload_visible_sky(map->host, map->gpu, map->charts, &seams, &rows,
                                                   nearest_valid, sky, &map->visible_sky));
@@ -183,7 +209,7 @@ uint64_t light_map_bytes(uint64_t texels)
     const uint64_t places = texels * 3 / 2;
     return texels * sizeof(struct light_map_triangle) + light_map_table_bytes(1, 16) +
            light_map_table_bytes(1, 4) + light_map_table_bytes(places, 8) +
-           8 * (2 * LIGHT_MAP_LAYERS + 1) * places;
+           8 * (2 * LIGHT_MAP_LAYERS + 2) * places;
 }
 
 // ---- passes
@@ -286,6 +312,7 @@ void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
                  { .name = "id", .image = layers[FRAME_ID] },
                  LIGHT_MAP_SURFACE_BINDINGS(&map->surfaces, cmd),
                  { .name = "light_map", .image = map->images[map->front], .sampler = map->linear },
+                 { .name = "light_map_walls", .image = map->walls },
                  { .name = "reflected_map", .image = map->reflected, .sampler = map->linear },
                  { .name = "visible_sky", .image = map->visible_sky, .sampler = map->linear },
                  { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },

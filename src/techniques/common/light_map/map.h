@@ -25,6 +25,7 @@ struct light_map {
     gpu_image owners;                 // places and their nearest valid texels
     gpu_image seam_places, seam_rows; // places beside seams and their sums
     uint32_t owner_count, seam_count; // of places
+    gpu_image walls;                  // lookups beside walls, of texels (map_shared.h)
     gpu_image visible_sky;            // with LIGHT_MAP_SPECULAR (visible_sky.h)
     gpu_image images[2];              // a map appears whole: one is looked up, one is written
     int front;                        // the image that lookups read

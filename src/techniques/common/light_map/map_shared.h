@@ -25,6 +25,13 @@
 // entry word · texels + texel. They sum to 255, or 0.
 #define TEXEL_SKY_WORDS 4
 
+// A texel that a wall divides has two words: the line across it, normal · p = offset with p from
+// the texel's centre in texels, as 8, 8 and 16 bits snorm; and for each side of the line and
+// quarter of the texel 4 bits, 2 for each axis (trace/texels/walls.h): 0: a lookup stays, else it
+// is at the centre of the texel at this less 2 from its own. Bits of a quarter, and of a side:
+#define LIGHT_MAP_WALL_QUARTER 4
+#define LIGHT_MAP_WALL_SIDE    16
+
 // First-order light besides that of punctual lights and the sky.
 struct light_map_sources {
     float emitters;     // factor of the light of emissive surfaces

@@ -88,6 +88,7 @@ static bool add_stages(struct bake_plan *plan, struct ort_scene *scene,
                             (struct bake_light_map){ map->charts.count, map->charts.texels_per_m,
                                                      charts_utilisation(&map->charts), plan_at });
     return ort_add_texels(plan, scene) && ort_add_bounces(plan, scene) &&
+           light_map_add_walls(plan, &scene->closing, &map->charts) &&
            light_map_add_seams(plan, &scene->closing, &map->charts) && ort_add_links(plan, scene) &&
            ort_add_offsets(plan, scene) && ort_add_areas(plan, scene) && ort_add_maps(plan, scene);
 }

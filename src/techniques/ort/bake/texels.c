@@ -5,6 +5,7 @@
 #include "bake/plan.h"
 #include "core/rng.h"
 #include "trace/texels/light.h"
+#include "trace/texels/walls.h"
 
 #include <string.h>
 
@@ -52,36 +53,6 @@ struct visit {
     uint32_t count;
 };
 
-static bool sees_texel(const struct ort_scene *scene, vec3s from, uint32_t texel, float reach)
-{
-    const vec3s middle = chart_texel_of(&scene->map.charts, texel)->position;
-    const vec3s to =
-        glms_vec3_muladds(chart_texel_normal(&scene->map.charts, texel), reach, middle);
-    return !trace_occluded(scene->trace, from, glms_vec3_sub(to, from), 1.0f);
-}
-
-// A texel may reach through a thin wall. If its middle is hidden from the hit, the hit belongs to a
-// neighbour in the chart whose middle is visible.
-static uint32_t hit_texel(const struct ort_scene *scene, vec3s hit, uint32_t texel)
-{
-    static const int32_t NEAR[8][2] = { { -1, 0 },  { 1, 0 },  { 0, -1 }, { 0, 1 },
-                                        { -1, -1 }, { 1, -1 }, { -1, 1 }, { 1, 1 } };
-    const struct charts *charts = &scene->map.charts;
-    const struct chart_triangle *of = chart_triangle_of(charts, texel);
-    const float reach = trace_mesh_of(scene->trace, of->instance)->facets[of->triangle].reach;
-    const vec3s from = glms_vec3_muladds(chart_texel_normal(charts, texel), reach, hit);
-    const struct ort_place place = ort_place_of(&scene->map, texel);
-    if (sees_texel(scene, from, texel, reach)) return texel;
-    for (int i = 0; i < 8; i++) {
-        const uint32_t near = ort_texel_at(&scene->map, place, NEAR[i][0], NEAR[i][1]);
-        if (near != CHART_NONE && chart_triangle_of(charts, near)->chart == of->chart &&
-            chart_is_back(charts, near) == chart_is_back(charts, texel) &&
-            sees_texel(scene, from, near, reach))
-            return near;
-    }
-    return texel;
-}
-
 // Rays that meet no texel leave no entry: those that do come first.
 static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit, vec3s local,
                     const struct texel_hit *at_hit)
@@ -93,7 +64,7 @@ static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit
     const vec3s at = glms_vec3_muladds(ray->direction, hit->distance, ray->origin);
     (void)local;
     if (!at_hit->inside && texel != CHART_NONE)
-        v->hits[v->count++] = hit_texel(v->scene, at, texel);
+        v->hits[v->count++] = texel_before_wall(v->scene->trace, &v->scene->map.charts, texel, at);
 }
 
 static void gather(const struct bake_task *task, uint32_t texel, vec3s position, uint64_t row)

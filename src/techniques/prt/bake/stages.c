@@ -60,7 +60,8 @@ static bool add_light_map(struct bake_plan *plan, struct prt_scene *scene)
     if (scene->receivers.at_vertices) return true;
     bake_plan_set_light_map(plan, (struct bake_light_map){ charts->count, charts->texels_per_m,
                                                            charts_utilisation(charts), plan_at });
-    return light_map_add_seams(plan, &scene->closing, charts);
+    return light_map_add_walls(plan, &scene->closing, charts) &&
+           light_map_add_seams(plan, &scene->closing, charts);
 }
 
 static bool add_stages(struct bake_plan *plan, struct prt_scene *scene,

@@ -1,6 +1,7 @@
 #include "techniques/radiosity/bake/gather.h"
 
 #include "techniques/radiosity/bake/shared_samples.h"
+#include "trace/texels/walls.h"
 
 #include <math.h>
 
@@ -24,6 +25,7 @@ void radiosity_scene_finish(struct radiosity_scene *scene)
     if (!scene->host) return;
     trace_scene_destroy(scene->trace);
     scene_statics_finish(&scene->statics);
+    host_free(scene->host, scene->beside_wall);
     host_free(scene->host, scene->part);
     host_free(scene->host, scene->is_group);
     radiosity_map_finish(&scene->map);
@@ -32,15 +34,18 @@ void radiosity_scene_finish(struct radiosity_scene *scene)
 
 // ----
 
-uint32_t radiosity_cluster_at(const struct radiosity_scene *scene, const struct ray_hit *hit,
-                              const struct texel_hit *at_hit)
+uint32_t radiosity_cluster_at(const struct radiosity_scene *scene, const struct ray *ray,
+                              const struct ray_hit *hit, const struct texel_hit *at_hit)
 {
+    const struct charts *charts = &scene->map.charts;
     const int instance = scene->trace->meshes[hit->geometry].instance;
-    const uint32_t texel = at_hit->inside
-                               ? CHART_NONE
-                               : chart_texel_at(&scene->map.charts, instance, hit->triangle, hit->u,
-                                                hit->v, at_hit->back);
-    return texel == CHART_NONE ? CHART_NONE : scene->map.cluster_of[texel];
+    if (at_hit->inside) return CHART_NONE;
+    uint32_t texel = chart_texel_at(charts, instance, hit->triangle, hit->u, hit->v, at_hit->back);
+    if (texel == CHART_NONE) return CHART_NONE;
+    if (scene->beside_wall[texel])
+        texel = texel_before_wall(scene->trace, charts, texel,
+                                  glms_vec3_muladds(ray->direction, hit->distance, ray->origin));
+    return scene->map.cluster_of[texel];
 }
 
 struct visit {
@@ -54,7 +59,7 @@ static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit
     static const float LEAST_DISTANCE_M = 1e-6f;
     const struct visit *v = user;
     const float rays = (float)v->scene->options.rays;
-    const uint32_t cluster = radiosity_cluster_at(v->scene, hit, at_hit);
+    const uint32_t cluster = radiosity_cluster_at(v->scene, ray, hit, at_hit);
     const float per_m = 1.0f / (fmaxf(hit->distance, LEAST_DISTANCE_M) * rays);
     v->gather->nearness =
         glms_vec4_muladds(vec4_of(ray->direction, 1.0f), per_m, v->gather->nearness);

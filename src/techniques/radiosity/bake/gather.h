@@ -14,8 +14,9 @@ struct radiosity_scene {
     struct radiosity_options options;
     struct radiosity_map map;
     struct trace_scene *trace;
-    uint8_t *part;  // [texels]
-    bool *is_group; // [nodes] clusters of it see each other
+    bool *beside_wall; // [texels]
+    uint8_t *part;     // [texels]
+    bool *is_group;    // [nodes] clusters of it see each other
 };
 // map: taken over, without parts; zero: it is made.
 bool radiosity_scene_init(struct radiosity_scene *scene, struct host *host,
@@ -38,12 +39,12 @@ struct radiosity_gather {
 };
 
 // The cluster that a ray meets; CHART_NONE: none.
-uint32_t radiosity_cluster_at(const struct radiosity_scene *scene, const struct ray_hit *hit,
-                              const struct texel_hit *at_hit);
+uint32_t radiosity_cluster_at(const struct radiosity_scene *scene, const struct ray *ray,
+                              const struct ray_hit *hit, const struct texel_hit *at_hit);
 
 // ---- subdivide.c
 
-// Parts of all texels, the clusters that follow, and which nodes are groups.
+// Texels beside walls, parts of all texels, the clusters that follow, and which nodes are groups.
 bool radiosity_subdivide(struct radiosity_scene *scene);
 
 // ----

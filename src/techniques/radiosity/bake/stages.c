@@ -366,6 +366,7 @@ static bool add_stages(struct bake_plan *plan, struct job *job, const struct sce
                &(struct radiosity_probe_size){ job->options.rays, job->options.sources, columns },
                run_probes, scratch_size(clusters)) &&
            add_clusters(plan, job, texels, clusters) &&
+           light_map_add_walls(plan, &job->closing, &map->charts) &&
            light_map_add_seams(plan, &job->closing, &map->charts);
 }
 

@@ -3,6 +3,7 @@
 #include "techniques/radiosity/bake/gather.h"
 
 #include "core/parallel.h"
+#include "trace/texels/walls.h"
 
 // Points are compared at this height over the surface, in distances between them, so that a curved
 // surface does not hide its own.
@@ -65,11 +66,20 @@ static void find_group(void *user, size_t n)
             scene->is_group[n] = false;
 }
 
+static void find_beside_wall(void *user, size_t texel)
+{
+    struct radiosity_scene *scene = user;
+    scene->beside_wall[texel] =
+        texel_is_beside_wall(scene->trace, &scene->map.charts, (uint32_t)texel);
+}
+
 bool radiosity_subdivide(struct radiosity_scene *scene)
 {
     struct radiosity_map *map = &scene->map;
     scene->part = host_alloc(scene->host, map->texel_count, sizeof *scene->part);
-    if (!scene->part) return false;
+    scene->beside_wall = host_alloc(scene->host, map->texel_count, sizeof *scene->beside_wall);
+    if (!scene->part || !scene->beside_wall) return false;
+    parallel_for(map->texel_count, 64, find_beside_wall, scene);
     parallel_for(map->cluster_count, 64, subdivide_cluster, scene);
     if (!radiosity_map_subdivide(map, scene->part)) return false;
     scene->is_group = host_alloc(scene->host, map->tree.count, sizeof *scene->is_group);

@@ -101,7 +101,7 @@ static float trace_ray(void *user, const struct probe_ray *from, bool *inside)
     }
     const struct texel_hit at_hit = texel_hit_at(job->scene->trace, &ray, &hit);
     *inside = at_hit.inside;
-    if (gathers) add_hit(job, from, &at_hit, radiosity_cluster_at(job->scene, &hit, &at_hit));
+    if (gathers) add_hit(job, from, &at_hit, radiosity_cluster_at(job->scene, &ray, &hit, &at_hit));
     return hit.distance;
 }
 
