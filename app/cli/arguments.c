@@ -58,6 +58,37 @@ static enum status parse_option(const struct command *command, int count, char *
     return wrong_usage("wrong value %s %s: %s", option.name, value, why);
 }
 
+// The value of tonemap in a list of frame options; NULL: none.
+static const char *listed_curve(const char *options)
+{
+    static const char key[] = "tonemap=";
+    for (; options; options = strchr(options, ',') ? strchr(options, ',') + 1 : NULL)
+        if (strncmp(options, key, sizeof key - 1) == 0) return options + sizeof key - 1;
+    return NULL;
+}
+
+static enum status choose_curve(struct arguments *a)
+{
+    const char *listed = listed_curve(a->frame_options), *name = a->curve ? a->curve : listed;
+    if (a->curve && listed)
+        return wrong_usage("cannot use --tonemap with --frame-options tonemap=%s: choose one",
+                           listed);
+    const int curve = name ? value_curve(name) : 0;
+    if (curve >= 0) a->tonemap = (enum ag_tonemap)curve; // the library refuses others in a list
+    if (!a->curve) return DONE;
+    const char *others = a->frame_options ? a->frame_options : "";
+    const int wrote = snprintf(a->curve_options, sizeof a->curve_options, "%s%stonemap=%s", others,
+                               *others ? "," : "", a->curve);
+    if (wrote >= (int)sizeof a->curve_options)
+        return wrong_usage("cannot use --frame-options: the list is too long");
+    return DONE;
+}
+
+const char *arguments_frame_options(const struct arguments *a)
+{
+    return a->curve_options[0] ? a->curve_options : a->frame_options;
+}
+
 static enum status check_together(const struct command *command, const struct arguments *a)
 {
     static const char *const files[] = { "SCENE", "A", "B" };
@@ -131,7 +162,8 @@ enum status arguments_parse(const struct command *command, int count, char **wor
             out->positional[out->positional_count++] = words[i];
         }
     }
-    return check_together(command, out);
+    enum status status = check_together(command, out);
+    return status == DONE ? choose_curve(out) : status;
 }
 
 // ---- the command line again

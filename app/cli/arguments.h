@@ -21,7 +21,7 @@ enum command_bit {
 };
 // In the order of ag_difference.
 #define METRIC_NAMES "mae mse relmse ssim flip flip_hdr"
-enum { COMMAND_SIZE = 16384 };
+enum { COMMAND_SIZE = 16384, FRAME_OPTIONS_SIZE = 2048 };
 enum { MAX_LIGHTS = 64, MAX_POSITIONAL = 64, MAX_METHODS = 16, MAX_BAKE_FILES = 8 };
 
 struct arguments {
@@ -41,6 +41,9 @@ struct arguments {
     uint64_t seed;
     bool has_exposure;
     float exposure_ev;
+    const char *curve; // the value of --tonemap; NULL: none
+    enum ag_tonemap tonemap;
+    char curve_options[FRAME_OPTIONS_SIZE]; // see arguments_frame_options
     // time and camera
     const char *camera, *animation;
     bool has_eye, has_target, has_fov;
@@ -105,6 +108,8 @@ struct command {
 // Parses the words after the command name; reports wrong usage on standard error.
 enum status arguments_parse(const struct command *command, int count, char **words,
                             struct arguments *out);
+// Options of the frame, with the tone curve: for a renderer. Valid as long as `arguments`.
+const char *arguments_frame_options(const struct arguments *arguments);
 // The command line, quoted for a POSIX shell and cut where it is longer.
 void arguments_command(const char *command, const struct arguments *arguments, char *out,
                        size_t size);

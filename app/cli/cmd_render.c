@@ -69,7 +69,7 @@ static void renderer_desc(const struct job *job, struct ag_renderer_desc *desc)
     desc->width = a->width;
     desc->height = a->height;
     desc->gi = a->gi;
-    desc->frame_options = a->frame_options;
+    desc->frame_options = arguments_frame_options(a);
     desc->indirect_layer = output_has_layer(&job->output, "indirect");
     desc->display_layer = output_has_layer(&job->output, "display");
     desc->motion_layer = output_has_layer(&job->output, "motion");

@@ -202,6 +202,13 @@ static bool set_exposure(struct arguments *a, const char *value, const char **wh
     return ok;
 }
 
+static bool set_tonemap(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be neutral, agx or linear";
+    a->curve = value;
+    return !strchr(value, ',') && value_curve(value) >= 0;
+}
+
 static bool set_seed(struct arguments *a, const char *value, const char **why)
 {
     *why = "it must be a whole number of at most 64 bits";

@@ -198,7 +198,8 @@ static enum ag_result show_ids(struct session *session, struct ag_image **image)
 static enum ag_result tonemap(struct session *session, float ev, struct ag_image **image)
 {
     struct ag_image *display = NULL;
-    enum ag_result result = ag_image_tonemap(session->context, *image, ev, &display);
+    enum ag_result result =
+        ag_image_tonemap_curve(session->context, *image, ev, session->arguments->tonemap, &display);
     if (result != AG_OK) return result;
     ag_image_destroy(session->context, *image);
     *image = display;
@@ -318,8 +319,8 @@ static enum ag_result show_mean(struct session *session, struct output_images *o
                                 struct ag_image **display)
 {
     struct ag_image *shown = NULL;
-    const enum ag_result result =
-        ag_image_tonemap(session->context, out->radiance, out->ev, &shown);
+    const enum ag_result result = ag_image_tonemap_curve(session->context, out->radiance, out->ev,
+                                                         session->arguments->tonemap, &shown);
     if (result != AG_OK) return result;
     ag_image_destroy(session->context, *display);
     *display = shown;

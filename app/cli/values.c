@@ -233,3 +233,16 @@ bool value_frame_path(const char *pattern, int frame, char *out, size_t size, bo
     }
     return used > 0;
 }
+
+int value_curve(const char *name)
+{
+    static const char names[] = TONEMAP_NAMES;
+    const size_t length = strcspn(name, ",");
+    int index = 0;
+    for (const char *at = names; *at; index++) {
+        const size_t word = strcspn(at, " ");
+        if (word == length && strncmp(at, name, length) == 0) return index;
+        at += word + (at[word] == ' ');
+    }
+    return -1;
+}

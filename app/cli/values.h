@@ -35,3 +35,7 @@ static inline double degrees(float radians)
 {
     return (double)radians * (180.0 / 3.14159265358979324);
 }
+// In the order of ag_tonemap.
+#define TONEMAP_NAMES "neutral agx linear"
+// Number of the name, which ends at a comma or at the end; -1: none of them.
+int value_curve(const char *name);

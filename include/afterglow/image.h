@@ -51,8 +51,19 @@ AG_API enum ag_result ag_image_read_size(struct ag_context *context, const char 
 AG_API enum ag_result ag_image_read_attribute(struct ag_context *context, const char *path,
                                               const char *name, char *out, size_t size);
 
+/// Tone curves from exposed radiance to linear display values 0…1.
+enum ag_tonemap {
+    AG_TONEMAP_NEUTRAL, ///< Khronos 2024, "PBR Neutral Tone Mapper Specification": keeps hue
+    AG_TONEMAP_AGX,     ///< AgX as in Blender 4 (Sobotka; Chow): bright colours go to white
+    AG_TONEMAP_LINEAR,  ///< values above 1 are cut off
+};
+
 /// Converts radiance (cd/m²) to linear display values 0…1: exposure for `ev` at ISO 100, then the
-/// Khronos PBR Neutral tone mapper. Thread: the context's.
+/// tone curve. *out is the caller's: ag_image_destroy. Thread: the context's.
+AG_API enum ag_result ag_image_tonemap_curve(struct ag_context *context,
+                                             const struct ag_image *radiance, float ev,
+                                             enum ag_tonemap curve, struct ag_image **out);
+/// The same with AG_TONEMAP_NEUTRAL. Thread: the context's.
 AG_API enum ag_result ag_image_tonemap(struct ag_context *context, const struct ag_image *radiance,
                                        float ev, struct ag_image **out);
 /// EV that maps the log-average luminance of a radiance image, clamped to its 10th and 90th

@@ -15,6 +15,7 @@
 
 enum { MAX_LAYERS = 256, MAX_ATTRIBUTES = 256 };
 
+_Static_assert((int)AG_TONEMAP_LINEAR == (int)TONEMAP_LINEAR, "one order in both");
 _Static_assert(IMAGE_MAX_SIZE == 16384, "afterglow/image.h promises it");
 
 // The module's view of the same pixels.
@@ -188,17 +189,25 @@ enum ag_result ag_image_read_attribute(struct ag_context *context, const char *p
     return api_done(context, host->failure == FAIL_NONE);
 }
 
-enum ag_result ag_image_tonemap(struct ag_context *context, const struct ag_image *radiance,
-                                float ev, struct ag_image **out)
+enum ag_result ag_image_tonemap_curve(struct ag_context *context, const struct ag_image *radiance,
+                                      float ev, enum ag_tonemap curve, struct ag_image **out)
 {
     AG_REQUIRE_OUT(context, out);
     AG_REQUIRE_POINTER(context, context);
     AG_REQUIRE(context, is_whole(radiance) && radiance->channels >= 3,
                "radiance is NULL or has not 3 channels");
     AG_REQUIRE(context, isfinite(ev), "ev is not finite");
+    AG_REQUIRE(context, (int)curve >= 0 && (int)curve < TONEMAP_COUNT,
+               "curve is none of enum ag_tonemap");
     struct image view = view_of(radiance), image = { 0 };
-    bool ok = image_tonemap(&image, &context->host, &view, ev);
+    bool ok = image_tonemap(&image, &context->host, &view, ev, (enum tonemap_curve)curve);
     return api_give_image(context, ok, &image, out);
+}
+
+enum ag_result ag_image_tonemap(struct ag_context *context, const struct ag_image *radiance,
+                                float ev, struct ag_image **out)
+{
+    return ag_image_tonemap_curve(context, radiance, ev, AG_TONEMAP_NEUTRAL, out);
 }
 
 float ag_image_auto_exposure(const struct ag_image *radiance)

@@ -464,8 +464,8 @@ static void record_display(struct frame *f, struct gpu_cmd *cmd, const struct fr
         { "exposure_state", .buffer = f->exposure.state },
     };
     gpu_scope_begin(cmd, "display");
-    display_record(&f->common->display, cmd, display_kind(shown), &images, bindings, f->width,
-                   f->height);
+    display_record(&f->common->display, cmd, frame_display_variant(f), display_kind(shown), &images,
+                   bindings, f->width, f->height);
     gpu_scope_end(cmd);
 }
 

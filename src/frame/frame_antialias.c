@@ -2,6 +2,7 @@
 #include "frame/frame_state.h"
 
 #include "core/sampling.h"
+#include "image/tonemap.h"
 
 // Weights of the history in samples, at most, while geometry or the camera move, and while light
 // changes, which its clipping alone follows.
@@ -14,10 +15,17 @@ uint32_t frame_antialias_needs(const struct frame_options *options)
     return options->antialias ? FRAME_ANTIALIASES | FRAME_NEEDS_MOTION : 0;
 }
 
+// Bits of antialias_variant for the display image.
+static uint32_t display_bits(const struct frame *f, bool displays)
+{
+    static const uint32_t curves[TONEMAP_COUNT] = { 0, ANTIALIAS_AGX, ANTIALIAS_LINEAR };
+    return displays ? ANTIALIAS_DISPLAY | curves[f->common->options.tonemap] : 0;
+}
+
 bool frame_prepare_antialias(struct frame *f, bool displays)
 {
     struct antialias *a = &f->common->antialias;
-    const uint32_t display = displays ? ANTIALIAS_DISPLAY : 0;
+    const uint32_t display = display_bits(f, displays);
     if (f->needs & FRAME_ANTIALIASES)
         return antialias_prepare(a, f->gpu, display) &&
                antialias_prepare(a, f->gpu, ANTIALIAS_MOVES | display) &&
@@ -83,8 +91,7 @@ void frame_record_antialias(struct frame *f, struct gpu_cmd *cmd, bool displays)
     };
     gpu_scope_begin(cmd, "antialias");
     antialias_record(&f->common->antialias, cmd,
-                     (f->antialias.moves ? ANTIALIAS_MOVES : 0) |
-                         (displays ? ANTIALIAS_DISPLAY : 0),
+                     (f->antialias.moves ? ANTIALIAS_MOVES : 0) | display_bits(f, displays),
                      &f->antialias, f->antialias.most, &images, bindings, f->width, f->height);
     gpu_scope_end(cmd);
 }

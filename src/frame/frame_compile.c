@@ -17,7 +17,7 @@ struct frame_pipelines frame_pipelines_of(const struct frame *f, const struct fr
     if (needs & FRAME_WRITES_SPECULAR_OF_MAP && c->environment.map) needs |= FRAME_WRITES_SPECULAR;
     const bool motion = needs & FRAME_NEEDS_MOTION || wants->want_motion_layer;
     const bool ids = needs & FRAME_NEEDS_ID || wants->want_id_layer;
-    const uint32_t variant = frame_composite_variant(wants, needs);
+    const uint32_t variant = frame_composite_variant(&c->options, wants, needs);
     return (struct frame_pipelines){
         .scene_variants = c->scene.variants_used,
         .gbuffer_layers = (motion ? GBUFFER_MOTION : 0) | (ids ? GBUFFER_ID : 0) |

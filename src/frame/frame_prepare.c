@@ -1,6 +1,8 @@
 // Preparation of a frame: what may allocate, before it is recorded.
 #include "frame/frame_state.h"
 
+#include "image/tonemap.h"
+
 static bool check_gbuffer(struct frame *f)
 {
     const uint32_t needed =
@@ -39,26 +41,37 @@ static uint32_t kept_layers(const struct frame *f, const struct frame_input *inp
     return f->pinned | (by_layer ? 1u << input->shown->layer : 0);
 }
 
-uint32_t frame_composite_variant(const struct frame_input *input, uint32_t needs)
+uint32_t frame_composite_variant(const struct frame_options *options,
+                                 const struct frame_input *input, uint32_t needs)
 {
+    static const uint32_t curves[TONEMAP_COUNT] = { 0, COMPOSITE_AGX, COMPOSITE_LINEAR };
+    const bool displays = frame_displays_color(input) && !(needs & FRAME_ANTIALIASES);
     return (needs & FRAME_WRITES_IRRADIANCE ? COMPOSITE_IRRADIANCE : 0) |
            (needs & FRAME_WRITES_SPECULAR ? COMPOSITE_SPECULAR : 0) |
            (needs & FRAME_WRITES_VISIBILITY ? COMPOSITE_VISIBILITY : 0) |
            (input->want_indirect_layer ? COMPOSITE_INDIRECT : 0) |
-           (frame_displays_color(input) && !(needs & FRAME_ANTIALIASES) ? COMPOSITE_DISPLAY : 0);
+           (displays ? COMPOSITE_DISPLAY | curves[options->tonemap] : 0);
+}
+
+uint32_t frame_display_variant(const struct frame *f)
+{
+    static const uint32_t curves[TONEMAP_COUNT] = { 0, DISPLAY_AGX, DISPLAY_LINEAR };
+    return curves[f->common->options.tonemap];
 }
 
 uint32_t frame_meter_variant(uint32_t variant)
 {
-    const uint32_t outputs = COMPOSITE_INDIRECT | COMPOSITE_DISPLAY;
+    const uint32_t outputs =
+        COMPOSITE_INDIRECT | COMPOSITE_DISPLAY | COMPOSITE_AGX | COMPOSITE_LINEAR;
     return (variant & ~outputs) | COMPOSITE_METER;
 }
 
 static bool prepare_composite(struct frame *f, const struct frame_input *input)
 {
-    f->composite_variant = frame_composite_variant(input, f->needs);
+    f->composite_variant = frame_composite_variant(&f->common->options, input, f->needs);
     return composite_prepare(&f->common->composite, f->composite_variant) &&
-           (!frame_shows_layer(input) || display_prepare(&f->common->display, f->gpu)) &&
+           (!frame_shows_layer(input) ||
+            display_prepare(&f->common->display, f->gpu, frame_display_variant(f))) &&
            (!input->auto_exposure ||
             composite_prepare(&f->common->composite, frame_meter_variant(f->composite_variant)));
 }

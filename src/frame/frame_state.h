@@ -112,7 +112,9 @@ void frame_clear_unwritten(struct frame *frame, struct gpu_cmd *cmd);
 bool frame_shows_layer(const struct frame_input *input);
 bool frame_displays_color(const struct frame_input *input); // there is one, of the colour
 // Variants of composite; the second: of the same radiance, without images.
-uint32_t frame_composite_variant(const struct frame_input *input, uint32_t needs);
+uint32_t frame_composite_variant(const struct frame_options *options,
+                                 const struct frame_input *input, uint32_t needs);
+uint32_t frame_display_variant(const struct frame *frame);
 uint32_t frame_meter_variant(uint32_t variant);
 
 // frame_antialias.c

@@ -95,8 +95,8 @@ static bool difference_errors(struct host *host, const struct metrics_pair *pair
 static bool tonemap_pair(struct host *host, const struct metrics_pair *pair,
                          const struct metrics_options *options, struct image out[2])
 {
-    return image_tonemap(&out[0], host, &pair->a, options->ev) &&
-           image_tonemap(&out[1], host, &pair->b, options->ev);
+    return image_tonemap(&out[0], host, &pair->a, options->ev, TONEMAP_NEUTRAL) &&
+           image_tonemap(&out[1], host, &pair->b, options->ev, TONEMAP_NEUTRAL);
 }
 
 static float pixels_per_degree(const struct metrics_options *options)

@@ -70,6 +70,7 @@ TEST(a_null_context_is_refused)
     CHECK_REFUSED(NULL, ag_image_write_png(NULL, "a.png", NULL));
     CHECK_REFUSED(NULL, ag_image_write_exr(NULL, "a.exr", NULL, 0, NULL, 0));
     CHECK_REFUSED(NULL, ag_image_tonemap(NULL, NULL, 0, &image));
+    CHECK_REFUSED(NULL, ag_image_tonemap_curve(NULL, NULL, 0, AG_TONEMAP_AGX, &image));
     CHECK_REFUSED(NULL, ag_image_side_by_side(NULL, NULL, NULL, 0, &image));
     CHECK_REFUSED(NULL, ag_image_metrics(NULL, NULL, NULL, NULL, &metrics));
     CHECK_REFUSED(NULL, ag_image_error_map(NULL, NULL, NULL, NULL, AG_DIFFERENCE_FLIP, 0, &image));

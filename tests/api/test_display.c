@@ -41,6 +41,8 @@ static double mapped(const char *layer, const float *value, int k, const float *
     return 0.5 + 0.5 * v / (1.0 + fabs(v));
 }
 
+static enum ag_tonemap shown_curve; // of the renderer
+
 static struct ag_image *tone_mapped(struct renderer_fixture *s, struct ag_image *radiance,
                                     double factor)
 {
@@ -49,7 +51,7 @@ static struct ag_image *tone_mapped(struct renderer_fixture *s, struct ag_image 
     const int count = radiance->width * radiance->height * 3;
     assert_int_equal(ag_renderer_exposure(s->renderer, &ev), AG_OK);
     for (int i = 0; i < count; i++) radiance->pixels[i] *= (float)factor;
-    assert_int_equal(ag_image_tonemap(s->context, radiance, ev, &out), AG_OK);
+    assert_int_equal(ag_image_tonemap_curve(s->context, radiance, ev, shown_curve, &out), AG_OK);
     return out;
 }
 
@@ -105,6 +107,26 @@ TEST(each_layer_is_shown_by_its_rule)
         check_value_layer(&s, values[i]);
     }
     check_radiance(&s, "color", 1.0);
+    fixture_close(&s);
+}
+
+// By the pass of composite, by that of other layers, and by antialiasing.
+TEST(the_tone_curve_is_that_of_the_frame_options)
+{
+    static const char *const options[][2] = {
+        { "tonemap=neutral", "tonemap=neutral,antialias=temporal" },
+        { "tonemap=agx", "tonemap=agx,antialias=temporal" },
+        { "tonemap=linear", "tonemap=linear,antialias=temporal" },
+    };
+    test_gpu_require();
+    struct renderer_fixture s = open_all("ambient");
+    for (int i = 0; i < 6; i++) {
+        shown_curve = (enum ag_tonemap)(i / 2);
+        assert_int_equal(ag_renderer_set_frame_options(s.renderer, options[i / 2][i % 2]), AG_OK);
+        check_radiance(&s, "color", 1.0);
+        check_radiance(&s, "direct", 1.0);
+    }
+    shown_curve = AG_TONEMAP_NEUTRAL;
     fixture_close(&s);
 }
 

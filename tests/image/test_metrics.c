@@ -221,8 +221,8 @@ TEST(radiance_is_tone_mapped_with_one_exposure_and_display_values_are_not)
     display_image(&a, 24, 17, 3, 1);
     display_image(&b, 24, 17, 3, 2);
     for (int i = 0; i < 24 * 17 * 3; i++) a.pixels[i] *= 20.0f, b.pixels[i] *= 20.0f;
-    CHECK(image_tonemap(&shown_a, test_host(), &a, 3.0f));
-    CHECK(image_tonemap(&shown_b, test_host(), &b, 3.0f));
+    CHECK(image_tonemap(&shown_a, test_host(), &a, 3.0f, TONEMAP_NEUTRAL));
+    CHECK(image_tonemap(&shown_b, test_host(), &b, 3.0f, TONEMAP_NEUTRAL));
     struct metrics light, display = measure(&shown_a, &shown_b), unscaled = measure(&a, &b);
     CHECK(metrics_compute(test_host(), &a, &b, &radiance, &light));
     CHECK(light.flip == display.flip && light.ssim == display.ssim);

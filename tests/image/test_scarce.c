@@ -136,7 +136,7 @@ static bool do_measure(struct host *host)
 static bool do_tonemap(struct host *host)
 {
     struct image display;
-    return finish(image_tonemap(&display, host, &noise, 1.0f), &display, host);
+    return finish(image_tonemap(&display, host, &noise, 1.0f, TONEMAP_NEUTRAL), &display, host);
 }
 
 static bool do_pair(struct host *host)

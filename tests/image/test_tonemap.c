@@ -125,11 +125,60 @@ TEST(negative_values_and_nan_count_as_black)
     CHECK_NEAR((double)out.z, 0.5, 1e-6);
 }
 
+// ---- AgX
+
+TEST(agx_keeps_greys_grey_and_middle_grey_where_it_is)
+{
+    float before = -1.0f;
+    for (int i = -160; i <= 120; i++) {
+        const vec3s out = tonemap_agx(grey(0.18f * exp2f((float)i / 10.0f)));
+        CHECK_NEAR((double)out.y, (double)out.x, 1e-6);
+        CHECK_NEAR((double)out.z, (double)out.x, 1e-6);
+        CHECK(out.x >= before && out.x >= 0.0f && out.x <= 1.0f);
+        before = out.x;
+    }
+    CHECK_NEAR((double)tonemap_agx(grey(0.18f)).x, 0.18, 1e-6);
+    // Black is 10 stops below middle grey, white 6.5 above.
+    CHECK_NEAR((double)tonemap_agx(grey(0.18f * exp2f(-10.0f))).x, 0.0, 1e-6);
+    CHECK_NEAR((double)tonemap_agx(grey(0.18f * exp2f(6.5f))).x, 1.0, 1e-5);
+    CHECK(tonemap_agx(grey(0.0f)).x < 1e-6f && tonemap_agx(grey(INFINITY)).x > 1.0f - 1e-5f);
+}
+
+// Slope of values for a display of gamma 2.4, along the 16.5 stops.
+TEST(agx_has_a_slope_of_2_4_at_middle_grey)
+{
+    const double h = 0.01;
+    const double above = pow((double)tonemap_agx(grey(0.18f * exp2f(16.5f * (float)h))).x, 1 / 2.4),
+                 below =
+                     pow((double)tonemap_agx(grey(0.18f * exp2f(-16.5f * (float)h))).x, 1 / 2.4);
+    CHECK_RELATIVE((above - below) / (2 * h), 2.4, 0.01);
+}
+
+TEST(agx_turns_bright_colours_white)
+{
+    float before = 1.0f;
+    for (int i = 0; i <= 10; i++) {
+        const vec3s out = tonemap_agx(vec3_of(0.18f * exp2f((float)i), 0.0f, 0.0f));
+        const float saturation = 1.0f - fminf(out.y, out.z) / out.x;
+        CHECK(saturation <= before);
+        before = saturation;
+    }
+    CHECK(before < 0.1f);
+    const vec3s blue = tonemap_agx(vec3_of(-1.0f, NAN, 0.2f));
+    CHECK(blue.z > blue.x && blue.z > blue.y && blue.x >= 0.0f);
+}
+
+TEST(the_linear_curve_cuts_off_what_is_above_white)
+{
+    const vec3s out = tonemap(TONEMAP_LINEAR, vec3_of(-1.0f, 0.3f, 7.0f));
+    CHECK(out.x == 0.0f && out.y == 0.3f && out.z == 1.0f);
+}
+
 TEST(an_image_is_exposed_and_tonemapped_per_pixel)
 {
     struct image in, out;
     noise_image(&in, 8, 5, 4);
-    CHECK(image_tonemap(&out, test_host(), &in, 9.0f));
+    CHECK(image_tonemap(&out, test_host(), &in, 9.0f, TONEMAP_NEUTRAL));
     CHECK(out.width == 8 && out.height == 5 && out.channels == 3);
     for (int y = 0; y < 5; y++) {
         for (int x = 0; x < 8; x++) {
@@ -140,16 +189,16 @@ TEST(an_image_is_exposed_and_tonemapped_per_pixel)
         }
     }
     image_finish(&out, test_host());
-    CHECK(!image_tonemap(&out, test_host(), &in, NAN));
+    CHECK(!image_tonemap(&out, test_host(), &in, NAN, TONEMAP_NEUTRAL));
     image_finish(&in, test_host());
     flat_image(&in, 2, 2, 1, 1.0f);
-    CHECK(!image_tonemap(&out, test_host(), &in, 0.0f));
+    CHECK(!image_tonemap(&out, test_host(), &in, 0.0f, TONEMAP_NEUTRAL));
     image_finish(&in, test_host());
 }
 
 // tonemap_twin.cpp
 float glsl_exposure_scale(float ev);
-void glsl_tonemap_pbr_neutral(const float exposed[3], float out[3]);
+void glsl_tonemap(int curve, const float exposed[3], float out[3]);
 
 TEST(the_glsl_twin_agrees)
 {
@@ -163,9 +212,11 @@ TEST(the_glsl_twin_agrees)
         float scale = exp2f((float)(i % 24 - 16)); // from deep in the toe to far above white
         for (int c = 0; c < 3; c++) p[c] *= scale;
         if (i % 100 == 7) p[i % 3] = i % 200 == 7 ? INFINITY : NAN;
-        glsl_tonemap_pbr_neutral(p, shown);
-        vec3s expected = tonemap_pbr_neutral(vec3_of(p[0], p[1], p[2]));
-        for (int c = 0; c < 3; c++) CHECK_NEAR((double)shown[c], (double)expected.raw[c], 2e-6);
+        for (int curve = 0; curve < TONEMAP_COUNT; curve++) {
+            glsl_tonemap(curve, p, shown);
+            vec3s expected = tonemap((enum tonemap_curve)curve, vec3_of(p[0], p[1], p[2]));
+            for (int c = 0; c < 3; c++) CHECK_NEAR((double)shown[c], (double)expected.raw[c], 2e-6);
+        }
     }
     image_finish(&image, test_host());
 }

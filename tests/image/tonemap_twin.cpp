@@ -27,13 +27,107 @@ struct bvec3 {
     bool r, g, b;
 };
 
+struct mat3 {
+    vec3 columns[3];
+    mat3(float a, float b, float c, float d, float e, float f, float g, float h, float i)
+        : columns{ { a, b, c }, { d, e, f }, { g, h, i } }
+    {
+    }
+};
+
 using std::exp2;
 using std::max;
 using std::min;
 
+// A function of each component.
+template <typename F> vec3 each(vec3 a, F f)
+{
+    return vec3(f(a.r), f(a.g), f(a.b));
+}
+
+template <typename F> vec3 each(vec3 a, vec3 b, F f)
+{
+    return vec3(f(a.r, b.r), f(a.g, b.g), f(a.b, b.b));
+}
+
+vec3 operator+(vec3 a, vec3 b)
+{
+    return vec3(a.r + b.r, a.g + b.g, a.b + b.b);
+}
+
+vec3 operator*(vec3 a, vec3 b)
+{
+    return vec3(a.r * b.r, a.g * b.g, a.b * b.b);
+}
+
+vec3 operator/(vec3 a, vec3 b)
+{
+    return vec3(a.r / b.r, a.g / b.g, a.b / b.b);
+}
+
+vec3 operator+(vec3 a, float b)
+{
+    return a + vec3(b);
+}
+
+vec3 operator+(float a, vec3 b)
+{
+    return vec3(a) + b;
+}
+
+vec3 operator-(vec3 a, float b)
+{
+    return a + vec3(-b);
+}
+
+vec3 operator*(float a, vec3 b)
+{
+    return vec3(a) * b;
+}
+
+vec3 operator/(vec3 a, float b)
+{
+    return a / vec3(b);
+}
+
+vec3 operator*(const mat3 &m, vec3 v)
+{
+    return v.r * m.columns[0] + v.g * m.columns[1] + v.b * m.columns[2];
+}
+
+vec3 abs(vec3 a)
+{
+    return each(a, [](float v) { return std::fabs(v); });
+}
+
+vec3 log2(vec3 a)
+{
+    return each(a, [](float v) { return std::log2(v); });
+}
+
+vec3 pow(vec3 a, vec3 b)
+{
+    return each(a, b, [](float v, float power) { return std::pow(v, power); });
+}
+
+vec3 clamp(vec3 a, float least, float most)
+{
+    return each(a, [=](float v) { return min(max(v, least), most); });
+}
+
+vec3 max(vec3 a, vec3 b)
+{
+    return each(a, b, [](float v, float w) { return max(v, w); });
+}
+
 vec3 min(vec3 a, vec3 b)
 {
-    return vec3(min(a.r, b.r), min(a.g, b.g), min(a.b, b.b));
+    return each(a, b, [](float v, float w) { return min(v, w); });
+}
+
+bvec3 lessThan(vec3 a, vec3 b)
+{
+    return { a.r < b.r, a.g < b.g, a.b < b.b };
 }
 
 bvec3 greaterThan(vec3 a, vec3 b)
@@ -60,8 +154,12 @@ extern "C" float glsl_exposure_scale(float ev)
     return exposure_scale(ev);
 }
 
-extern "C" void glsl_tonemap_pbr_neutral(const float exposed[3], float out[3])
+// Curves in the order of enum tonemap_curve.
+extern "C" void glsl_tonemap(int curve, const float exposed[3], float out[3])
 {
-    vec3 display = tonemap_pbr_neutral(vec3(exposed[0], exposed[1], exposed[2]));
+    const vec3 e(exposed[0], exposed[1], exposed[2]);
+    const vec3 display = curve == 0   ? tonemap_pbr_neutral(e)
+                         : curve == 1 ? tonemap_agx(e)
+                                      : tonemap_linear(e);
     out[0] = display.r, out[1] = display.g, out[2] = display.b;
 }

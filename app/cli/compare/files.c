@@ -55,7 +55,8 @@ static enum status write_image(struct comparison *c, const struct ag_image *radi
                                const char *stem, const char *ending)
 {
     struct ag_image *display = NULL;
-    enum ag_result result = ag_image_tonemap(c->session.context, radiance, ev, &display);
+    enum ag_result result =
+        ag_image_tonemap_curve(c->session.context, radiance, ev, c->arguments->tonemap, &display);
     return write_png(c, result, display, stem, ending);
 }
 
@@ -157,7 +158,8 @@ static enum ag_result append_to_sheet(struct comparison *c, const struct ag_imag
 {
     struct ag_context *context = c->session.context;
     struct ag_image *display = NULL, *both = NULL;
-    enum ag_result result = ag_image_tonemap(context, radiance, c->exposure_ev, &display);
+    enum ag_result result =
+        ag_image_tonemap_curve(context, radiance, c->exposure_ev, c->arguments->tonemap, &display);
     if (result == AG_OK) result = ag_image_side_by_side(context, *sheet, display, GAP_PX, &both);
     ag_image_destroy(context, display);
     if (result != AG_OK) return result;
@@ -170,8 +172,8 @@ static enum ag_result append_to_sheet(struct comparison *c, const struct ag_imag
 static enum status write_sheet(struct comparison *c)
 {
     struct ag_image *sheet = NULL;
-    enum ag_result result =
-        ag_image_tonemap(c->session.context, c->reference.color, c->exposure_ev, &sheet);
+    enum ag_result result = ag_image_tonemap_curve(c->session.context, c->reference.color,
+                                                   c->exposure_ev, c->arguments->tonemap, &sheet);
     for (int i = 0; i < c->method_count && result == AG_OK; i++) {
         if (sheet->width + c->reference.color->width + GAP_PX > MAX_WIDTH_PX) break;
         result = append_to_sheet(c, c->methods[i].color, &sheet);

@@ -20,7 +20,7 @@ static void renderer_desc(const struct comparison *c, int index, struct ag_rende
     desc->width = a->width;
     desc->height = a->height;
     desc->gi = c->methods[index].gi;
-    desc->frame_options = a->frame_options;
+    desc->frame_options = arguments_frame_options(a);
     desc->indirect_layer = true;
     desc->display_layer = false;
 }

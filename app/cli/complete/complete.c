@@ -51,6 +51,11 @@ static void offer_metrics(const struct value *v)
     offer_list(v, METRIC_NAMES);
 }
 
+static void offer_curves(const struct value *v)
+{
+    offer_list(v, TONEMAP_NAMES);
+}
+
 static void offer_lights(const struct value *v)
 {
     offer_list(v, "sun: point: spot: area:");
@@ -77,6 +82,7 @@ static const struct {
               { "--frame-options", offer_frame_options },
               { "--debug-view", offer_debug_views },
               { "--metric", offer_metrics },
+              { "--tonemap", offer_curves },
               { "--light", offer_lights },
               { "--environment", offer_environments },
               { "--animation", offer_animations } };

@@ -92,7 +92,7 @@ static enum status check_methods(const struct arguments *a, struct ag_context *c
     uint64_t bytes;
     enum ag_result result = AG_OK;
     ag_renderer_desc_default(&desc);
-    desc.frame_options = a->frame_options;
+    desc.frame_options = arguments_frame_options(a);
     for (int i = 0; i < 2 && result == AG_OK; i++) {
         desc.gi = i == 0 ? a->gi : a->split;
         if (desc.gi && strcmp(desc.gi, "reference") != 0)
@@ -121,7 +121,8 @@ static void describe(struct viewing *viewing)
     desc->scene = viewing->session.scene;
     desc->scene_name = a->positional[0];
     desc->gi = a->gi;
-    desc->frame_options = a->frame_options;
+    desc->frame_options = arguments_frame_options(a);
+    desc->tonemap = a->tonemap;
     desc->device = a->device;
     desc->scene_words = viewing->words.scene;
     desc->light_words = viewing->words.light;

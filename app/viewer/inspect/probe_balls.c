@@ -200,8 +200,8 @@ static void expose(struct viewer *v, struct ui_vertex *vertices, int count,
                    const struct ag_image *radiance)
 {
     struct ag_image *display = NULL;
-    if (!viewer_check(v,
-                      ag_image_tonemap(v->desc->context, radiance, viewer_exposure(v), &display)))
+    if (!viewer_check(v, ag_image_tonemap_curve(v->desc->context, radiance, viewer_exposure(v),
+                                                v->desc->tonemap, &display)))
         return;
     for (int i = 0; i < count; i++) {
         const float *rgb = display->pixels + 3 * (size_t)i;

@@ -128,8 +128,8 @@ static void take(struct viewer *v)
     if (!truth_take(v->truth, v->difference, &image)) return;
     if (v->difference)
         host_image_set(&v->truth_image, &v->gpu, &image);
-    else if (viewer_check(v,
-                          ag_image_tonemap(v->desc->context, &image, viewer_exposure(v), &display)))
+    else if (viewer_check(v, ag_image_tonemap_curve(v->desc->context, &image, viewer_exposure(v),
+                                                    v->desc->tonemap, &display)))
         host_image_set(&v->truth_image, &v->gpu, display);
     ag_image_destroy(v->desc->context, display);
     free(image.pixels);

@@ -11,13 +11,16 @@
 #define FRAME_CONSTANTS_COPIED
 #include "frame/frame.glsl"
 #include "frame/composite/antialias_shared.h"
-#include "frame/composite/display.glsl"
 #include "frame/composite/exposure_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = ANTIALIAS_CONSTANT_MOVES) const bool MOVES = false;
 layout(constant_id = ANTIALIAS_CONSTANT_DISPLAY) const bool WRITES_DISPLAY = false;
+layout(constant_id = ANTIALIAS_CONSTANT_AGX) const bool DISPLAY_AGX = false;
+layout(constant_id = ANTIALIAS_CONSTANT_LINEAR) const bool DISPLAY_LINEAR = false;
+
+#include "frame/composite/display.glsl"
 
 layout(set = 0, binding = 1) uniform sampler2D radiance_layer;
 layout(set = 0, binding = 2) uniform sampler2D depth_layer;

@@ -7,7 +7,6 @@
 // pixels for automatic exposure instead, before the exposure of the display image is known.
 #include "frame/frame.glsl"
 #include "frame/composite/composite_shared.h"
-#include "frame/composite/display.glsl"
 #include "frame/composite/exposure_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -18,6 +17,10 @@ layout(constant_id = COMPOSITE_CONSTANT_VISIBILITY) const bool HAS_VISIBILITY = 
 layout(constant_id = COMPOSITE_CONSTANT_INDIRECT) const bool WRITES_INDIRECT = false;
 layout(constant_id = COMPOSITE_CONSTANT_DISPLAY) const bool WRITES_DISPLAY = false;
 layout(constant_id = COMPOSITE_CONSTANT_METER) const bool METERS = false;
+layout(constant_id = COMPOSITE_CONSTANT_AGX) const bool DISPLAY_AGX = false;
+layout(constant_id = COMPOSITE_CONSTANT_LINEAR) const bool DISPLAY_LINEAR = false;
+
+#include "frame/composite/display.glsl"
 
 layout(set = 0, binding = 1) uniform sampler2D direct_layer;
 layout(set = 0, binding = 2) uniform sampler2D albedo_layer;

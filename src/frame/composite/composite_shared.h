@@ -10,7 +10,9 @@
 #define COMPOSITE_CONSTANT_INDIRECT   3 // outputs
 #define COMPOSITE_CONSTANT_DISPLAY    4
 #define COMPOSITE_CONSTANT_METER      5 // no image: fills the histogram of automatic exposure
-#define COMPOSITE_CONSTANT_COUNT      6
+#define COMPOSITE_CONSTANT_AGX        6 // tone curves of DISPLAY; neither: PBR Neutral
+#define COMPOSITE_CONSTANT_LINEAR     7
+#define COMPOSITE_CONSTANT_COUNT      8
 
 struct composite_push {
     uint32_t stride; // between pixels; above 1 for METER only

@@ -4,12 +4,16 @@
 
 // Any layer as the display image. Without a surface, layers of surfaces are black.
 #include "frame/frame.glsl"
-#include "frame/composite/display.glsl"
 #include "frame/composite/display_shared.h"
 #include "frame/composite/exposure_shared.h"
 #include "frame/octahedral.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = DISPLAY_CONSTANT_AGX) const bool DISPLAY_AGX = false;
+layout(constant_id = DISPLAY_CONSTANT_LINEAR) const bool DISPLAY_LINEAR = false;
+
+#include "frame/composite/display.glsl"
 
 layout(set = 0, binding = 1) uniform sampler2D shown_layer;
 layout(set = 0, binding = 2) uniform sampler2D albedo_layer;

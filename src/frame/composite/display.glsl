@@ -1,4 +1,5 @@
-// Values of the display image: exposed, tone mapped, sRGB-encoded.
+// Values of the display image: exposed, tone mapped, sRGB-encoded. An includer defines the
+// specialization constants DISPLAY_AGX and DISPLAY_LINEAR before; neither: PBR Neutral.
 #ifndef AG_FRAME_DISPLAY_GLSL
 #define AG_FRAME_DISPLAY_GLSL
 
@@ -8,8 +9,10 @@
 // Tone-mapped colour of scaled radiance; linear, 0…1.
 vec3 display_tone_mapped(vec3 radiance, float ev)
 {
-    vec3 display = tonemap_pbr_neutral(radiance * (exposure_scale(ev) / frame.radiance_scale));
-    return clamp(display, 0.0, 1.0);
+    vec3 exposed = radiance * (exposure_scale(ev) / frame.radiance_scale);
+    if (DISPLAY_AGX) return tonemap_agx(exposed);
+    if (DISPLAY_LINEAR) return tonemap_linear(exposed);
+    return clamp(tonemap_pbr_neutral(exposed), 0.0, 1.0);
 }
 
 // IEC 61966-2-1, of 0…1.

@@ -1,8 +1,12 @@
-// Parameters of display.comp.
+// Specialization constants and parameters of display.comp.
 #ifndef AG_FRAME_DISPLAY_SHARED_H
 #define AG_FRAME_DISPLAY_SHARED_H
 
 #include "core/shared.h"
+
+#define DISPLAY_CONSTANT_AGX    0 // tone curves; neither: PBR Neutral
+#define DISPLAY_CONSTANT_LINEAR 1
+#define DISPLAY_CONSTANT_COUNT  2
 
 // How a layer becomes linear display values.
 #define DISPLAY_RADIANCE   0 // exposed and tone mapped

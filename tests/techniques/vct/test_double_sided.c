@@ -36,7 +36,8 @@ TEST_GPU(a_hidden_wall_takes_no_light_from_the_one_before_it)
             const double lux = trial_technique(&s, GI[i]).mean[1];
             fixture_finish(&s);
             if (k == 0) alone = lux;
-            print_message("%s: %.3f lux, a wall %.2f m behind: %.3f\n", GI[i], alone, GAPS[k], lux);
+            print_message("%s: %.3f lux, a wall %.2f m behind: %.3f\n", GI[i], alone,
+                          (double)GAPS[k], lux);
             CHECK_RELATIVE(lux, alone, 0.05);
         }
     }
