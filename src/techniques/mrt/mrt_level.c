@@ -254,10 +254,28 @@ struct mrt_runtime_options mrt_runtime_options_of(const struct mrt_options *opti
     };
 }
 
+// Clutter without its operators is lit by the probes of mrt. The warning is that of the start.
+static bool clutter_fits(const struct mrt *mrt, const struct mrt_parts *parts,
+                         const struct mrt_build *how, const struct mrt_operators *operators)
+{
+    const uint64_t most = gpu_limits(mrt->gpu)->max_storage_bytes;
+    const uint64_t bytes = mrt_clutter_numbers(operators, &mrt->map, &parts->clutter) *
+                           (mrt_runtime_options_of(&mrt->options).half ? 2 : 4);
+    if (bytes <= most) return true;
+    if (!how->plan)
+        host_log(mrt->host, LOG_WARNING,
+                 "gi drt: operators of %d blocks with objects take up to %.0f MB in one buffer, of "
+                 "which the device allows %.0f MB: objects are lit as by mrt; fewer response_modes "
+                 "or texels, or precision=half may fit",
+                 mrt->map.count, (double)bytes * 1e-6, (double)most * 1e-6);
+    return false;
+}
+
 static bool add_clutter(const struct mrt *mrt, const struct mrt_parts *parts,
                         const struct mrt_build *how, struct mrt_operators *operators)
 {
     const struct mrt_options *options = &mrt->options;
+    if (parts->clutter.triangles == 0 || !clutter_fits(mrt, parts, how, operators)) return true;
     const struct mrt_clutter_changes changes = { .rays = options->delta_rays,
                                                  .depth = options->depth,
                                                  .occlusion = options->occlusion,
@@ -265,8 +283,7 @@ static bool add_clutter(const struct mrt *mrt, const struct mrt_parts *parts,
                                                  .gather = wants_light_map_of_clutter(options) &&
                                                            !parts->clutter.is_too_fine,
                                                  .stop = how->stop };
-    return parts->clutter.triangles == 0 ||
-           mrt_operators_add_clutter(operators, &mrt->level, &parts->clutter, parts->clutter_texels,
+    return mrt_operators_add_clutter(operators, &mrt->level, &parts->clutter, parts->clutter_texels,
                                      how->cache, &changes);
 }
 

@@ -106,12 +106,6 @@ TEST(images_are_resized_and_removed_while_the_window_shows_them)
     check_equal("first.png", "last.png");
 }
 
-TEST(random_events_end_without_a_message)
-{
-    require_display();
-    view(CORNELL SMALL " --gi lpv:dim=16", "settle\nrandom 3 120\nwait 2\n");
-}
-
 // A camera that is at no place projects handles to no pixel.
 TEST(a_camera_is_finite)
 {

@@ -238,3 +238,10 @@ TEST(the_interface_has_the_size_of_the_display)
         if (difference > MOST_DIFFERENCE) fail_msg("%s differs by %.4f", tabs[i], difference);
     }
 }
+
+TEST(random_events_end_without_a_message)
+{
+    require_display();
+    view("view @cornell:light=point --quiet --size 640x480 --scale 0.25 --gi lpv:dim=16",
+         "settle\nrandom 3 120\nwait 2\n");
+}

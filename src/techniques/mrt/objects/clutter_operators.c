@@ -413,6 +413,7 @@ bool mrt_operators_add_clutter(struct mrt_operators *operators, const struct mrt
                                    .stop = changes->stop },
                          .cache = cache };
     int opening = 0;
+    if (!changes->occlusion && !changes->reflection && !changes->gather) return true;
     bool ok = start(&s);
     if (ok) mrt_delta_cache_begin(cache, &s.rays);
     for (int b = 0; ok && b < level->map->count; b++) ok = add_block(&s, b, &opening);
