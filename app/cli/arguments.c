@@ -58,23 +58,28 @@ static enum status parse_option(const struct command *command, int count, char *
     return wrong_usage("wrong value %s %s: %s", option.name, value, why);
 }
 
-// The value of tonemap in a list of frame options; NULL: none.
-static const char *listed_curve(const char *options)
+// The value of tonemap in a list of frame options; false: it has none.
+static bool listed_curve(const char *options, char out[16])
 {
     static const char key[] = "tonemap=";
-    for (; options; options = strchr(options, ',') ? strchr(options, ',') + 1 : NULL)
-        if (strncmp(options, key, sizeof key - 1) == 0) return options + sizeof key - 1;
-    return NULL;
+    for (; options; options = strchr(options, ',') ? strchr(options, ',') + 1 : NULL) {
+        if (strncmp(options, key, sizeof key - 1) != 0) continue;
+        options += sizeof key - 1;
+        snprintf(out, 16, "%.*s", (int)strcspn(options, ","), options);
+        return true;
+    }
+    return false;
 }
 
 static enum status choose_curve(struct arguments *a)
 {
-    const char *listed = listed_curve(a->frame_options), *name = a->curve ? a->curve : listed;
-    if (a->curve && listed)
+    char listed[16];
+    const bool is_listed = listed_curve(a->frame_options, listed);
+    if (a->curve && is_listed)
         return wrong_usage("cannot use --tonemap with --frame-options tonemap=%s: choose one",
                            listed);
-    const int curve = name ? value_curve(name) : 0;
-    if (curve >= 0) a->tonemap = (enum ag_tonemap)curve; // the library refuses others in a list
+    const int curve = is_listed ? value_index(TONEMAP_NAMES, listed) : -1;
+    if (curve >= 0) a->tonemap = (enum ag_tonemap)curve; // the library refuses others
     if (!a->curve) return DONE;
     const char *others = a->frame_options ? a->frame_options : "";
     const int wrote = snprintf(a->curve_options, sizeof a->curve_options, "%s%stonemap=%s", others,

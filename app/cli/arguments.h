@@ -21,6 +21,8 @@ enum command_bit {
 };
 // In the order of ag_difference.
 #define METRIC_NAMES "mae mse relmse ssim flip flip_hdr"
+// In the order of ag_tonemap.
+#define TONEMAP_NAMES "neutral agx linear"
 enum { COMMAND_SIZE = 16384, FRAME_OPTIONS_SIZE = 2048 };
 enum { MAX_LIGHTS = 64, MAX_POSITIONAL = 64, MAX_METHODS = 16, MAX_BAKE_FILES = 8 };
 

@@ -204,9 +204,12 @@ static bool set_exposure(struct arguments *a, const char *value, const char **wh
 
 static bool set_tonemap(struct arguments *a, const char *value, const char **why)
 {
-    *why = "it must be neutral, agx or linear";
+    const int curve = value_index(TONEMAP_NAMES, value);
+    *why = "it must be one of: " TONEMAP_NAMES;
+    if (curve < 0) return false;
     a->curve = value;
-    return !strchr(value, ',') && value_curve(value) >= 0;
+    a->tonemap = (enum ag_tonemap)curve;
+    return true;
 }
 
 static bool set_seed(struct arguments *a, const char *value, const char **why)
@@ -337,21 +340,9 @@ static bool set_map(struct arguments *a, const char *value, const char **why)
     return has_extension(value, "png");
 }
 
-// The position in a list "first second …"; -1: it is not in the list.
-static int index_in(const char *list, const char *word)
-{
-    const size_t length = strlen(word);
-    for (int i = 0; list[0]; i++) {
-        const size_t next = strcspn(list, " ");
-        if (next == length && memcmp(list, word, length) == 0) return i;
-        list += next + (list[next] == ' ');
-    }
-    return -1;
-}
-
 static bool set_metric(struct arguments *a, const char *value, const char **why)
 {
-    const int metric = index_in(METRIC_NAMES, value);
+    const int metric = value_index(METRIC_NAMES, value);
     *why = "it must be one of: " METRIC_NAMES;
     if (metric < 0) return false;
     a->metric = (enum ag_difference)metric;

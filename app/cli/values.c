@@ -234,15 +234,13 @@ bool value_frame_path(const char *pattern, int frame, char *out, size_t size, bo
     return used > 0;
 }
 
-int value_curve(const char *name)
+int value_index(const char *list, const char *word)
 {
-    static const char names[] = TONEMAP_NAMES;
-    const size_t length = strcspn(name, ",");
-    int index = 0;
-    for (const char *at = names; *at; index++) {
-        const size_t word = strcspn(at, " ");
-        if (word == length && strncmp(at, name, length) == 0) return index;
-        at += word + (at[word] == ' ');
+    const size_t length = strlen(word);
+    for (int i = 0; list[0]; i++) {
+        const size_t next = strcspn(list, " ");
+        if (next == length && memcmp(list, word, length) == 0) return i;
+        list += next + (list[next] == ' ');
     }
     return -1;
 }

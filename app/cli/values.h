@@ -35,7 +35,5 @@ static inline double degrees(float radians)
 {
     return (double)radians * (180.0 / 3.14159265358979324);
 }
-// In the order of ag_tonemap.
-#define TONEMAP_NAMES "neutral agx linear"
-// Number of the name, which ends at a comma or at the end; -1: none of them.
-int value_curve(const char *name);
+// The position in a list "first second …"; -1: it is not in the list.
+int value_index(const char *list, const char *word);

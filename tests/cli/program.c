@@ -112,6 +112,15 @@ void require_device(void)
     test_skip("no Vulkan device");
 }
 
+const char *path_of(const char *name)
+{
+    static char paths[32][400];
+    static int next;
+    char *path = paths[next++ % 32];
+    snprintf(path, sizeof paths[0], "%s", test_path(name));
+    return path;
+}
+
 bool file_exists(const char *path)
 {
     return access(path, F_OK) == 0;

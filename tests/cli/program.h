@@ -24,6 +24,8 @@ json_t *run_json(const struct run *result);
 // Skips the test, visibly, without a usable device.
 void require_device(void);
 
+// A path in the test's folder, valid until some calls later.
+const char *path_of(const char *name);
 bool file_exists(const char *path);
 bool files_are_equal(const char *a, const char *b);
 void write_file(const char *path, const char *bytes, size_t size);

@@ -15,16 +15,6 @@
 #include <unistd.h>
 #include <utime.h>
 
-// A path that stays valid.
-static const char *path_of(const char *name)
-{
-    static char paths[32][300];
-    static int next;
-    char *path = paths[next++ % 32];
-    snprintf(path, sizeof paths[0], "%s", test_path(name));
-    return path;
-}
-
 // An empty cache of this test's own.
 static const char *use_cache(const char *name)
 {

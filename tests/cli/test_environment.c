@@ -8,15 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *path_of(const char *name)
-{
-    static char paths[8][300];
-    static int next;
-    char *path = paths[next++ % 8];
-    snprintf(path, sizeof paths[0], "%s", test_path(name));
-    return path;
-}
-
 // A map of 8 × 4 texels; the image's left half has another radiance.
 static const char *write_map(const char *name, float left, float right)
 {

@@ -9,15 +9,6 @@
 
 #define BAKE "bake @cornell --gi radiosity:texels=2048 --spp 4 --quiet"
 
-static const char *path_of(const char *name)
-{
-    static char paths[16][400];
-    static int next;
-    char *path = paths[next++ % 16];
-    snprintf(path, sizeof paths[0], "%s", test_path(name));
-    return path;
-}
-
 static void use_cache(const char *name)
 {
     setenv("AFTERGLOW_CACHE", make_folder(name), 1);

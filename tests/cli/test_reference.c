@@ -31,15 +31,6 @@ static double mean_of(const char *path, const char *layer)
     return sum / count;
 }
 
-static const char *path_of(const char *name)
-{
-    static char paths[4][300];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s", test_path(name));
-    return path;
-}
-
 TEST(equal_commands_write_equal_files)
 {
     const char *a = path_of("a.exr"), *b = path_of("b.exr"), *other = path_of("c.exr");

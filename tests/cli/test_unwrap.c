@@ -36,7 +36,7 @@ static float valid[CORNERS][2] = {
     "{'buffer':0,'byteOffset':160,'byteLength':24}],"                                              \
     "'buffers':[{'uri':'%s.bin','byteLength':184}]}"
 
-static const char *path_of(const char *name, const char *ending)
+static const char *path_with(const char *name, const char *ending)
 {
     static char paths[16][400];
     static int next;
@@ -58,9 +58,9 @@ static const char *write_sheet(const char *name, float (*uv)[2])
     memcpy(bytes, positions, sizeof positions);
     memcpy(bytes + 96, uv ? uv : valid, sizeof valid);
     memcpy(bytes + 160, corners, sizeof corners);
-    write_file(path_of(name, ".bin"), (const char *)bytes, sizeof bytes);
-    write_file(path_of(name, ".gltf"), json, (size_t)length);
-    return path_of(name, ".gltf");
+    write_file(path_with(name, ".bin"), (const char *)bytes, sizeof bytes);
+    write_file(path_with(name, ".gltf"), json, (size_t)length);
+    return path_with(name, ".gltf");
 }
 
 static int count_of(const char *text, const char *word)
@@ -73,7 +73,7 @@ static int count_of(const char *text, const char *word)
 // Renders NAME.gltf; returns the image. fault: what the one warning says; NULL: there is none.
 static const char *render(const char *name, float (*uv)[2], const char *fault)
 {
-    const char *scene = write_sheet(name, uv), *image = path_of(name, ".exr");
+    const char *scene = write_sheet(name, uv), *image = path_with(name, ".exr");
     const struct run *r = run_expect(
         0, "render --size 32x24 --light sun:-1,-2,-1:9,9,9 --gi " GI " --aov color,irradiance -o",
         image, scene, NULL);

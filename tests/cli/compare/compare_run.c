@@ -6,15 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *path_of(const char *name)
-{
-    static char paths[8][400];
-    static int next;
-    char *path = paths[next++ % 8];
-    snprintf(path, sizeof paths[0], "%s", test_path(name));
-    return path;
-}
-
 const char *path_in(const char *folder, const char *name)
 {
     static char paths[8][600];

@@ -8,8 +8,7 @@
 #define SCENE "compare @cornell --size 24x18 --quiet"
 #define SMALL SCENE " --frames 2 --spp 2 --gi none"
 
-// Paths in the test's folder, and in a folder. Both are valid until some calls later.
-const char *path_of(const char *name);
+// A path in a folder, valid until some calls later.
 const char *path_in(const char *folder, const char *name);
 // Creates a cache for the test and returns its folder of references.
 const char *own_cache(const char *name);
