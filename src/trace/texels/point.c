@@ -137,13 +137,18 @@ static int least_crossings(const struct search *s)
     return least;
 }
 
-static bool sees(const struct search *s, vec3s from, vec3s to)
+vec3s texel_above(const struct charts *charts, uint32_t texel, vec3s at)
 {
     static const float HEIGHT = 0.25f; // in texels
+    return glms_vec3_muladds(chart_texel_normal(charts, texel), HEIGHT / charts->texels_per_m, at);
+}
+
+bool texel_sees(const struct trace_scene *scene, const struct charts *charts, uint32_t texel,
+                vec3s from, vec3s to)
+{
     const vec3s way = glms_vec3_sub(to, from);
-    const vec3s normal = chart_texel_normal(s->charts, s->texel);
-    from = glms_vec3_muladds(normal, HEIGHT / s->charts->texels_per_m, from);
-    return glms_vec3_norm2(way) == 0.0f || !trace_occluded(s->scene, from, way, 1.0f);
+    return glms_vec3_norm2(way) == 0.0f ||
+           !trace_occluded(scene, texel_above(charts, texel, from), way, 1.0f);
 }
 
 // A wall divides the texel if the first open point does not see all others: keeps those on the side
@@ -153,7 +158,7 @@ static void keep_larger_side(struct search *s)
     bool seen[ACROSS * ACROSS];
     int seen_count = 0, kept = 0;
     for (int i = 0; i < s->count; i++) {
-        seen[i] = sees(s, s->points[0].at, s->points[i].at);
+        seen[i] = texel_sees(s->scene, s->charts, s->texel, s->points[0].at, s->points[i].at);
         seen_count += seen[i];
     }
     const bool side = 2 * seen_count >= s->count;

@@ -26,6 +26,13 @@ struct texel_point {
 struct texel_point texel_find_point(const struct trace_scene *scene, const struct charts *charts,
                                     uint32_t texel);
 
+// Whether nothing is between two points of a texel's surface, a quarter of a texel above it: lower
+// objects hide no light that a texel could show.
+bool texel_sees(const struct trace_scene *scene, const struct charts *charts, uint32_t texel,
+                vec3s from, vec3s to);
+// A point of the surface at that height.
+vec3s texel_above(const struct charts *charts, uint32_t texel, vec3s at);
+
 // ---- reflectance.c
 
 // Mean reflectance of a texel for light that bounces, 0…1 (brdf_bounce_reflectance); w: the mean

@@ -6,9 +6,6 @@
 
 #include <math.h>
 
-// Height of the rays in texels: lower objects hide no light that a texel could show.
-static const float HEIGHT = 0.25f;
-
 enum { AROUND = 9, MIDDLE = 4, MOST_TRIANGLES = 16, ACROSS = 8, POINTS_TRIED = 4 };
 
 struct search {
@@ -23,15 +20,9 @@ struct search {
 
 // ---- points
 
-static vec3s above(const struct search *s, vec3s at)
-{
-    const float height = HEIGHT / s->charts->texels_per_m;
-    return glms_vec3_muladds(chart_texel_normal(s->charts, s->texel), height, at);
-}
-
 static vec3s sample_of(const struct search *s, int at)
 {
-    return above(s, s->points[s->around[at]].position);
+    return s->points[s->around[at]].position;
 }
 
 static bool is_open(const struct search *s, int at)
@@ -41,8 +32,7 @@ static bool is_open(const struct search *s, int at)
 
 static bool sees(const struct search *s, vec3s from, vec3s to)
 {
-    const vec3s way = glms_vec3_sub(to, from);
-    return glms_vec3_norm2(way) == 0.0f || !trace_occluded(s->scene, from, way, 1.0f);
+    return texel_sees(s->scene, s->charts, s->texel, from, to);
 }
 
 static void find_around(struct search *s)
@@ -146,10 +136,11 @@ static struct line line_of(const struct plane *plane, vec3s normal, vec3s at)
     return line;
 }
 
+// The point at which a ray above the surface meets a wall, brought down to the surface.
 static bool hit_on_way(const struct search *s, vec3s from, vec3s to, vec3s *at, vec3s *normal)
 {
     const vec3s way = glms_vec3_sub(to, from);
-    const struct ray ray = { from, way, 0.0f, 1.0f };
+    const struct ray ray = { texel_above(s->charts, s->texel, from), way, 0.0f, 1.0f };
     struct ray_hit hit;
     if (!embree_closest(s->scene->embree, &ray, NULL, false, &hit)) return false;
     *at = glms_vec3_muladds(way, hit.distance, from);
@@ -166,9 +157,7 @@ static void add_wall(const struct search *s, const struct plane *plane, int a, i
     vec3s near, far, normal, other;
     if (sees(s, from, to) || !hit_on_way(s, from, to, &near, &normal)) return;
     if (!hit_on_way(s, to, from, &far, &other)) far = near;
-    vec3s at = glms_vec3_lerp(near, far, 0.5f);
-    at = glms_vec3_sub(at, glms_vec3_sub(above(s, plane->centre), plane->centre));
-    const struct line wall = line_of(plane, normal, at);
+    const struct line wall = line_of(plane, normal, glms_vec3_lerp(near, far, 0.5f));
     if (wall.found && (!line->found || fabsf(wall.offset) < fabsf(line->offset))) *line = wall;
 }
 
@@ -191,7 +180,7 @@ static int find_seen(const struct search *s, vec3s at, bool seen[AROUND])
 {
     int count = 0;
     for (int i = 0; i < AROUND; i++) {
-        seen[i] = is_open(s, i) && sees(s, above(s, at), sample_of(s, i));
+        seen[i] = is_open(s, i) && sees(s, at, sample_of(s, i));
         count += seen[i];
     }
     return count;
@@ -339,7 +328,7 @@ struct texel_wall texel_find_wall(const struct trace_scene *scene, const struct 
 
 static vec3s middle_of(const struct search *s, int at)
 {
-    return above(s, chart_texel_of(s->charts, s->around[at])->position);
+    return chart_texel_of(s->charts, s->around[at])->position;
 }
 
 bool texel_is_beside_wall(const struct trace_scene *scene, const struct charts *charts,
@@ -360,7 +349,7 @@ uint32_t texel_before_wall(const struct trace_scene *scene, const struct charts 
     struct search s = { .scene = scene, .charts = charts, .texel = texel };
     find_around(&s);
     for (int i = 0; i < AROUND; i++)
-        if (s.around[ORDER[i]] != CHART_NONE && sees(&s, above(&s, at), middle_of(&s, ORDER[i])))
+        if (s.around[ORDER[i]] != CHART_NONE && sees(&s, at, middle_of(&s, ORDER[i])))
             return s.around[ORDER[i]];
     return texel;
 }

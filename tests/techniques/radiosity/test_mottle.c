@@ -2,8 +2,6 @@
 #include "techniques/trials/light_trial.h"
 #include "techniques/trials/light_trial_scenes.h"
 
-#include "techniques/gi_fixture.h"
-
 #include <stdlib.h>
 
 enum { SIZE = 48, REACH = 4 };
@@ -17,15 +15,11 @@ TEST_GPU(light_of_a_small_bright_spot_is_even_on_a_far_wall)
     s.width = s.height = SIZE;
     fixture_look(&s, vec3_of(-0.6f, 1.9f, 0.4f), vec3_of(-3, 1.9f, 0.4f));
     s.input.camera.vertical_fov_rad = 0.8f;
-    fixture_open(&s);
-    struct gi *gi = gi_fixture_light(&s, "radiosity");
-    fixture_render(&s);
-    float *e = fixture_read(&s, READ_IRRADIANCE);
+    float *e = trial_pixels(&s, "radiosity");
     const double mottle = trial_mottle(e, SIZE, REACH);
     print_message("a wall lit by a spot: deviation %.4f\n", mottle);
     CHECK(mottle < 0.02);
     free(e);
-    gi_destroy(gi);
     fixture_finish(&s);
 }
 

@@ -1,6 +1,5 @@
 // A partition of 20 cm that stands in a room of 12 × 3 × 8, at texels of up to 40 cm: lookups
 // beside it show the light of their own side.
-#include "techniques/gi_fixture.h"
 #include "techniques/trials/light_trial.h"
 
 #include <math.h>
@@ -30,13 +29,9 @@ static double *irradiance_of(struct gpu *gpu, const char *gi, float end, bool li
     double *out = calloc((size_t)SIZE * SIZE, sizeof *out);
     assert_non_null(out);
     build(&s, gpu, end, lit);
-    fixture_open(&s);
-    struct gi *technique = gi_fixture_light(&s, gi);
-    fixture_render(&s);
-    float *e = fixture_read(&s, READ_IRRADIANCE);
+    float *e = trial_pixels(&s, gi);
     for (int i = 0; i < SIZE * SIZE; i++) out[i] = (double)e[3 * i + 1];
     free(e);
-    gi_destroy(technique);
     fixture_finish(&s);
     return out;
 }

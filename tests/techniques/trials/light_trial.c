@@ -44,6 +44,16 @@ struct trial_irradiance trial_technique(struct frame_fixture *s, const char *tex
     return result;
 }
 
+float *trial_pixels(struct frame_fixture *s, const char *text)
+{
+    fixture_open(s);
+    struct gi *gi = gi_fixture_light(s, text);
+    fixture_render(s);
+    float *irradiance = fixture_read(s, READ_IRRADIANCE);
+    gi_destroy(gi);
+    return irradiance;
+}
+
 static void add_to_scene(struct scene *scene, const struct world_light *light)
 {
     const bool spot = light->type == LIGHT_SPOT;
@@ -110,14 +120,10 @@ static struct image technique_image(struct gpu *gpu, trial_build build, const ch
     struct frame_fixture s;
     struct image out;
     build(&s, gpu);
-    fixture_open(&s);
-    struct gi *gi = gi_fixture_light(&s, text);
-    fixture_render(&s);
-    float *irradiance = fixture_read(&s, READ_IRRADIANCE);
+    float *irradiance = trial_pixels(&s, text);
     assert_true(image_init(&out, test_host(), (int)s.width, (int)s.height, 3));
     memcpy(out.pixels, irradiance, 3 * (size_t)s.width * s.height * sizeof *irradiance);
     free(irradiance);
-    gi_destroy(gi);
     fixture_finish(&s);
     return out;
 }

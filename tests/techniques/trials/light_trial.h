@@ -15,9 +15,11 @@ struct trial_irradiance {
     double mean[3], least, most; // least and most: of all channels
 };
 
-// Both open the fixture, which must not be open, and leave it to be finished. Pixels without a
+// All three open the fixture, which must not be open, and leave it to be finished. Pixels without a
 // surface do not count.
 struct trial_irradiance trial_technique(struct frame_fixture *s, const char *gi);
+// All pixels of the technique's image, RGB. The caller frees them.
+float *trial_pixels(struct frame_fixture *s, const char *gi);
 // Light of the same kinds as the technique's: without direct light of punctual lights, with that of
 // specular lobes in bounces. All bounces, or `bounces` of them; −1: all.
 struct trial_irradiance trial_reference(struct frame_fixture *s, int bounces, int samples);

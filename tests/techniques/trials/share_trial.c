@@ -1,6 +1,6 @@
 #include "techniques/trials/share_trial.h"
 
-void share_trial(struct gpu *gpu, trial_scene build, const char *name, int bounces,
+void share_trial(struct gpu *gpu, trial_build build, const char *name, int bounces,
                  const struct share_case *cases, size_t count, double most)
 {
     struct frame_fixture s;

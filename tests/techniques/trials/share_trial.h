@@ -3,13 +3,11 @@
 
 #include "techniques/trials/light_trial.h"
 
-typedef void (*trial_scene)(struct frame_fixture *s, struct gpu *gpu);
-
 struct share_case {
     const char *gi;
     double least;
 };
 
 // Mean irradiance over that of the reference: at least the case's, at most `most`. Prints both.
-void share_trial(struct gpu *gpu, trial_scene build, const char *name, int bounces,
+void share_trial(struct gpu *gpu, trial_build build, const char *name, int bounces,
                  const struct share_case *cases, size_t count, double most);

@@ -2,7 +2,6 @@
 #include "techniques/trials/light_trial.h"
 #include "techniques/trials/light_trial_scenes.h"
 
-#include "techniques/gi_fixture.h"
 #include "techniques/mrt/level/map/make_map.h"
 
 #include <math.h>
@@ -97,15 +96,11 @@ TEST_GPU(light_of_sunlit_ground_is_even_on_a_wall)
 {
     struct frame_fixture s;
     open_wall(&s, gpu, false);
-    fixture_open(&s);
-    struct gi *gi = gi_fixture_light(&s, "mrt" DICTIONARY);
-    fixture_render(&s);
-    float *e = fixture_read(&s, READ_IRRADIANCE);
+    float *e = trial_pixels(&s, "mrt" DICTIONARY);
     const double mottle = trial_mottle(e, SIZE, REACH);
     print_message("a wall opposite to a window: deviation %.4f\n", mottle);
     CHECK(mottle < 0.02);
     free(e);
-    gi_destroy(gi);
     fixture_finish(&s);
 }
 

@@ -6,16 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double error_of(const float *a, const float *b, size_t count)
-{
-    double d = 0.0, sum = 0.0;
-    for (size_t i = 0; i < count; i++) {
-        d += fabs((double)a[i] - (double)b[i]);
-        sum += (double)b[i];
-    }
-    return d / sum;
-}
-
 enum change { LIGHT_MOVES, BOX_MOVES, LIGHT_JUMPS };
 
 // Ten frames of motion, the last one of which is not rendered; or one jump.
@@ -46,11 +36,11 @@ static double error_after(struct gpu *gpu, const char *options, enum change chan
     change_scene(&fixture, box, change);
     for (int i = 0; i < SHOWN; i++) e[i] = vct_fixture_irradiance_after(&fixture, 1);
     float *settled = vct_fixture_irradiance_after(&fixture, SETTLED);
-    const double changed = error_of(before, settled, count),
-                 fourth = error_of(e[3], settled, count);
+    const double changed = vct_fixture_difference(before, settled, count),
+                 fourth = vct_fixture_difference(e[3], settled, count);
     print_message("%s: %s by %.1f %%; then", options, names[change], 100.0 * changed);
     for (int i = 0; i < SHOWN; i++) {
-        print_message(" %.2f", 100.0 * error_of(e[i], settled, count));
+        print_message(" %.2f", 100.0 * vct_fixture_difference(e[i], settled, count));
         free(e[i]);
     }
     print_message(" %%\n");

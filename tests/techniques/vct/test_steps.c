@@ -5,16 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static double step_of(const float *a, const float *b, size_t count)
-{
-    double change = 0.0, sum = 0.0;
-    for (size_t i = 0; i < count; i++) {
-        change += fabs((double)a[i] - (double)b[i]);
-        sum += (double)b[i];
-    }
-    return change / sum;
-}
-
 enum { WARM = 16, STEPS = 24, LONGEST_PERIOD = VCT_ROTATION_FRAMES };
 
 struct motion {
@@ -41,7 +31,7 @@ static void measure_steps(struct gpu *gpu, const char *options, const struct mot
     for (int i = -WARM; i < STEPS; i++) {
         move(&fixture, box, by);
         float *now = vct_fixture_irradiance_after(&fixture, 1);
-        if (i >= 0) steps[i] = step_of(now, last, count);
+        if (i >= 0) steps[i] = vct_fixture_difference(now, last, count);
         free(last);
         last = now;
     }

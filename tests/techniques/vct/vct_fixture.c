@@ -116,6 +116,16 @@ int vct_fixture_add_triangle(struct vct_fixture *fixture, const vec3s corners[3]
     return fixture_instance(&fixture->frame_fixture, mesh, NULL);
 }
 
+double vct_fixture_difference(const float *a, const float *b, size_t count)
+{
+    double difference = 0.0, sum = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        difference += fabs((double)a[i] - (double)b[i]);
+        sum += (double)b[i];
+    }
+    return difference / sum;
+}
+
 uint32_t *vct_fixture_buffer_words(const struct vct_fixture *fixture, gpu_buffer buffer)
 {
     const size_t bytes = gpu_buffer_bytes(fixture->frame_fixture.gpu, buffer);

@@ -32,6 +32,8 @@ int vct_fixture_room(struct vct_fixture *fixture, struct gpu *gpu);
 void vct_fixture_move_box(struct vct_fixture *fixture, int first, vec3s by);
 // Irradiance after that many more frames. To be freed.
 float *vct_fixture_irradiance_after(struct vct_fixture *fixture, int frames);
+// Mean absolute difference of two images of irradiance over the mean of b.
+double vct_fixture_difference(const float *a, const float *b, size_t count);
 
 // The content of a buffer. To be freed.
 uint32_t *vct_fixture_buffer_words(const struct vct_fixture *fixture, gpu_buffer buffer);
