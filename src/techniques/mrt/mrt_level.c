@@ -259,15 +259,16 @@ static bool clutter_fits(const struct mrt *mrt, const struct mrt_parts *parts,
                          const struct mrt_build *how, const struct mrt_operators *operators)
 {
     const uint64_t most = gpu_limits(mrt->gpu)->max_storage_bytes;
-    const uint64_t bytes = mrt_clutter_numbers(operators, &mrt->map, &parts->clutter) *
-                           (mrt_runtime_options_of(&mrt->options).half ? 2 : 4);
+    int blocks;
+    const uint64_t numbers = mrt_clutter_numbers(operators, &mrt->map, &parts->clutter, &blocks);
+    const uint64_t bytes = numbers * (mrt_runtime_options_of(&mrt->options).half ? 2 : 4);
     if (bytes <= most) return true;
     if (!how->plan)
         host_log(mrt->host, LOG_WARNING,
                  "gi drt: operators of %d blocks with objects take up to %.0f MB in one buffer, of "
-                 "which the device allows %.0f MB: objects are lit as by mrt; fewer response_modes "
-                 "or texels, or precision=half may fit",
-                 mrt->map.count, (double)bytes * 1e-6, (double)most * 1e-6);
+                 "which the device allows %.0f MB: objects are lit as by mrt; use fewer texels or "
+                 "response_modes",
+                 blocks, (double)bytes * 1e-6, (double)most * 1e-6);
     return false;
 }
 

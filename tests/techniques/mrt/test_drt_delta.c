@@ -8,6 +8,7 @@
 
 #include "techniques/mrt/dictionary/cube_operators.h"
 #include "techniques/mrt/dictionary/gather.h"
+#include "techniques/mrt/objects/clutter_operators.h"
 #include "techniques/mrt/objects/delta.h"
 #include "techniques/mrt/objects/delta_cache.h"
 
@@ -490,4 +491,40 @@ TEST(light_through_an_opening_is_of_walls_or_of_clutter)
     for (int b = 0; b < 2; b++) matrix_f32_finish(test_host(), &ones[b]);
     matrix_f32_finish(test_host(), &u_r);
     room_finish(&pair);
+}
+
+// Two blocks, of which the first has the box: a basis more, and a response more for each of its two
+// openings and for its faces.
+TEST(the_size_of_operators_is_known_before_rays)
+{
+    struct room room;
+    struct mrt_block_map map;
+    room_init(&room, WITH_BOX);
+    CHECK(mrt_block_map_init(test_host(), "test", 2, &map));
+    for (int b = 0; b < 2; b++) {
+        const float x = 100.0f * (float)b;
+        mrt_block_init(&map.blocks[b], b ? "empty" : "room", MRT_BLOCK_CUBE);
+        mrt_block_set_box(&map.blocks[b],
+                          (struct box3){ vec3_of(x - 1, -1, -1), vec3_of(x + 1, 1, 1) });
+    }
+    struct mrt_block_basis basis = { 0 };
+    struct mrt_block_response response = { 0 };
+    struct mrt_opening openings[5] = {
+        { .block = 0 }, { .block = 0 }, { .block = 1 }, { .block = 1 }, { .block = 1 }
+    };
+    basis.u[MRT_VECTOR] = (struct matrix_f32){ .rows = 40, .columns = 9 };
+    response.u[MRT_VECTOR] = (struct matrix_f32){ .rows = 40, .columns = 3 };
+    struct mrt_operators operators = { .bases = &basis,
+                                       .basis_count = 2,
+                                       .responses = &response,
+                                       .response_count = 5,
+                                       .openings = openings,
+                                       .opening_count = 5 };
+    int blocks;
+    CHECK(mrt_clutter_numbers(&operators, &map, &room.clutter, &blocks) == 3 * 40 * 9);
+    CHECK(blocks == 1);
+    response.u[MRT_VECTOR].columns = 4;
+    CHECK(mrt_clutter_numbers(&operators, &map, &room.clutter, &blocks) == (5 + 3) * 40 * 4);
+    mrt_block_map_finish(&map);
+    room_finish(&room);
 }

@@ -109,6 +109,31 @@ TEST(a_point_above_ground_receives_its_radiosity)
     close_place(&p);
 }
 
+// Points close to the ground see more places than that; later points have larger ones.
+TEST(many_reflectors_become_larger_and_keep_their_light)
+{
+    enum { POINTS = 4096, ROW = 64, RAYS = 256 };
+    uint32_t counts[2];
+    for (int few = 0; few < 2; few++) {
+        struct place p;
+        struct mrt_lit_point *points = host_alloc(test_host(), POINTS, sizeof *points);
+        assert_non_null(points);
+        for (int i = 0; i < POINTS; i++)
+            points[i].position =
+                vec3_of((float)(i % ROW) - ROW / 2, -2, (float)(i / ROW) - ROW / 2);
+        open_ground(&p, -3);
+        if (few) p.reflectors.fine = 256;
+        assert_true(mrt_area_light_points(p.trace, &p.reflectors, RAYS, points, POINTS));
+        for (int i = POINTS - ROW; i < POINTS; i++)
+            CHECK_NEAR(irradiance(&p, &points[i].light.reflected, vec3_of(0, -1, 0)), 1, 0.05);
+        counts[few] = p.reflectors.count;
+        host_free(test_host(), points);
+        close_place(&p);
+    }
+    print_message("%u places, %u with larger ones\n", counts[0], counts[1]);
+    CHECK(2 * counts[1] < counts[0]);
+}
+
 // Light of a quarter of the sphere, of radiance 1/π, above or below, has a vector irradiance of 1/2
 // along the surface, as its irradiance.
 static void check_vectors(const struct place *p, const struct mrt_geometry_texel *upright)

@@ -8,7 +8,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { GRID_CELLS = 32, SLOTS_PER_REFLECTOR = 2, FIRST_ROOM = 256 };
+enum {
+    GRID_CELLS = 32,
+    SLOTS_PER_REFLECTOR = 2,
+    FIRST_ROOM = 256,
+    FINE = 1 << 18,
+    FINE_SHARES = 1 << 23
+};
 
 // Surfaces behind a wall that its texels may stand for: as far as their rays (geometry.c).
 static const float BEHIND_WALL = 0.75f;
@@ -41,13 +47,21 @@ static bool is_of_a_block(const struct mrt_reflectors *r, vec3s point, vec3s nor
     return false;
 }
 
+static int level_of(float edges)
+{
+    return edges >= 2.0f ? ilogbf(fminf(edges, 0x1p20f)) : 0;
+}
+
 // A place: a cube of a grid whose size is about an eighth of the distance, and a direction of six.
 static uint64_t key_of(const struct mrt_reflectors *r, vec3s point, vec3s normal, float distance,
                        float *edge_m)
 {
     enum { BITS = 18 };
     const float wanted = distance * PER_DISTANCE / r->least_m;
-    const int level = wanted >= 2.0f ? ilogbf(fminf(wanted, 0x1p20f)) : 0;
+    const int least = level_of(wanted), most = level_of(distance / r->least_m);
+    const int level = r->least_level < least  ? least
+                      : r->least_level > most ? most
+                                              : r->least_level;
     const vec3s way = glms_vec3_abs(normal);
     const int axis = way.x >= way.y && way.x >= way.z ? 0 : way.y >= way.z ? 1 : 2;
     uint64_t key = (uint64_t)level * 6 + 2 * (uint64_t)axis + (normal.raw[axis] > 0.0f);
@@ -95,7 +109,10 @@ void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_
 bool mrt_reflectors_init(struct host *host, const struct mrt_block_map *map,
                          struct mrt_reflectors *out)
 {
-    *out = (struct mrt_reflectors){ .host = host, .least_m = TEXELS * mrt_shortest_edge(map) };
+    *out = (struct mrt_reflectors){ .host = host,
+                                    .least_m = TEXELS * mrt_shortest_edge(map),
+                                    .fine = FINE,
+                                    .fine_shares = FINE_SHARES };
     return mrt_block_grid_init(host, map, BEHIND_WALL - 0.5f, GRID_CELLS, &out->grid);
 }
 
@@ -216,6 +233,11 @@ static bool add_row(struct mrt_reflectors *r, const struct part *part, size_t i)
     return true;
 }
 
+static int levels_beyond(uint32_t count, uint32_t fine)
+{
+    return count <= fine ? 0 : 1 + (int)((count - fine) / (fine / 32));
+}
+
 static bool gather_part(struct mrt_reflectors *r, struct part *part, size_t count,
                         struct mrt_reflector_hit *hits)
 {
@@ -224,6 +246,9 @@ static bool gather_part(struct mrt_reflectors *r, struct part *part, size_t coun
     parallel_for(count, 8, gather_one, part);
     for (size_t i = 0; i < count; i++)
         if (!add_row(r, part, i)) return false;
+    const int level = levels_beyond(r->count, r->fine),
+              of_shares = levels_beyond(r->share_count, r->fine_shares);
+    r->least_level = level > of_shares ? level : of_shares;
     return true;
 }
 

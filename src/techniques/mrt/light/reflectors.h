@@ -20,6 +20,10 @@ struct mrt_reflectors {
     struct host *host;
     struct mrt_block_grid grid;
     float least_m; // edge of the smallest place
+    // Numbers from which later hits have larger places: each 32nd part more doubles the edge, up to
+    // the distance of the hit.
+    uint32_t fine, fine_shares;
+    int least_level;
     // Texels without a wall; area_m2 is that of the place.
     struct mrt_geometry_texel *at;
     uint64_t *keys;

@@ -23,18 +23,19 @@ static uint64_t largest_of(const struct matrix_f32 light[MRT_MEASURES])
 }
 
 uint64_t mrt_clutter_numbers(const struct mrt_operators *o, const struct mrt_block_map *map,
-                             const struct mrt_clutter *clutter)
+                             const struct mrt_clutter *clutter, int *blocks)
 {
-    uint64_t bases = (uint64_t)o->basis_count, responses = (uint64_t)o->response_count;
+    uint64_t responses = (uint64_t)o->response_count;
     int opening = 0;
+    *blocks = 0;
     for (int b = 0; b < map->count; b++) {
         const bool changed = has_clutter(clutter, &map->blocks[b]);
-        bases += changed;
+        *blocks += changed;
         responses += changed; // of its faces
         for (; opening < o->opening_count && o->openings[opening].block == b; opening++)
             responses += changed;
     }
-    const uint64_t of_bases = bases * largest_of(o->bases[0].u),
+    const uint64_t of_bases = (uint64_t)(o->basis_count + *blocks) * largest_of(o->bases[0].u),
                    of_responses = responses * largest_of(o->responses[0].u);
     return of_bases > of_responses ? of_bases : of_responses;
 }

@@ -18,10 +18,10 @@ struct mrt_clutter_changes {
     const atomic_bool *stop; // as of mrt_clutter_rays
 };
 
-// Numbers at most in the largest buffer of bases or responses, with those of all blocks in whose
-// bounds there is clutter.
+// Numbers at most in the largest buffer of bases or responses, with those of the blocks in whose
+// bounds there is clutter: operators are of a level without it. Writes the number of these blocks.
 uint64_t mrt_clutter_numbers(const struct mrt_operators *operators, const struct mrt_block_map *map,
-                             const struct mrt_clutter *clutter);
+                             const struct mrt_clutter *clutter, int *blocks);
 // Replaces operators of a level, block after block. texels: those of clutter->texels, in their
 // order. The cache must outlive the call only.
 bool mrt_operators_add_clutter(struct mrt_operators *operators, const struct mrt_level *level,
