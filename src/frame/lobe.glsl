@@ -21,6 +21,15 @@ float lobe_roughness(float roughness)
     return smoothstep(LOBE_ROUGH_FROM, LOBE_ROUGH, roughness);
 }
 
+// Share of E/π beside a uniform cone of (1) along the mirror direction. The cone has half of the
+// lobe's light; the rest reaches far beyond it and leans to the normal. With this share the length
+// of the mean direction is that of the lobe: 0.11, 0.23, 0.37, 0.52, 0.74, 0.97 at a roughness of
+// 0.3 … 0.8, at normal incidence up to 0.05 more, for angles of view up to 75°.
+float lobe_tail(float alpha)
+{
+    return min(1.5 * alpha, 1.0);
+}
+
 // Tangent of the half-angle of the cone, at most `widest`.
 float lobe_tan_half_angle(float alpha, float widest)
 {

@@ -107,14 +107,18 @@ static void add_light(const struct vct_options *o, struct gpu_objects *out)
                    pixel_rays = vct_pixels_have_rays(o) ? (uint32_t)RAYS : 0;
 #define STORED(name) (svo ? &shader_vct_##name##_svo_comp : &shader_vct_##name##_mips_comp)
     const struct gpu_shader *bounce = lit ? STORED(lighting_bounce) : NULL, *cones = STORED(cones),
-                            *specular = lit ? STORED(cones_specular) : NULL;
+                            *specular = lit ? STORED(cones_specular) : NULL,
+                            *average = o->temporal ? &shader_vct_cones_lobe_average_temporal_comp
+                                                   : &shader_vct_cones_lobe_average_frame_comp;
     GPU_ADD(out, 0, PIPELINE(bounce[0], "bounce", bounce, directions | CLIPS | rays),
             PIPELINE(bounce[1], "bounce_more", bounce, directions | CLIPS | rays | MORE_LIGHT),
             PIPELINE(cones[0], "cones", cones, kind | CLIPS | pixel_rays),
             PIPELINE(cones[1], "cones_more", lit ? cones : NULL,
                      directions | CLIPS | pixel_rays | MORE_LIGHT),
-            PIPELINE(specular[0], "specular", specular, directions | CLIPS),
-            PIPELINE(specular[1], "specular_more", specular, directions | CLIPS | MAP),
+            PIPELINE(specular[0], "specular", specular, directions | CLIPS | rays),
+            PIPELINE(specular[1], "specular_more", specular, directions | CLIPS | rays | MAP),
+            PIPELINE(lobe_average, "lobe_average", lit && rays ? average : NULL, 0),
+            PIPELINE(reflect, "reflect", lit ? &shader_vct_cones_reflect_comp : NULL, rays),
             PIPELINE(debug, "debug", STORED(debug), CLIPS));
     if (svo)
         add_octree(directions, out);

@@ -40,6 +40,9 @@ struct vct_pixels {
     gpu_image cone_normal_image;      // RG16F: octahedral, axis of each pixel's cone set
     gpu_image traced[3], gathered[3]; // RGBA16F: cone sums of each colour
     gpu_image gathered_irradiance;    // RGBA16F: irradiance, fraction of the cone set
+    // RGBA16F, full size: radiance in the specular lobe, and its mean over pixels and frames with
+    // its weight in frames, of this frame and of the previous one.
+    gpu_image arriving, averaged[2];
 };
 
 struct vct_view {
@@ -61,6 +64,7 @@ struct vct {
     gpu_pipeline fill[2];                          // without and with moving voxels
     gpu_pipeline inject[2];                        // without and with lights
     gpu_pipeline cones[2], bounce[2], specular[2]; // by vct_has_more_light
+    gpu_pipeline lobe_average, reflect;
     gpu_pipeline edges, gather_rows, gather_columns, blur, upsample, accumulate, debug;
 
     // Voxels and the light volume.

@@ -8,6 +8,7 @@
 #define VCT_MAX_INTERLEAVE 5
 #define VCT_GATHER_ROW     4 // pixels per invocation of cones/gather.comp
 #define VCT_BLUR_TILE      4 // pixels per invocation of cones/blur.comp, in x and y
+#define VCT_REFLECT_SIDE   4 // of the pixels that share the directions of a specular lobe
 
 // Uniform block "vct_cones".
 struct vct_cone_params {
@@ -51,6 +52,8 @@ struct vct_specular_params {
     float texel_m; // of the finest level
     uint32_t last_mip;
     uint32_t has_dielectric; // bool: FRAME_DIELECTRIC is bound
+    uint32_t turn;           // number of the directions, which differ from frame to frame
+    uint32_t stride; // one in stride × stride pixels of rough surfaces has a ray in a frame
 };
 
 // How the history follows a change of light: see cones/temporal.c.
@@ -72,6 +75,8 @@ struct vct_history_params {
     uint32_t known;    // bool: the history is valid
     uint32_t follow;   // VCT_KEEP, …
     float added;       // weight of this frame where pixels do not move, frames
+    // Maximum weight of the history of reflections, frames: of mirrors, and of rough surfaces.
+    float most_of_mirror, most_of_lobe;
 };
 
 #ifndef AG_GLSL
@@ -79,8 +84,8 @@ _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 28 * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_small_emitter) == (2 + 9 * VCT_EMITTER_POINTS) * 4,
                "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_specular_params) == 7 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_history_params) == 20 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_specular_params) == 9 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_history_params) == 22 * 4, "layout is shared with GLSL");
 #endif
 
 #endif

@@ -1,8 +1,10 @@
-// One cone per pixel along the mirror direction, with the width of the specular lobe (Hong 2015,
-// sec. 2.5.3.3.7; Crassin et al. 2011), times the directional albedo of the GGX BRDF.
+// Radiance that arrives from the directions of the specular lobe.
 //
-// Differs from the paper: the lobe is glTF's GGX, not Phong's (frame/lobe.glsl). A rough surface
-// needs no cone: its radiance is E/π of the diffuse cones. In between both are blended.
+// With rays, each pixel traces one ray of the lobe's cone (frame/lobe.glsl), and the 4 x 4 pixels
+// around it the others: cones/lobe_average.comp takes their mean. Cones would average what is
+// behind a wall with it, and the sky behind may be a hundred times as bright as a room. Where there
+// are no rays, one cone per pixel has the width of the lobe (Hong 2015, sec. 2.5.3.3.7; Crassin et
+// al. 2011).
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -22,6 +24,12 @@ layout(constant_id = VCT_CONSTANT_MAP) const bool VCT_HAS_MAP = false;
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/cones/cones_shared.h"
 #include "techniques/vct/cones/trace.glsl"
+#if !VCT_SVO
+#include "techniques/vct/rays/jitter.glsl"
+#include "techniques/vct/rays/ray.glsl"
+#endif
+
+#include "techniques/vct/cones/lobe_turns.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -32,12 +40,8 @@ layout(set = 0, binding = 2, scalar) uniform vct_specular
 layout(set = 0, binding = 3) uniform sampler2D depth;
 layout(set = 0, binding = 4) uniform sampler2D normal;
 layout(set = 0, binding = 5) uniform sampler3D light;
-layout(set = 0, binding = 6) uniform sampler2D albedo;
 layout(set = 0, binding = 7) uniform sampler2D material;
-layout(set = 0, binding = 10) uniform sampler2D dielectric; // FRAME_DIELECTRIC if `has_dielectric`
-layout(set = 0, binding = 11) uniform sampler2D irradiance; // of the diffuse cones, scaled lux
-layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D specular;
-#include "techniques/common/reflected.glsl"
+layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D arriving;
 
 // Tangent of the half-angle: a cone wider than 45° is no better resolved by the texels.
 const float WIDEST = 1.0;
@@ -48,40 +52,94 @@ float tan_half_angle(float alpha)
     return lobe_tan_half_angle(alpha, WIDEST);
 }
 
-// Mirror direction, lifted to the horizon where a normal map bends it below the surface.
-vec3 mirror_direction(vec3 to_viewer, vec3 n)
+// Lifted to the horizon where a normal map bends it below the surface.
+vec3 lifted(vec3 direction, vec3 n)
 {
-    vec3 r = reflect(-to_viewer, n);
-    return normalize(r + max(0.0, 0.01 - dot(r, n)) * n);
+    return normalize(direction + max(0.0, 0.01 - dot(direction, n)) * n);
 }
 
-vec3 reflected_radiance(ivec2 pixel, float z)
+#if !VCT_SVO
+// A direction of the cone: one in each of 4 x 4 strata of equal solid angle, by the pixel.
+vec3 in_cone(ivec2 pixel, vec3 axis, float tan_half)
+{
+    uvec2 tile = uvec2(pixel) / VCT_REFLECT_SIDE,
+          at = lobe_stratum(uvec2(pixel) % VCT_REFLECT_SIDE, set.stride, set.turn);
+    uint stratum = at.x + VCT_REFLECT_SIDE * at.y;
+    vec2 square = vct_in_stratum(
+        stratum, VCT_REFLECT_SIDE, VCT_REFLECT_SIDE,
+        vct_low_discrepancy(vct_morton(tile),
+                            stratum + VCT_REFLECT_SIDE * VCT_REFLECT_SIDE * set.turn));
+    vec2 disk = vct_disk(square);
+    float cosine = 1.0 - dot(disk, disk) * (1.0 - inversesqrt(1.0 + tan_half * tan_half));
+    float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    vec3 x = normalize(abs(axis.y) < 0.9 ? vec3(axis.z, 0.0, -axis.x) : vec3(0.0, axis.z, -axis.y));
+    vec2 around = disk * inversesqrt(max(dot(disk, disk), 1e-12));
+    return cosine * axis + sine * (around.x * x + around.y * cross(axis, x));
+}
+
+// Light of the place that a ray meets, filtered to the texels of its width.
+vec3 met_light(vct_ray_sum s, vec3 place, vec3 direction, float texel)
+{
+    float weight, level = min(log2(max(texel, 1.0)), float(set.last_mip));
+    int fine = int(level), coarse = min(fine + 1, int(set.last_mip));
+    vec4 a = vct_sample_volume(light, vct_within_volume(place, fine, weight), direction, direction,
+                               fine)
+                 .light,
+         b = vct_sample_volume(light, vct_within_volume(place, coarse, weight), direction,
+                               direction, coarse)
+                 .light;
+    vec4 found = mix(a, b, fract(level));
+    vec3 own = vct_ray_light(s.face, s.place);
+    return found.a > VCT_RAY_COVERED ? found.rgb / found.a : own;
+}
+
+vec3 ray_light(ivec2 pixel, vec3 at, vec3 n, vec3 mirror, float tan_half)
+{
+    vec3 direction = lifted(in_cone(pixel, mirror, tan_half), n);
+    float share = tan_half / float(VCT_REFLECT_SIDE); // of the cone that the ray stands for
+    vct_ray_sum s = vct_ray_faces(2.0 * at + VCT_RAY_LIFT * n, n, direction, 0.0);
+    vec3 last = vec3(0.0);
+    if (s.visible > 0.0)
+        last = met_light(s, at + 0.5 * s.distance * direction, direction, share * s.distance);
+    vec4 traced = vct_ray_total(s, last);
+    return traced.rgb + (1.0 - traced.a) * environment_cone(direction, atan(share));
+}
+#endif
+
+vec3 cone_light(vec3 at, vec3 n, vec3 mirror, float tan_half)
+{
+    vec3 direction = lifted(mirror, n);
+    vec4 traced = vct_cone(light, at, n, direction, set.offset, 2.0 * set.step_size * tan_half,
+                           set.last_mip, vct_start_at(at));
+    return traced.rgb + (1.0 - traced.a) * environment_cone(direction, atan(tan_half));
+}
+
+vec3 arriving_light(ivec2 pixel, float z, float roughness)
 {
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg),
-         to_viewer = normalize(frame_to_viewer(position));
-    brdf_material m = pixel_material(pixel, set.has_dielectric != 0u);
-    vec3 at = (position - clips.origin_m) / set.texel_m;
-    float tan_half = tan_half_angle(brdf_alpha(m.roughness));
-    float width = 2.0 * set.step_size * tan_half;
-    float rough = lobe_roughness(m.roughness);
-    if (set.tan_half > 0.0) rough = 0.0;
-    vec3 radiance = texelFetch(irradiance, pixel, 0).rgb / PI;
-    if (rough < 1.0) {
-        vec3 direction = mirror_direction(to_viewer, n);
-        vec4 traced =
-            vct_cone(light, at, n, direction, set.offset, width, set.last_mip, vct_start_at(at));
-        vec3 arriving = traced.rgb + (1.0 - traced.a) * environment_cone(direction, atan(tan_half));
-        radiance = mix(set.gain * arriving, radiance, rough);
-    }
-    return pixel_reflected(m, n, to_viewer, radiance);
+         mirror = reflect(-normalize(frame_to_viewer(position)), n),
+         at = (position - clips.origin_m) / set.texel_m;
+    float tan_half = tan_half_angle(brdf_alpha(roughness));
+#if !VCT_SVO
+    if (VCT_RAYS) return ray_light(pixel, at, n, mirror, tan_half);
+#endif
+    return cone_light(at, n, mirror, tan_half);
 }
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    // A workgroup traces pixels of one stratum, so that its invocations have near directions.
+    uint parts = VCT_REFLECT_SIDE * VCT_REFLECT_SIDE, part = gl_WorkGroupID.x % parts;
+    uvec2 tile = uvec2(gl_WorkGroupID.x / parts, gl_WorkGroupID.y) * gl_WorkGroupSize.xy +
+                 gl_LocalInvocationID.xy;
+    ivec2 pixel =
+        ivec2(tile * VCT_REFLECT_SIDE + uvec2(part % VCT_REFLECT_SIDE, part / VCT_REFLECT_SIDE));
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
-    float z = texelFetch(depth, pixel, 0).r;
-    vec3 radiance = z > 0.0 ? reflected_radiance(pixel, z) : vec3(0.0);
-    imageStore(specular, pixel, vec4(clamp(radiance, 0.0, HALF_MAX), 1.0));
+    float z = texelFetch(depth, pixel, 0).r, roughness = texelFetch(material, pixel, 0).r;
+    bool wide = set.tan_half == 0.0 && lobe_tail(brdf_alpha(roughness)) >= 1.0;
+    bool traced = z > 0.0 && !wide &&
+                  (roughness < LOBE_ROUGH_PIXEL || lobe_traces(pixel, set.stride, set.turn));
+    vec3 radiance = traced ? arriving_light(pixel, z, roughness) : vec3(0.0);
+    imageStore(arriving, pixel, vec4(clamp(radiance, 0.0, HALF_MAX), traced ? 1.0 : 0.0));
 }

@@ -24,6 +24,8 @@
 #include <math.h>
 
 static const float STILL_FRAMES = 4096.0f; // maximum weight while nothing changes
+// Maxima of reflections, whose history does not follow changes of light.
+static const float STILL_LOBE_FRAMES = 64.0f, MOVED_LOBE_FRAMES = 4.0f, MIRROR_FRAMES = 1.0f;
 
 void vct_temporal_invalidate(struct vct_temporal *t)
 {
@@ -81,8 +83,12 @@ void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, i
     t->params = (struct vct_history_params){ .known = known, .clamp = clamp };
     t->params.scale = t->unlit ? 1.0f : view->constants->previous_scale_ratio;
     t->params.most = history_weight(t->still, most);
+    const float lobe = fminf((float)most, moves || settles ? MOVED_LOBE_FRAMES : (float)most);
+    t->params.most_of_lobe = t->still > 0 ? STILL_LOBE_FRAMES : lobe;
+    t->params.most_of_mirror = t->still > 0 ? STILL_LOBE_FRAMES : fminf(lobe, MIRROR_FRAMES);
     follow(t, moves, known && settles);
     t->number = known ? t->number + (t->held == 0) : 0;
+    t->frame = known ? t->frame + 1 : 0;
     previous_image_plane(&t->camera, view->width, view->height, &t->params);
     t->camera = view->camera;
     t->newest = 1 - t->newest;

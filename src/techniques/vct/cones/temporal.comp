@@ -33,11 +33,8 @@ layout(set = 0, binding = 10) uniform writeonly image2D irradiance;
 layout(set = 0, binding = 11) uniform sampler2D last_now;
 layout(set = 0, binding = 12) uniform sampler2D last_change;
 layout(set = 0, binding = 13, rgba16f) uniform writeonly image2D change;
+#include "techniques/vct/cones/history.glsl"
 
-const float LEAST_COSINE = 0.9; // of two normals of one surface: 26 degrees
-const float TOLERANCE_PX = 4.0; // distance from the plane, in pixel widths at that depth
-const float LEAST = 0.1;        // sum of the four tap weights below which history is rejected
-const float NORMAL_STEPS = 4096.0;
 // Relative deviation of one frame from the mean over rotations: measured in a room with all
 // bounces.
 const float FRAME_NOISE = 0.025;
@@ -47,37 +44,6 @@ const float MOVED_SHARE = 0.25;
 const float LATER_BOUNCE = 0.5; // change of light by a bounce over that of the bounce before
 const int RADIUS = 2;           // of the neighbourhood of the clamp, px
 
-// Octahedral, two times 12 bits as an integer that a float represents exactly.
-float packed_normal(vec3 n)
-{
-    vec2 whole = round(clamp(octahedral_encode(n) * 0.5 + 0.5, 0.0, 1.0) * (NORMAL_STEPS - 1.0));
-    return whole.x + NORMAL_STEPS * whole.y;
-}
-
-vec3 unpacked_normal(float bits)
-{
-    float y = floor(bits / NORMAL_STEPS);
-    return octahedral_decode(vec2(bits - NORMAL_STEPS * y, y) / (NORMAL_STEPS - 1.0) * 2.0 - 1.0);
-}
-
-// Size of the image plane at a distance, in units of vct_history_params.
-float previous_scale(float distance_m)
-{
-    return mix(1.0, distance_m, set.perspective);
-}
-
-// Point relative to the previous camera.
-vec3 previous_point(vec2 pixel, float distance_m)
-{
-    return distance_m * set.forward +
-           previous_scale(distance_m) * (set.corner + pixel.x * set.right + pixel.y * set.down);
-}
-
-float normal_similarity(vec3 a, vec3 b)
-{
-    return clamp((dot(a, b) - LEAST_COSINE) / (1.0 - LEAST_COSINE), 0.0, 1.0);
-}
-
 struct history_sample {
     vec4 light;  // irradiance, weight in frames; 0 frames: rejected
     vec3 now;    // of the previous frame alone
@@ -86,28 +52,19 @@ struct history_sample {
 
 history_sample sample_history(vec2 history_pixel, float distance_m, vec3 n)
 {
-    vec3 expected = previous_point(history_pixel, distance_m);
-    float per_metre = 1.0 / (TOLERANCE_PX * set.pixel * previous_scale(distance_m)), weights = 0.0;
+    vec4 expected = history_expected(history_pixel, distance_m);
+    float weights = 0.0;
     history_sample sum = history_sample(vec4(0.0), vec3(0.0), vec3(0.0));
     for (int i = 0; i < 4; i++) {
         ivec2 at = reproject_tap(history_pixel, i);
-        if (any(lessThan(at, ivec2(0))) ||
-            any(greaterThanEqual(at, ivec2(frame.width, frame.height))))
-            continue;
-        vec2 stored = texelFetch(last_surface, at, 0).rg;
-        if (stored.x <= 0.0) continue;
-        vec3 stored_normal = unpacked_normal(stored.y);
-        float plane_distance_m =
-            abs(dot(stored_normal, previous_point(vec2(at), stored.x) - expected));
-        float weight = reproject_share(history_pixel, i) *
-                       max(1.0 - plane_distance_m * per_metre, 0.0) *
-                       normal_similarity(n, stored_normal);
+        float weight = history_weight(history_pixel, i, expected, n);
+        if (weight <= 0.0) continue;
         sum.light += weight * texelFetch(last_light, at, 0);
         if (set.follow != VCT_KEEP) sum.now += weight * texelFetch(last_now, at, 0).rgb;
         if (set.follow != VCT_KEEP) sum.change += weight * texelFetch(last_change, at, 0).rgb;
         weights += weight;
     }
-    float w = weights > LEAST ? 1.0 / weights : 0.0, scale = set.scale * w;
+    float w = weights > HISTORY_LEAST ? 1.0 / weights : 0.0, scale = set.scale * w;
     return history_sample(vec4(scale, scale, scale, w) * sum.light, scale * sum.now,
                           scale * sum.change);
 }
@@ -173,7 +130,7 @@ vec3 clamped(vec3 history, ivec2 pixel, vec3 here, vec3 n, float tolerance_m)
                 continue;
             float z = texelFetch(depth, at, 0).r;
             if (z <= 0.0 ||
-                dot(n, octahedral_decode(texelFetch(normal, at, 0).rg)) < LEAST_COSINE ||
+                dot(n, octahedral_decode(texelFetch(normal, at, 0).rg)) < HISTORY_LEAST_COSINE ||
                 abs(dot(n, position(at, z) - here)) > tolerance_m)
                 continue;
             vec3 value = texelFetch(now, at, 0).rgb;
@@ -206,8 +163,9 @@ void main()
                                                vec2(frame.jitter_step_x, frame.jitter_step_y)),
                                distance_before, n);
         if (set.clamp > 0.0 && history.light.w > 0.0)
-            history.light.rgb = clamped(history.light.rgb, pixel, position(pixel, z), n,
-                                        TOLERANCE_PX * set.pixel * previous_scale(distance_m));
+            history.light.rgb =
+                clamped(history.light.rgb, pixel, position(pixel, z), n,
+                        HISTORY_TOLERANCE_PX * set.pixel * previous_scale(distance_m));
         bool moves = moved.xyz != vec3(0.0);
         vec4 old = vec4(history.light.rgb, min(history.light.w, set.most));
         float added = 1.0; // frames

@@ -16,6 +16,7 @@ struct vct_temporal {
     bool unlit;                 // visibility is filtered: independent of lights and radiance scale
     struct kept kept;           // known: the history is valid
     uint32_t number;            // rotations since the history began
+    uint32_t frame;             // frames since then
     int held;                   // frames with the rotation of this one before it
     bool whole;                 // the first of them has added it to the mean with its whole weight
     uint32_t still;             // frames since anything changed

@@ -208,10 +208,11 @@ struct vct_ray_sum {
     float opacity;
     float previous; // opacity of the last face; 0 where that is not next to what follows
     uint face, place;
-    float visible; // visible part of the last face, not yet in `light`
+    float visible;  // visible part of the last face, not yet in `light`
+    float distance; // of the last face
 };
 
-void vct_ray_add(inout vct_ray_sum s, uvec2 face, float alpha)
+void vct_ray_add(inout vct_ray_sum s, uvec2 face, float alpha, float distance)
 {
     if (alpha <= 0.0) return;
     if (s.visible > 0.0) s.light += s.visible * vct_ray_light(s.face, s.place);
@@ -220,6 +221,7 @@ void vct_ray_add(inout vct_ray_sum s, uvec2 face, float alpha)
     s.visible = vct_visible_alpha(1.0 - s.opacity, alpha, min(s.previous + alpha, 1.0));
     s.opacity += s.visible;
     s.previous = alpha;
+    s.distance = distance;
 }
 
 // The two nearest faces of a voxel that a ray meets.
@@ -246,28 +248,42 @@ vct_ray_meeting vct_ray_meet(vct_ray ray, vct_ray_voxel v)
     return m;
 }
 
-// Premultiplied radiance and opacity along a ray from a surface of that normal, in voxels. decay:
-// of occlusion per voxel.
-vec4 vct_trace_ray(vec3 from, vec3 normal, vec3 direction, float decay)
+// Faces along a ray from a surface of that normal, in voxels, without the light of the last one.
+// decay: of occlusion per voxel.
+vct_ray_sum vct_ray_faces(vec3 from, vec3 normal, vec3 direction, float decay)
 {
     vct_ray ray = vct_ray_of(from, normal, direction);
     vct_ray_voxel v;
     v.last = 0.0;
-    vct_ray_sum s = vct_ray_sum(vec3(0.0), 0.0, 0.0, 0u, 0u, 0.0);
+    vct_ray_sum s = vct_ray_sum(vec3(0.0), 0.0, 0.0, 0u, 0u, 0.0, 0.0);
     float previous_end = 0.0;
     while (s.opacity < VCT_RAY_OPAQUE && vct_ray_next(ray, v)) {
         vct_ray_meeting m = vct_ray_meet(ray, v);
         s.previous = v.first > previous_end + 1.0 ? 0.0 : s.previous;
         previous_end = v.last;
         for (int i = 0; i < 2; i++) {
-            vct_ray_add(s, m.faces[i], m.alpha[i]);
+            vct_ray_add(s, m.faces[i], m.alpha[i], m.distance[i]);
             if (!VCT_OCCLUSION) continue;
             s.light += vec3(s.visible / (1.0 + decay * m.distance[i]));
             s.visible = 0.0;
         }
     }
-    if (s.visible > 0.0) s.light += s.visible * vct_ray_light(s.face, s.place);
-    return s.opacity > VCT_RAY_OPAQUE ? vec4(s.light / s.opacity, 1.0) : vec4(s.light, s.opacity);
+    return s;
+}
+
+// Premultiplied radiance and opacity; last: radiance of the last face.
+vec4 vct_ray_total(vct_ray_sum s, vec3 last)
+{
+    vec3 sum = s.light + s.visible * last;
+    return s.opacity > VCT_RAY_OPAQUE ? vec4(sum / s.opacity, 1.0) : vec4(sum, s.opacity);
+}
+
+vec4 vct_trace_ray(vec3 from, vec3 normal, vec3 direction, float decay)
+{
+    vct_ray_sum s = vct_ray_faces(from, normal, direction, decay);
+    vec3 last = vec3(0.0);
+    if (s.visible > 0.0) last = vct_ray_light(s.face, s.place);
+    return vct_ray_total(s, last);
 }
 
 #endif
