@@ -22,7 +22,7 @@ struct ag_option_info {
 
 struct ag_technique_info {
     const char *name, *title, *paper;
-    const char *role; ///< "source", "delta" or "visibility"
+    const char *role; ///< "source", "delta", "visibility" or "reflection"
     /// moving_geometry: its light follows objects that move, as drt's does those in free space.
     bool moving_geometry, moving_lights, needs_bake, makes_specular, publishes_probes;
     bool has_lightmap; ///< see lightmap.h

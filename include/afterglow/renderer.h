@@ -51,8 +51,8 @@ AG_API void ag_gbuffer_layout_default(struct ag_gbuffer_layout *layout);
 
 struct ag_renderer_desc {
     int width, height; ///< pixels, 1…16384; default 1280×720
-    /// GI spec: "source+delta+visibility"; default "none"; see ag_technique_get. A visibility
-    /// technique alone gets the source "ambient", with a warning.
+    /// GI spec: "source+delta+visibility+reflection"; default "none"; see ag_technique_get. A
+    /// visibility or reflection technique alone gets the source "ambient", with a warning.
     const char *gi;
     const char *frame_options; ///< "shadow_size=2048,…" or NULL; see ag_frame_option_get
     bool indirect_layer;       ///< keep the layer "indirect"; default false

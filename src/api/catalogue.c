@@ -78,9 +78,10 @@ static int preset_count(const struct technique *technique)
 
 bool ag_technique_get(int index, struct ag_technique_info *out)
 {
-    static const char *const role_names[] = {
-        [ROLE_SOURCE] = "source", [ROLE_DELTA] = "delta", [ROLE_VISIBILITY] = "visibility"
-    };
+    static const char *const role_names[] = { [ROLE_SOURCE] = "source",
+                                              [ROLE_DELTA] = "delta",
+                                              [ROLE_VISIBILITY] = "visibility",
+                                              [ROLE_REFLECTION] = "reflection" };
     const struct technique *technique = technique_at(index);
     if (!technique || !out) return false;
     uint32_t can = technique->capabilities;

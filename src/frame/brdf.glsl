@@ -83,12 +83,12 @@ vec3 brdf_bounce_reflectance(brdf_material m)
     return mix(m.albedo * brdf_transmitted(lobe) + lobe, metal, m.metallic);
 }
 
-#ifdef GGX_ALBEDO_BINDING
 float brdf_cosine(vec3 n, vec3 v)
 {
     return clamp(abs(dot(n, v)), 1e-4, 1.0);
 }
 
+#ifdef GGX_ALBEDO_BINDING
 brdf_lobes brdf_lobes_at(brdf_material m, float n_v)
 {
     vec2 ab = ggx_albedo_at(n_v, brdf_roughness(m.roughness));

@@ -330,9 +330,24 @@ static void record_term(struct gi *gi, int term, struct gpu_cmd *cmd, const stru
     }
 }
 
+// Sources that write no specular layer leave that of a reflection black.
+static void clear_specular(const struct gi *gi, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    const int last = gi->spec.count - 1;
+    uint32_t needs = 0;
+    for (int i = 0; i < last; i++) needs |= gi_term_needs(&gi->spec, i);
+    if (gi->spec.technique[last]->role != ROLE_REFLECTION || needs & FRAME_WRITES_SPECULAR) return;
+    enter(gi, last);
+    gpu_scope_begin(cmd, "clear");
+    gpu_clear_image(cmd, view->layers[FRAME_SPECULAR], (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
+    gpu_scope_end(cmd);
+    leave(gi);
+}
+
 static void gi_record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct gi *gi = user;
+    clear_specular(gi, cmd, view);
     for (int i = 0; i < gi->spec.count; i++) {
         enter(gi, i);
         record_term(gi, i, cmd, view);

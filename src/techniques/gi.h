@@ -4,10 +4,10 @@
 
 #include "techniques/technique.h"
 
-#define GI_MAX_TERMS 3
+#define GI_MAX_TERMS ROLE_COUNT
 
-// A parsed spec: at most one technique of each role, sorted as source, delta, visibility. There is
-// always a source: "vo" is "ambient+vo".
+// A parsed spec: at most one technique of each role, sorted as source, delta, visibility,
+// reflection. There is always a source: "vo" is "ambient+vo".
 struct gi_spec {
     struct host *host;
     int count;
@@ -78,7 +78,8 @@ bool gi_light_map(const struct gi *gi, int *term, gpu_image *out);
 bool gi_paint(struct gi *gi, const struct light_map_area *area);
 float gi_painted(const struct gi *gi); // largest painted irradiance, lux
 uint64_t gi_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height);
-uint32_t gi_spec_needs(const struct gi_spec *spec); // frame_need bits
+uint32_t gi_spec_needs(const struct gi_spec *spec);           // frame_need bits
+uint32_t gi_term_needs(const struct gi_spec *spec, int term); // those of one technique
 // Bytes that a further view of this size adds; apart: it shares no memory.
 uint64_t gi_view_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height,
                                  bool apart);

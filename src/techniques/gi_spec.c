@@ -1,4 +1,4 @@
-// Parsing and printing "source+delta+visibility".
+// Parsing and printing "source+delta+visibility+reflection".
 #include "techniques/gi.h"
 
 #include "techniques/gi_preset.h"
@@ -13,7 +13,7 @@ enum { MAX_KNOWN = 64, LIST_SIZE = 512 };
 
 static const char *role_name(enum technique_role role)
 {
-    static const char *const names[] = { "source", "delta", "visibility" };
+    static const char *const names[] = { "source", "delta", "visibility", "reflection" };
     return names[role];
 }
 
@@ -110,8 +110,8 @@ static bool add_technique(struct gi_spec *spec, const struct technique *techniqu
     for (int i = 0; i < spec->count; i++)
         if (spec->technique[i]->role == technique->role)
             return host_fail(host, FAIL_ARGUMENT,
-                             "cannot add %s to %s: a GI spec has at most one %s", technique->name,
-                             spec->technique[i]->name, role_name(technique->role));
+                             "cannot add %s to %s: a GI spec has at most one %s; leave one out",
+                             technique->name, spec->technique[i]->name, role_name(technique->role));
     void *values = host_alloc(host, 1, technique->options.size);
     if (!values) return false;
     if (!gi_options_read(host, technique, options, values)) {
@@ -128,9 +128,9 @@ static bool parse_term(struct gi_spec *spec, char *term, const struct technique 
     char *colon = strchr(term, ':');
     if (colon) *colon = 0;
     if (!term[0])
-        return host_fail(
-            spec->host, FAIL_ARGUMENT,
-            "cannot read the GI spec: a technique's name is missing (source+delta+visibility)");
+        return host_fail(spec->host, FAIL_ARGUMENT,
+                         "cannot read the GI spec: a technique's name is missing "
+                         "(source+delta+visibility+reflection)");
     const struct technique *technique = find_known(term, strlen(term), known);
     if (technique && colon && !check_options(spec->host, term, colon + 1, known)) return false;
     if (technique) return add_technique(spec, technique, colon ? colon + 1 : "");
@@ -169,8 +169,8 @@ static const struct technique *find_named(const struct technique *const *known, 
     return known[0];
 }
 
-// Occlusion shows on indirect light only, so that a visibility technique alone stands on `ambient`;
-// a delta that needs probes stands on a source that has them.
+// Occlusion shows on indirect light only, and reflections show surfaces with it: both alone stand
+// on `ambient`. A delta that needs probes stands on a source that has them.
 static bool add_default_source(struct gi_spec *spec, const struct technique *const *known)
 {
     const struct technique *source = known[0];
@@ -271,14 +271,17 @@ char *gi_spec_print(const struct gi_spec *spec)
     return text;
 }
 
+uint32_t gi_term_needs(const struct gi_spec *spec, int term)
+{
+    const struct technique *technique = spec->technique[term];
+    return technique->needs |
+           (technique->more_needs ? technique->more_needs(spec->options[term]) : 0);
+}
+
 uint32_t gi_spec_needs(const struct gi_spec *spec)
 {
     uint32_t needs = 0;
-    for (int i = 0; i < spec->count; i++) {
-        const struct technique *technique = spec->technique[i];
-        needs |= technique->needs;
-        if (technique->more_needs) needs |= technique->more_needs(spec->options[i]);
-    }
+    for (int i = 0; i < spec->count; i++) needs |= gi_term_needs(spec, i);
     return needs;
 }
 

@@ -12,6 +12,7 @@
 #include "techniques/prt/prt.h"
 #include "techniques/radiosity/radiosity.h"
 #include "techniques/ssao/ssao.h"
+#include "techniques/ssr/ssr.h"
 #include "techniques/vct/vct.h"
 #include "techniques/vo/vo.h"
 
@@ -27,7 +28,9 @@ const struct technique *const techniques[] = {
     &technique_dnrt,
 #endif
     // visibility
-    &technique_vo, &technique_ssao, &technique_hbao, &technique_gtao, &technique_vctao, NULL
+    &technique_vo, &technique_ssao, &technique_hbao, &technique_gtao, &technique_vctao,
+    // reflection
+    &technique_ssr, NULL
 };
 
 const struct technique_debug_view *technique_find_view(const struct technique *technique,

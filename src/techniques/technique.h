@@ -1,6 +1,6 @@
 // The interface of a technique: one const struct, data first, then functions in the order of their
-// calls. A frame is lit by a GI stack, whose spec is written as "source+delta+visibility", for
-// example "lpv" or "mrt+dnrt+vo".
+// calls. A frame is lit by a GI stack, whose spec is written as
+// "source+delta+visibility+reflection", for example "lpv" or "mrt+dnrt+vo+ssr".
 #pragma once
 
 #include "bake/bake.h"
@@ -11,7 +11,16 @@
 #include "techniques/common/light_map/paint.h"
 #include "techniques/common/probes/volume.h"
 
-enum technique_role { ROLE_SOURCE, ROLE_DELTA, ROLE_VISIBILITY };
+// In the order in which they record.
+enum technique_role {
+    ROLE_SOURCE,
+    ROLE_DELTA,
+    ROLE_VISIBILITY,
+    // Blends reflections into FRAME_SPECULAR, which has the source's by then: 0 where it writes
+    // none.
+    ROLE_REFLECTION,
+    ROLE_COUNT
+};
 
 enum technique_capability {
     CAN_MOVE_GEOMETRY = 1,

@@ -186,9 +186,9 @@ struct ag_image *fixture_read_from(struct renderer_fixture *s, struct ag_rendere
 void fixture_print_base(int technique, const struct ag_technique_info *info, char *out)
 {
     struct ag_option_info o;
-    const bool visibility = strcmp(info->role, "visibility") == 0;
-    size_t used =
-        (size_t)snprintf(out, FIXTURE_SPEC, "%s%s", visibility ? "ambient+" : "", info->name);
+    const bool added =
+        strcmp(info->role, "visibility") == 0 || strcmp(info->role, "reflection") == 0;
+    size_t used = (size_t)snprintf(out, FIXTURE_SPEC, "%s%s", added ? "ambient+" : "", info->name);
     char separator = ':';
     for (int k = 0; ag_technique_option_get(technique, k, &o); k++) {
         if (strcmp(o.effect, "rebake") != 0 || strcmp(o.type, "int") != 0) continue;

@@ -289,4 +289,5 @@ void input_spec(struct render_input *in, char out[INPUT_SPEC_SIZE])
     print_technique(in, source, delta, out);
     if (delta) print_technique(in, technique_of("delta", 0), false, out);
     if (more & 2) print_technique(in, technique_of("visibility", more >> 2), false, out);
+    if (more & 128) print_technique(in, technique_of("reflection", 0), false, out);
 }

@@ -41,7 +41,8 @@ static const struct technique_preset fake_presets[] = { { "low", "bias=0.5" },
     }
 static const struct technique still = FAKE("still", ROLE_SOURCE),
                               light = FAKE("light", ROLE_SOURCE), delta = FAKE("delta", ROLE_DELTA),
-                              shade = FAKE("shade", ROLE_VISIBILITY);
+                              shade = FAKE("shade", ROLE_VISIBILITY),
+                              mirror = FAKE("mirror", ROLE_REFLECTION);
 static const struct technique graded = {
     .name = "graded",
     .title = "fake",
@@ -54,7 +55,8 @@ static const struct technique graded = {
     .options = OPTION_TABLE(struct fake_options, fake_rows, fake_aliases),
     .presets = fake_presets,
 };
-static const struct technique *const fakes[] = { &still, &light, &delta, &shade, &graded, NULL };
+static const struct technique *const fakes[] = { &still,  &light,  &delta, &shade,
+                                                 &mirror, &graded, NULL };
 
 static void parses_as(const char *text, const char *printed)
 {
@@ -81,6 +83,8 @@ TEST(gi_spec_terms_may_have_any_order)
     parses_as("light:bias=2+delta+shade", "light:bias=2+delta:bias=1+shade:bias=1");
     parses_as("shade+light:bias=2+delta", "light:bias=2+delta:bias=1+shade:bias=1");
     parses_as("delta+shade+light:bias=2", "light:bias=2+delta:bias=1+shade:bias=1");
+    parses_as("mirror+shade+delta+light", "light:bias=1+delta:bias=1+shade:bias=1+mirror:bias=1");
+    parses_as("mirror:bias=3", "still:bias=1+mirror:bias=3");
 }
 
 TEST(gi_spec_without_a_source_has_the_first_one)
@@ -89,12 +93,12 @@ TEST(gi_spec_without_a_source_has_the_first_one)
     parses_as("shade:bias=3", "still:bias=1+shade:bias=3");
 }
 
-TEST(gi_spec_of_visibility_alone_stands_on_ambient)
+TEST(gi_spec_of_visibility_or_reflection_alone_stands_on_ambient)
 {
     int found = 0;
     for (size_t i = 0; techniques[i]; i++) {
         struct gi_spec spec;
-        if (techniques[i]->role != ROLE_VISIBILITY) continue;
+        if (techniques[i]->role < ROLE_VISIBILITY) continue;
         CHECK(gi_spec_parse(&spec, test_host(), techniques[i]->name));
         assert_int_equal(spec.count, 2);
         CHECK_STRING(spec.technique[0]->name, "ambient");
@@ -134,7 +138,7 @@ TEST(gi_spec_errors_name_the_mistake_and_the_nearest_name)
     fails_with("light,bias=2", "did you mean light:bias=2?");
     fails_with("lihgt,bias=2", "unknown technique lihgt,bias=2");
     fails_with("lighr", "unknown technique lighr: did you mean light?");
-    fails_with("xyzzyxyzzy", "known are still, light, delta, shade, graded");
+    fails_with("xyzzyxyzzy", "known are still, light, delta, shade, mirror, graded");
     fails_with("light:bais=1", "bias");
     fails_with("light:bias=x", "light:bias");
     fails_with("light+still", "at most one source");

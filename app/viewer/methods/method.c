@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const method_roles[ROLE_COUNT] = { "source", "delta", "visibility" };
+const char *const method_roles[ROLE_COUNT] = { "source", "delta", "visibility", "reflection" };
 
 // ---- options
 

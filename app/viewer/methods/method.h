@@ -1,11 +1,12 @@
-// A method as the user chooses it: a source, a delta and a visibility technique of the catalogue,
-// each with all its options. Options of techniques that are not chosen keep their values.
+// A method as the user chooses it: a source, a delta, a visibility and a reflection technique of
+// the catalogue, each with all its options. Options of techniques that are not chosen keep their
+// values.
 #pragma once
 
 #include <afterglow/afterglow.h>
 
 enum { METHOD_TECHNIQUES = 24, METHOD_OPTIONS = 40, METHOD_VALUE = 768, METHOD_SPEC = 8192 };
-enum method_role { ROLE_SOURCE, ROLE_DELTA, ROLE_VISIBILITY, ROLE_COUNT };
+enum method_role { ROLE_SOURCE, ROLE_DELTA, ROLE_VISIBILITY, ROLE_REFLECTION, ROLE_COUNT };
 
 struct method {
     int chosen[ROLE_COUNT]; // indices of the catalogue; -1: none

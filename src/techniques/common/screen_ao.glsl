@@ -119,13 +119,6 @@ vec3 screen_normal(vec3 world)
     return vec3(dot(world, view.right), dot(world, view.down), dot(world, view.forward));
 }
 
-// Index of the pixel's pattern: a 4 × 4 Bayer matrix, the footprint of the blur.
-uint screen_pattern(uvec2 pixel)
-{
-    uint x = pixel.x ^ pixel.y;
-    return (x & 1u) << 3 | (pixel.y & 1u) << 2 | (x & 2u) | (pixel.y & 2u) >> 1;
-}
-
 // Rotation of the pattern in 0…1: a golden-ratio sequence, uniform for any symmetry of the samples.
 float screen_rotation(uint pattern)
 {

@@ -7,6 +7,7 @@
 #extension GL_EXT_control_flow_attributes : require
 
 #include "frame/octahedral.glsl"
+#include "techniques/common/pattern.glsl"
 #include "techniques/common/screen_ao.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -17,7 +18,7 @@ layout(set = 0, binding = 3, rg32f) uniform writeonly image2D estimate;
 
 struct screen_point {
     ivec2 pixel;  // of the frame
-    uint pattern; // index of its rotated sample set
+    uint pattern; // of the blur's footprint: index of its rotated sample set
     float depth;
     vec3 n; // faces the camera; x right, y down, z forward
 };
@@ -28,7 +29,7 @@ screen_point point_at(ivec2 work, float depth)
 {
     ivec2 pixel = work * SCREEN_AO_STEP;
     vec3 n = screen_normal(octahedral_decode(texelFetch(normal, pixel, 0).rg));
-    return screen_point(pixel, screen_pattern(uvec2(work)), depth, n);
+    return screen_point(pixel, pattern_4x4(uvec2(work)), depth, n);
 }
 
 void main()

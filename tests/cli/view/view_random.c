@@ -125,6 +125,7 @@ static void draw_gi(struct writer *w, char spec[SPEC_SIZE])
     if (!delta || draw(w, 8) == 0) add_technique(w, draw_technique(w, "source"), spec);
     if (delta) add_technique(w, draw_technique(w, "delta"), spec);
     if (draw(w, 3) == 0) add_technique(w, draw_technique(w, "visibility"), spec);
+    if (draw(w, 4) == 0) add_technique(w, draw_technique(w, "reflection"), spec);
 }
 
 static void write_gi(struct writer *w)
@@ -191,6 +192,7 @@ static void write_click(struct writer *w)
         "source",
         "delta",
         "visibility",
+        "reflection",
         "with",
         "side by side",
         "Copy as command",

@@ -105,9 +105,14 @@ TEST_GPU(techniques_give_exactly_zero_without_light)
 TEST_GPU(techniques_give_the_same_bytes_in_every_run_and_frame)
 {
     for (size_t t = 0; techniques[t]; t++) {
-        const bool source = techniques[t]->role == ROLE_SOURCE;
-        const enum frame_readback what = source ? READ_IRRADIANCE : READ_VISIBILITY;
-        const size_t floats = source ? FLOATS : FLOATS / 3;
+        static const enum frame_readback results[ROLE_COUNT] = { [ROLE_SOURCE] = READ_IRRADIANCE,
+                                                                 [ROLE_DELTA] = READ_IRRADIANCE,
+                                                                 [ROLE_VISIBILITY] =
+                                                                     READ_VISIBILITY,
+                                                                 [ROLE_REFLECTION] =
+                                                                     READ_SPECULAR };
+        const enum frame_readback what = results[techniques[t]->role];
+        const size_t floats = what == READ_VISIBILITY ? FLOATS / 3 : FLOATS;
         float *first = layer(gpu, techniques[t]->name, 3, 1.0f, 1, what);
         float *again = layer(gpu, techniques[t]->name, 3, 1.0f, 1, what);
         float *later = layer(gpu, techniques[t]->name, 3, 1.0f, 3, what);

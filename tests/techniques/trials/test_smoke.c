@@ -9,12 +9,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A room with a box, a sun and a point light.
+// A room with a polished floor, a box, a sun and a point light.
 static void room(struct frame_fixture *s, struct gpu *gpu)
 {
+    struct material polished = material_default();
+    polished.metallic = 0;
+    polished.roughness = 0.1f;
     fixture_init(s, gpu);
     const int matte = fixture_matte(s, vec3_of(0.7f, 0.6f, 0.5f));
-    fixture_floor(s, 3, matte);
+    fixture_floor(s, 3, fixture_material(s, &polished));
     fixture_box(s, vec3_of(-0.5f, 0, -0.5f), vec3_of(0.5f, 1, 0.5f), false, matte);
     fixture_quad(s, vec3_of(-3, 0, -3), vec3_of(3, 0, -3), vec3_of(3, 3, -3), vec3_of(-3, 3, -3),
                  matte);
@@ -35,6 +38,10 @@ static void finite_frames(struct frame_fixture *s, int count)
     float *v = fixture_read(s, READ_VISIBILITY);
     for (size_t i = 0; i < (size_t)s->width * s->height; i++) CHECK(v[i] >= 0.0f && v[i] <= 1.0f);
     free(v);
+    float *r = fixture_read(s, READ_SPECULAR);
+    for (size_t i = 0; i < (size_t)s->width * s->height * 3; i++)
+        CHECK(isfinite(r[i]) && r[i] >= 0.0f);
+    free(r);
 }
 
 // A technique with more options; at its lowest quality, if it has one: bakes take a part of the
@@ -159,7 +166,7 @@ TEST_GPU(techniques_survive_empty_scenes)
     fixture_finish(&s);
 }
 
-// Bytes of a spec's techniques: a visibility technique alone stands on another.
+// Bytes of a spec's techniques: those of visibility and reflection alone stand on another.
 static uint64_t memory_of(struct gpu *gpu, const struct gi_spec *spec)
 {
     struct gpu_memory owners[32];

@@ -1,0 +1,47 @@
+// The distribution of visible normals of GGX (Heitz 2018, "Sampling the GGX Distribution of Visible
+// Normals"): directions, their density, and the lobe itself without Fresnel's factor.
+#ifndef AG_SSR_LOBE_GLSL
+#define AG_SSR_LOBE_GLSL
+
+#include "core/math.glsl"
+
+// v: unit, in tangent space; u: 0…1.
+vec3 ssr_visible_normal(vec3 v, float alpha, vec2 u)
+{
+    vec3 stretched = normalize(vec3(alpha * v.xy, v.z));
+    float across = dot(stretched.xy, stretched.xy);
+    vec3 first = across > 1.0e-12 ? vec3(-stretched.y, stretched.x, 0.0) * inversesqrt(across)
+                                  : vec3(1.0, 0.0, 0.0);
+    vec3 second = cross(stretched, first);
+    float r = sqrt(u.x), angle = 2.0 * PI * u.y;
+    vec2 disk = r * vec2(cos(angle), sin(angle));
+    disk.y = mix(sqrt(max(1.0 - disk.x * disk.x, 0.0)), disk.y, 0.5 * (1.0 + stretched.z));
+    vec3 n = disk.x * first + disk.y * second + sqrt(max(1.0 - dot(disk, disk), 0.0)) * stretched;
+    return normalize(vec3(alpha * n.xy, max(n.z, 1.0e-6)));
+}
+
+// D of the half-vector: sin² by the cross product, as in brdf_specular.
+float ssr_distribution(vec3 n, vec3 h, float a2)
+{
+    vec3 across = cross(n, h);
+    float n_h = clamp(dot(n, h), 0.0, 1.0);
+    float base = dot(across, across) + n_h * n_h * a2;
+    return a2 * INV_PI / (base * base);
+}
+
+// Density of a sampled direction, 1/sr: G1 D / (4 n·v).
+float ssr_density(float distribution, float n_v, float a2)
+{
+    float root = sqrt(n_v * n_v * (1.0 - a2) + a2);
+    return distribution * 0.5 / (n_v + root);
+}
+
+// D V n·l, 1/sr.
+float ssr_lobe(float distribution, float n_v, float n_l, float a2)
+{
+    float smith_v = n_l * sqrt(n_v * n_v * (1.0 - a2) + a2);
+    float smith_l = n_v * sqrt(n_l * n_l * (1.0 - a2) + a2);
+    return distribution * n_l * 0.5 / (smith_v + smith_l);
+}
+
+#endif

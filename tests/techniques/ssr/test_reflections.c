@@ -1,0 +1,262 @@
+// Reflections in screen space against closed forms: a mirror, a furnace, rays without a hit.
+#include "core/ggx_albedo.h"
+#include "frame/frame_fixture.h"
+#include "techniques/gi_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT };
+
+static const float MARGIN_M = 0.25f; // some pixels at the panel's distance
+static const float WALL_Z = -3, EMISSION = 1000, REFLECTANCE = 0.8f;
+static const struct box3 panel = { { { -1.5f, 0.5f, -3 } }, { { 1.5f, 2, -3 } } };
+
+static int metal(struct frame_fixture *s, float roughness)
+{
+    struct material m = material_default();
+    m.base_color = vec4_of(vec3_of(REFLECTANCE, REFLECTANCE, REFLECTANCE), 1);
+    m.metallic = 1;
+    m.roughness = roughness;
+    return fixture_material(s, &m);
+}
+
+static void begin(struct frame_fixture *s, struct gpu *gpu)
+{
+    fixture_init(s, gpu);
+    s->width = WIDTH;
+    s->height = HEIGHT;
+}
+
+static float *light(struct frame_fixture *s, const char *gi, int frames, enum frame_readback what)
+{
+    struct gi *stack = gi_fixture_light(s, gi);
+    for (int i = 0; i < frames; i++) fixture_render(s);
+    float *out = fixture_read(s, what);
+    gi_destroy(stack);
+    fixture_finish(s);
+    return out;
+}
+
+// A metal floor before a black wall with an emissive panel.
+static void open_floor(struct frame_fixture *s, struct gpu *gpu, float roughness, float emission)
+{
+    begin(s, gpu);
+    const vec3s a = panel.min, c = panel.max;
+    fixture_floor(s, 3, metal(s, roughness));
+    fixture_quad(s, vec3_of(-3, 0, WALL_Z - 0.01f), vec3_of(3, 0, WALL_Z - 0.01f),
+                 vec3_of(3, 3, WALL_Z - 0.01f), vec3_of(-3, 3, WALL_Z - 0.01f),
+                 fixture_emissive(s, 0, 0));
+    fixture_quad(s, a, vec3_of(c.x, a.y, a.z), c, vec3_of(a.x, c.y, a.z),
+                 fixture_emissive(s, 0, emission));
+    fixture_look(s, vec3_of(0, 1.4f, 2.8f), vec3_of(0, 0.6f, -3));
+    fixture_open(s);
+}
+
+static float *floor_specular(struct gpu *gpu, const char *gi, float roughness, float emission,
+                             int frames)
+{
+    struct frame_fixture s;
+    open_floor(&s, gpu, roughness, emission);
+    return light(&s, gi, frames, READ_SPECULAR);
+}
+
+// Directional albedo of the metal's lobe (brdf.glsl).
+static double metal_albedo(float n_v, float roughness)
+{
+    const struct ggx_albedo t = ggx_albedo_at(n_v, fmaxf(roughness, GGX_MIN_ROUGHNESS));
+    const float single = t.a + t.b;
+    return (double)((REFLECTANCE * t.a + t.b) * (1 + REFLECTANCE * (1 - single) / single));
+}
+
+// Signed distance in m of the point that a pixel of the floor mirrors from the panel's border, > 0
+// inside; NAN: the pixel is not of the floor.
+static float inside_panel(const struct frame_fixture *s, int pixel, float *n_v)
+{
+    const uint32_t x = (uint32_t)(pixel % WIDTH), y = (uint32_t)(pixel / WIDTH);
+    const vec3s eye = s->input.camera.eye;
+    const vec3s p = fixture_ray_on_plane(s, x, y, vec3_of(0, 1, 0), 0);
+    const vec3s to = glms_vec3_sub(p, eye);
+    if (fixture_ray(s, (float)x + 0.5f, (float)y + 0.5f).y >= 0 || fabsf(p.x) > 2.9f ||
+        fabsf(p.z) > 2.9f)
+        return NAN;
+    const float t = (WALL_Z - p.z) / to.z;
+    const float hit_x = p.x + t * to.x, hit_y = -t * to.y;
+    *n_v = -to.y / glms_vec3_norm(to);
+    return fminf(fminf(hit_x - panel.min.x, panel.max.x - hit_x),
+                 fminf(hit_y - panel.min.y, panel.max.y - hit_y));
+}
+
+TEST_GPU(a_mirror_reflects_the_radiance_of_a_panel)
+{
+    struct frame_fixture s;
+    open_floor(&s, gpu, 0, EMISSION);
+    const struct frame_fixture camera = s;
+    float *specular = light(&s, "none+ssr:border=0", 1, READ_SPECULAR);
+    int lit = 0, dark = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        float n_v = 1;
+        const float inside = inside_panel(&camera, i, &n_v);
+        if (inside > MARGIN_M) {
+            CHECK_RELATIVE((double)specular[3 * i], (double)EMISSION * metal_albedo(n_v, 0), 0.02);
+            lit++;
+        } else if (inside < -MARGIN_M) {
+            CHECK(specular[3 * i] == 0.0f);
+            dark++;
+        }
+    }
+    print_message("%d pixels mirror the panel, %d do not\n", lit, dark);
+    CHECK(lit > 200 && dark > 200);
+    free(specular);
+}
+
+static double total(const float *values)
+{
+    double sum = 0;
+    for (int i = 0; i < 3 * PIXELS; i++) sum += (double)values[i];
+    return sum;
+}
+
+// Rough lobes blur the mirror image of the panel and keep its light: the sum changes by that which
+// leaves the floor, and by Fresnel's factor.
+TEST_GPU(a_rough_floor_reflects_as_much_as_a_mirror)
+{
+    float *mirror = floor_specular(gpu, "none+ssr:border=0", 0, EMISSION, 1);
+    float *rough = floor_specular(gpu, "none+ssr:border=0,max_roughness=1", 0.2f, EMISSION, 1);
+    print_message("rough over mirror: %.4f\n", total(rough) / total(mirror));
+    CHECK_RELATIVE(total(rough), total(mirror), 0.1);
+    free(mirror);
+    free(rough);
+}
+
+TEST_GPU(half_the_light_gives_half_the_reflection)
+{
+    float *full = floor_specular(gpu, "none+ssr", 0.2f, EMISSION, 1);
+    float *half = floor_specular(gpu, "none+ssr", 0.2f, 0.5f * EMISSION, 1);
+    CHECK(total(full) > 0);
+    for (int i = 0; i < 3 * PIXELS; i++) CHECK(half[i] == 0.5f * full[i]);
+    free(full);
+    free(half);
+}
+
+TEST_GPU(equal_frames_have_equal_reflections)
+{
+    float *first = floor_specular(gpu, "none+ssr", 0.2f, EMISSION, 1);
+    float *again = floor_specular(gpu, "none+ssr", 0.2f, EMISSION, 1);
+    float *later = floor_specular(gpu, "none+ssr", 0.2f, EMISSION, 3);
+    assert_memory_equal(first, again, 3 * PIXELS * sizeof *first);
+    assert_memory_equal(first, later, 3 * PIXELS * sizeof *first);
+    free(first);
+    free(again);
+    free(later);
+}
+
+static double noise(const float *values, const float *mean)
+{
+    double total = 0;
+    for (int i = 0; i < 3 * PIXELS; i++) total += pow((double)values[i] - (double)mean[i], 2);
+    return sqrt(total);
+}
+
+TEST_GPU(frames_accumulate_to_less_noise)
+{
+    const char *gi = "none+ssr:temporal=true,reuse=1";
+    float *mean = floor_specular(gpu, gi, 0.2f, EMISSION, 16);
+    float *first = floor_specular(gpu, gi, 0.2f, EMISSION, 1);
+    float *later = floor_specular(gpu, gi, 0.2f, EMISSION, 15);
+    print_message("noise: %.0f in the first frame, %.0f later\n", noise(first, mean),
+                  noise(later, mean));
+    CHECK(noise(later, mean) < 0.3 * noise(first, mean));
+    free(mean);
+    free(first);
+    free(later);
+}
+
+// Seen from above, the floor reflects nothing that is in the image.
+static float *from_above(struct gpu *gpu, const char *gi, float roughness)
+{
+    struct frame_fixture s;
+    begin(&s, gpu);
+    fixture_box(&s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, metal(&s, roughness));
+    fixture_add_point(&s, vec3_of(1, 2.5f, 1), vec3_of(100, 100, 100));
+    fixture_look(&s, vec3_of(0, 2.9f, 0), vec3_of(0.001f, 0, 0));
+    s.input.camera.vertical_fov_rad = 0.5f;
+    fixture_open(&s);
+    return light(&s, gi, 1, READ_SPECULAR);
+}
+
+TEST_GPU(rays_that_leave_the_image_keep_the_light_of_the_source)
+{
+    float *source = from_above(gpu, "vct:resolution=16,specular=true", 0.2f);
+    float *both = from_above(gpu, "vct:resolution=16,specular=true+ssr", 0.2f);
+    CHECK(total(source) > 0);
+    assert_memory_equal(source, both, 3 * PIXELS * sizeof *source);
+    free(source);
+    free(both);
+}
+
+// A metal box in a black room of uniform emission: whatever a ray can hit has the same radiance.
+static void open_furnace(struct frame_fixture *s, struct gpu *gpu, float roughness)
+{
+    fixture_init_furnace(s, gpu, 0, EMISSION);
+    s->width = WIDTH;
+    s->height = HEIGHT;
+    fixture_box(s, vec3_of(-0.5f, 0, -1), vec3_of(0.7f, 1, 0.3f), false, metal(s, roughness));
+    fixture_open(s);
+}
+
+static float *furnace(struct gpu *gpu, const char *gi, float roughness, enum frame_readback what)
+{
+    struct frame_fixture s;
+    open_furnace(&s, gpu, roughness);
+    return light(&s, gi, 1, what);
+}
+
+static double furnace_specular(const float *position, const float *normal, vec3s eye,
+                               float roughness)
+{
+    const vec3s to = glms_vec3_sub(eye, vec3_of(position[0], position[1], position[2]));
+    const vec3s n = vec3_of(normal[0], normal[1], normal[2]);
+    return (double)EMISSION *
+           metal_albedo(fabsf(glms_vec3_dot(n, to)) / glms_vec3_norm(to), roughness);
+}
+
+// Pixels have the light of the furnace, or lie between it and the light of the source, whose coarse
+// voxels have an error. Beside its lower edges the box is a pixel or two from the hits, and darker:
+// their filter includes it.
+TEST_GPU(a_furnace_stays_uniform)
+{
+    static const float roughnesses[] = { 0, 0.1f, 0.2f, 0.3f };
+    static const char source_gi[] = "vct:resolution=16,specular=true";
+    static const char both_gi[] = "vct:resolution=16,specular=true+ssr";
+    struct frame_fixture camera;
+    open_furnace(&camera, gpu, 0);
+    const vec3s eye = camera.input.camera.eye;
+    fixture_finish(&camera);
+    float *position = furnace(gpu, "none", 0, READ_POSITION);
+    float *normal = furnace(gpu, "none", 0, READ_NORMAL);
+    for (int r = 0; r < 4; r++) {
+        float *source = furnace(gpu, source_gi, roughnesses[r], READ_SPECULAR);
+        float *both = furnace(gpu, both_gi, roughnesses[r], READ_SPECULAR);
+        int changed = 0, exact = 0, others = 0;
+        double sum = 0;
+        for (int i = 0; i < 3 * PIXELS; i += 3) {
+            if (both[i] == source[i]) continue;
+            const double expected = furnace_specular(position + i, normal + i, eye, roughnesses[r]);
+            const double error = fabs((double)both[i] / expected - 1);
+            changed++;
+            exact += error < 0.02;
+            others += error > 0.05 && error > fabs((double)source[i] / expected - 1);
+            sum += (double)both[i] / expected;
+        }
+        print_message("roughness %.1f: %d pixels change, %d are exact, %d worse; mean %.4f\n",
+                      (double)roughnesses[r], changed, exact, others, sum / changed);
+        CHECK(changed > 300 && exact > 0.8 * changed && others < 0.025 * changed);
+        CHECK_NEAR(sum / changed, 1, 0.03);
+        free(source);
+        free(both);
+    }
+    free(position);
+    free(normal);
+}

@@ -1,0 +1,1 @@
+ag_technique_tests(ssr/reflections)
