@@ -144,18 +144,32 @@ static void block(struct shape_builder *builder, float height, const float corne
     }
 }
 
+// White as the other walls, with a specular lobe where it is not matte.
+static int add_floor(struct scene *scene, const struct cornell_options *options, int white)
+{
+    const float roughness = options->floor_roughness, metallic = options->floor_metallic;
+    if (roughness == 1.0f && metallic == 0.0f) return white;
+    struct material material = material_default();
+    material.name = "floor";
+    material.base_color = vec4_of(WHITE, 1);
+    material.roughness = roughness;
+    material.metallic = metallic;
+    return scene_add_material(scene, &material);
+}
+
 static bool build_shell(struct scene *scene, const struct cornell_options *options)
 {
     int white = builtin_diffuse(scene, "white", WHITE);
     int red = builtin_diffuse(scene, "red", RED);
     int green = builtin_diffuse(scene, "green", GREEN);
-    if (white < 0 || red < 0 || green < 0) return false;
+    const int floor = add_floor(scene, options, white);
+    if (white < 0 || red < 0 || green < 0 || floor < 0) return false;
     vec3s corner[8];
     shell_corners(corner);
     struct shape_builder builder;
     shape_begin(&builder, scene);
     shell_face(&builder, corner, FLOOR);
-    if (shape_emit(&builder, "floor", white) < 0) return false;
+    if (shape_emit(&builder, "floor", floor) < 0) return false;
     if (options->ceiling) {
         ceiling(&builder, corner, options->light == CORNELL_QUAD);
         if (shape_emit(&builder, "ceiling", white) < 0) return false;
