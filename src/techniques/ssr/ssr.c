@@ -12,8 +12,10 @@
 enum { LOCAL = 8, PATTERN = 16, TEMPORAL_FRAMES = 16 };
 enum { SSR_REUSE_1, SSR_REUSE_4, SSR_REUSE_16 };
 
-// Wider mips have less noise, and blur; frames that accumulate have less noise anyway.
+// Single frames are blurred against noise, which frames that accumulate have less of: wider mips,
+// and smoother surfaces (roughness) before rays are spread over the whole lobe.
 static const float MIP_SCALE = 2, ACCUMULATED_MIP_SCALE = 0.5f;
+static const float SPREAD = 0.2f, ACCUMULATED_SPREAD = 0.1f;
 
 struct ssr_options {
 #define OPTION OPTION_FIELD
@@ -168,6 +170,7 @@ static struct ssr_params params_of(const struct ssr *ssr, const struct frame_vie
         .thickness_m = o->thickness,
         .max_roughness = o->max_roughness,
         .mip_scale = o->temporal ? ACCUMULATED_MIP_SCALE : MIP_SCALE,
+        .spread_roughness = o->temporal ? ACCUMULATED_SPREAD : SPREAD,
         .border_px = o->border * (float)view->height,
         .pixel_m = frame_camera_pixel(&view->camera, view->width, view->height),
         .focal_px = 1.0f / frame_camera_pixel(&view->camera, view->width, view->height),

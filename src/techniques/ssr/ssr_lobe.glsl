@@ -5,6 +5,15 @@
 
 #include "core/math.glsl"
 
+const float SSR_MIRROR_ROUGHNESS = 0.05; // smoother surfaces are mirrors: rays without noise
+
+// Share of the lobe over which rays are spread. The lobe of a smooth surface is narrower than the
+// distance of neighbours' hits: they cannot average each other's noise, and mips do.
+float ssr_spread(float roughness, float whole_from)
+{
+    return smoothstep(SSR_MIRROR_ROUGHNESS, whole_from, roughness);
+}
+
 // v: unit, in tangent space; u: 0…1.
 vec3 ssr_visible_normal(vec3 v, float alpha, vec2 u)
 {

@@ -22,11 +22,11 @@ struct ssr_params {
     float has_visibility; // 1, or 0: no technique of the stack writes visibility
     float thickness_m;
     float max_roughness;
-    float border_px; // over which reflections fade
-    float pixel_m;   // width of a pixel at 1 m, or at any distance in orthographic views
-    float focal_px;  // 1 / pixel_m
-    float mip_scale; // width of a mip's texel over that of a ray's part of the lobe
-    uint32_t padding;
+    float border_px;        // over which reflections fade
+    float pixel_m;          // width of a pixel at 1 m, or at any distance in orthographic views
+    float focal_px;         // 1 / pixel_m
+    float mip_scale;        // width of a mip's texel over that of a ray's part of the lobe
+    float spread_roughness; // from which on rays are spread over the whole lobe
 };
 
 // Push constants of the debug views.

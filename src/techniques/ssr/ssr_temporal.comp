@@ -1,7 +1,7 @@
 // Temporal accumulation of reflections: the mean over up to 16 frames. History is looked up twice,
 // along the motion of the surface and of its virtual image behind the surface, which moves with the
 // hit's parallax (Stachowiak 2015); that nearer to the pixel's neighbourhood is taken, and clamped
-// to it.
+// to it. Mirrors have no noise, and no history, which resampling would blur.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -16,6 +16,7 @@
 #include "techniques/common/reproject.glsl"
 #define SSR_BINDING 1
 #include "techniques/ssr/ssr_block.glsl"
+#include "techniques/ssr/ssr_lobe.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -111,7 +112,9 @@ vec4 accumulated(ivec2 pixel, ssr_surface s, float distance_m, out float frames)
     past chosen = by_surface;
     if (image) chosen = by_image;
     bool known = ssr_of.has_history != 0u && before_m > 0.0 && chosen.frames > 0.0;
-    frames = known ? min(chosen.frames + 1.0, MAX_FRAMES) : 1.0;
+    float most_frames =
+        max(MAX_FRAMES * ssr_spread(s.material.roughness, ssr_of.spread_roughness), 1.0);
+    frames = known ? min(chosen.frames + 1.0, most_frames) : 1.0;
     vec4 most = near.mean + DEVIATIONS * near.deviation;
     vec4 least = near.mean - DEVIATIONS * near.deviation;
     return mix(clamp(chosen.light, least, most), now, 1.0 / frames);

@@ -32,16 +32,6 @@ layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D rays; // radianc
 
 const float FULL_CONFIDENCE = 0.5; // of the thickness: hits up to there behind a surface
 const float LEAST_COSINE = 0.05;   // of normal and line of sight
-// Smoother surfaces are mirrors, whose rays have no noise; from the second on rays are spread over
-// the whole lobe.
-const float MIRROR_ROUGHNESS = 0.05, SPREAD_ROUGHNESS = 0.2;
-
-// Share of the lobe over which rays are spread. The lobe of a smooth surface is narrower than the
-// distance of neighbours' hits: they cannot average each other's noise, and mips do.
-float spread_of(float roughness)
-{
-    return smoothstep(MIRROR_ROUGHNESS, SPREAD_ROUGHNESS, roughness);
-}
 
 // Points of the R2 sequence (Roberts 2018): those of 16 neighbours are successive ones.
 vec2 sample_of(ivec2 work)
@@ -58,7 +48,8 @@ float mip_of(vec3 from, vec4 hit, float density, float spread)
     float rays = mix(1.0, float(REUSE * REUSE), spread * spread);
     float width = inversesqrt(density * rays) * distance(hit.xyz, from);
     float view_m = dot(frame.axis.xyz, hit.xyz) + frame.axis.w;
-    return log2(max(ssr_of.mip_scale * width * ssr_of.focal_px / mix(1.0, view_m, frame.viewer.w), 1.0));
+    return log2(
+        max(ssr_of.mip_scale * width * ssr_of.focal_px / mix(1.0, view_m, frame.viewer.w), 1.0));
 }
 
 // How far a ray in a pixel is behind its surface, over the thickness; above 1: no hit. The surface
@@ -121,7 +112,7 @@ traced trace(ivec2 work, ivec2 pixel, float z, float roughness)
     mat3 world_from_tangent = basis_of(n);
     vec3 v = to_viewer * world_from_tangent;
     v.z = max(v.z, LEAST_COSINE * LEAST_COSINE);
-    float spread = spread_of(roughness);
+    float spread = ssr_spread(roughness, ssr_of.spread_roughness);
     vec2 u = sample_of(work) * vec2(spread, 1.0);
     vec3 h = world_from_tangent * ssr_visible_normal(normalize(v), alpha, u);
     vec3 direction = reflect(-to_viewer, h);

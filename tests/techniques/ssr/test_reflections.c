@@ -130,6 +130,69 @@ TEST_GPU(a_rough_floor_reflects_as_much_as_a_mirror)
     free(rough);
 }
 
+// D V n·l of GGX (brdf.glsl), 1/sr.
+static double lobe(vec3s n, vec3s v, vec3s l, double alpha)
+{
+    const vec3s h = glms_vec3_normalize(glms_vec3_add(v, l));
+    const double n_l = (double)glms_vec3_dot(n, l), n_v = (double)glms_vec3_dot(n, v);
+    const double n_h = (double)glms_vec3_dot(n, h), a2 = alpha * alpha;
+    const double base = n_h * n_h * (a2 - 1) + 1;
+    const double smith =
+        n_l * sqrt(n_v * n_v * (1 - a2) + a2) + n_v * sqrt(n_l * n_l * (1 - a2) + a2);
+    return a2 / (GLM_PI * base * base) * 0.5 / smith * n_l;
+}
+
+// Share of the lobe of a point of the floor that the panel fills, by a grid on the panel.
+static double share_of_panel(vec3s p, vec3s eye, float roughness)
+{
+    enum { GRID = 200 };
+    const vec3s up = vec3_of(0, 1, 0), v = glms_vec3_normalize(glms_vec3_sub(eye, p));
+    const struct ggx_albedo t = ggx_albedo_at(v.y, roughness);
+    const vec3s size = box3_size(panel);
+    double sum = 0;
+    for (int i = 0; i < GRID * GRID; i++) {
+        const float x = ((float)(i % GRID) + 0.5f) / GRID, y = ((float)(i / GRID) + 0.5f) / GRID;
+        const vec3s at = vec3_of(panel.min.x + x * size.x, panel.min.y + y * size.y, panel.min.z);
+        const vec3s to = glms_vec3_sub(at, p);
+        const double r = (double)glms_vec3_norm(to);
+        sum += lobe(up, v, glms_vec3_normalize(to), (double)(roughness * roughness)) *
+               -(double)to.z / (r * r * r);
+    }
+    return sum * (double)(size.x * size.y) / (GRID * GRID) / (double)(t.a + t.b);
+}
+
+TEST_GPU(a_rough_floor_reflects_the_panel_by_its_lobe)
+{
+    static const float roughnesses[] = { 0.15f, 0.3f };
+    for (int r = 0; r < 2; r++) {
+        struct frame_fixture s;
+        const float roughness = roughnesses[r];
+        open_floor(&s, gpu, roughness, EMISSION);
+        const struct frame_fixture camera = s;
+        float *specular =
+            light(&s, "none+ssr:border=0,temporal=true,max_roughness=1", 16, READ_SPECULAR);
+        double error = 0, sum = 0, found = 0;
+        for (int y = HEIGHT / 2; y < HEIGHT; y += 3)
+            for (int x = 8; x < WIDTH - 8; x += 5) {
+                float n_v = 1;
+                const int i = y * WIDTH + x;
+                const vec3s p =
+                    fixture_ray_on_plane(&camera, (uint32_t)x, (uint32_t)y, vec3_of(0, 1, 0), 0);
+                if (isnan(inside_panel(&camera, i, &n_v))) continue;
+                const double expected = (double)EMISSION * metal_albedo(n_v, roughness) *
+                                        share_of_panel(p, camera.input.camera.eye, roughness);
+                error += fabs((double)specular[3 * i] - expected);
+                sum += expected;
+                found += (double)specular[3 * i];
+            }
+        print_message("roughness %.2f: mean error %.4f, sum %.4f\n", (double)roughness, error / sum,
+                      found / sum);
+        CHECK(sum > 0 && error < 0.15 * sum);
+        CHECK_RELATIVE(found, sum, 0.05);
+        free(specular);
+    }
+}
+
 TEST_GPU(half_the_light_gives_half_the_reflection)
 {
     float *full = floor_specular(gpu, "none+ssr", 0.2f, EMISSION, 1);
@@ -259,4 +322,71 @@ TEST_GPU(a_furnace_stays_uniform)
     }
     free(position);
     free(normal);
+}
+
+// Sum of differences over the sum of b.
+static double difference(const float *a, const float *b)
+{
+    double sum = 0;
+    for (int i = 0; i < 3 * PIXELS; i++) sum += fabs((double)a[i] - (double)b[i]);
+    return sum / total(b);
+}
+
+// The last of 16 frames, of a camera that moves sideways and back to the same place, or is there.
+static float *seen(struct gpu *gpu, const char *gi, float roughness, float step_m)
+{
+    struct frame_fixture s;
+    open_floor(&s, gpu, roughness, EMISSION);
+    struct gi *stack = gi_fixture_light(&s, gi);
+    for (int i = -15; i <= 0; i++) {
+        const float x = 0.6f + step_m * (float)i, z = 2.8f + 0.5f * step_m * (float)i;
+        fixture_look(&s, vec3_of(x, 1.4f, z), vec3_of(x, 0.6f, z - 5.8f));
+        fixture_render(&s);
+    }
+    float *out = fixture_read(&s, READ_SPECULAR);
+    gi_destroy(stack);
+    fixture_finish(&s);
+    return out;
+}
+
+// A mirror image moves otherwise than its surface: neither the panel's borders nor its light lag.
+TEST_GPU(accumulated_reflections_follow_the_camera)
+{
+    static const float roughnesses[] = { 0, 0.2f };
+    const char *gi = "none+ssr:temporal=true";
+    for (int r = 0; r < 2; r++) {
+        float *still = seen(gpu, gi, roughnesses[r], 0);
+        float *moved = seen(gpu, gi, roughnesses[r], 0.04f);
+        print_message("roughness %.1f: differs by %.4f, sums by %.4f\n", (double)roughnesses[r],
+                      difference(moved, still), total(moved) / total(still) - 1);
+        CHECK(difference(moved, still) < 0.08);
+        CHECK_RELATIVE(total(moved), total(still), 0.03);
+        free(still);
+        free(moved);
+    }
+}
+
+// The occluded light of a hit is reflected, not the source's.
+TEST_GPU(hits_have_the_visibility_of_their_pixel)
+{
+    double sums[2];
+    static const char *const specs[] = { "ambient+ssr", "ambient+ssao:radius=2+ssr" };
+    for (int i = 0; i < 2; i++) {
+        struct frame_fixture s;
+        begin(&s, gpu);
+        const int matte = fixture_matte(&s, vec3_of(0.7f, 0.7f, 0.7f));
+        fixture_floor(&s, 3, metal(&s, 0));
+        fixture_box(&s, vec3_of(-3, -0.1f, -3), vec3_of(3, 3, 3), true, matte);
+        for (int k = 0; k < 4; k++)
+            fixture_box(&s, vec3_of(-2 + (float)k, 0, -2.8f), vec3_of(-1.6f + (float)k, 2, -2.4f),
+                        false, matte);
+        fixture_look(&s, vec3_of(0, 1.4f, 2.8f), vec3_of(0, 0.6f, -3));
+        s.input.environment.sky = vec3_of(100, 100, 100);
+        fixture_open(&s);
+        float *specular = light(&s, specs[i], 1, READ_SPECULAR);
+        sums[i] = total(specular);
+        free(specular);
+    }
+    print_message("with occlusion %.3f of the reflection without\n", sums[1] / sums[0]);
+    CHECK(sums[0] > 0 && sums[1] < 0.9 * sums[0] && sums[1] > 0.2 * sums[0]);
 }
