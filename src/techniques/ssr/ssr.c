@@ -319,7 +319,7 @@ static const struct technique_debug_view debug_views[] = {
 static const struct technique_preset presets[] = {
     { "low", "half_resolution=true,reuse=4,steps=48" },
     { "medium", "" },
-    { "high", "temporal=true,steps=128" },
+    { "high", "temporal=true,steps=96" },
     { NULL, NULL },
 };
 
