@@ -390,3 +390,47 @@ TEST_GPU(hits_have_the_visibility_of_their_pixel)
     print_message("with occlusion %.3f of the reflection without\n", sums[1] / sums[0]);
     CHECK(sums[0] > 0 && sums[1] < 0.9 * sums[0] && sums[1] > 0.2 * sums[0]);
 }
+
+// In an orthographic view all sight lines are parallel, and depths linear.
+TEST_GPU(a_mirror_in_an_orthographic_view_reflects_the_panel)
+{
+    struct frame_fixture s;
+    open_floor(&s, gpu, 0, EMISSION);
+    const vec3s forward = glms_vec3_normalize(vec3_of(0, -0.3f, -1));
+    const struct frame_camera camera = { .eye = vec3_of(0, 2.4f, 2.9f),
+                                         .forward = forward,
+                                         .up = glms_vec3_normalize(vec3_of(0, 1, -0.3f)),
+                                         .left = -3,
+                                         .right = 3,
+                                         .bottom = -2,
+                                         .top = 2,
+                                         .near_m = 0.1f,
+                                         .far_m = 20,
+                                         .orthographic = true };
+    s.input.projected = &camera;
+    float *specular = light(&s, "none+ssr:border=0", 1, READ_SPECULAR);
+    int lit = 0, dark = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        const float x = 2 * ((float)(i % WIDTH) + 0.5f) / WIDTH - 1;
+        const float y = 2 * ((float)(i / WIDTH) + 0.5f) / HEIGHT - 1;
+        const struct frame_sight sight = frame_camera_sight(&camera, x, y);
+        const float to_floor = -sight.origin.y / forward.y;
+        const vec3s p = glms_vec3_muladds(forward, to_floor, sight.origin);
+        if (fabsf(p.x) > 2.9f || fabsf(p.z) > 2.9f) continue;
+        const float t = (WALL_Z - p.z) / forward.z;
+        const float hit_x = p.x + t * forward.x, hit_y = -t * forward.y;
+        const float inside = fminf(fminf(hit_x - panel.min.x, panel.max.x - hit_x),
+                                   fminf(hit_y - panel.min.y, panel.max.y - hit_y));
+        if (inside > MARGIN_M) {
+            CHECK_RELATIVE((double)specular[3 * i], (double)EMISSION * metal_albedo(-forward.y, 0),
+                           0.02);
+            lit++;
+        } else if (inside < -MARGIN_M) {
+            CHECK(specular[3 * i] == 0.0f);
+            dark++;
+        }
+    }
+    print_message("%d pixels mirror the panel, %d do not\n", lit, dark);
+    CHECK(lit > 100 && dark > 100);
+    free(specular);
+}
