@@ -31,7 +31,8 @@ layout(set = 0, binding = 7, rgba32f) uniform writeonly image2D hits; // world p
 layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D rays; // radiance, confidence
 
 const float FULL_CONFIDENCE = 0.5; // of the thickness: hits up to there behind a surface
-const float LEAST_COSINE = 0.05;   // of normal and line of sight
+const float LEAST_COSINE = 0.0025; // of normal and line of sight
+const float EXTENT = 4.0;          // of a surface in a pixel along the view axis, pixel widths
 
 // Points of the R2 sequence (Roberts 2018): those of 16 neighbours are successive ones.
 vec2 sample_of(ivec2 work)
@@ -54,15 +55,13 @@ float mip_of(vec3 from, vec4 hit, float density, float spread)
 
 // How far a ray in a pixel is behind its surface, over the thickness; above 1: no hit. The surface
 // has an extent along the view axis within the pixel.
-float depth_behind(ssr_ray ray, ssr_cell cell, vec3 n, vec3 direction)
+float depth_behind(ssr_ray ray, ssr_cell cell)
 {
     float surface_m = frame_view_distance(cell.depth);
     float nearest = ray.from.z + (ray.along.z > 0.0 ? cell.out_ : cell.in_) * ray.along.z;
     float behind_m = frame_view_distance(max(nearest, 1.0e-12)) - surface_m;
-    vec3 sight = normalize(frame_view_ray(frame_uv(uvec2(cell.at))));
-    float cosine = max(-dot(n, sight), LEAST_COSINE);
-    float extent_m = ssr_of.pixel_m * mix(1.0, surface_m, frame.viewer.w) / cosine;
-    return dot(n, direction) < 0.0 ? behind_m / (ssr_of.thickness_m + extent_m) : 2.0;
+    float extent_m = EXTENT * ssr_of.pixel_m * mix(1.0, surface_m, frame.viewer.w);
+    return behind_m / (ssr_of.thickness_m + extent_m);
 }
 
 // Fades hits near the border of the image.
@@ -83,8 +82,7 @@ vec4 hit_of(ssr_ray ray, vec3 position, vec3 direction, out vec2 at)
     {
         cell = ssr_next(ray, t, left);
         if (!cell.reached) break;
-        vec3 n = octahedral_decode(texelFetch(normal, cell.at, 0).rg);
-        behind = depth_behind(ray, cell, n, direction);
+        behind = depth_behind(ray, cell);
         if (behind < 1.0) break;
         t = cell.out_;
         left--;
@@ -111,7 +109,7 @@ traced trace(ivec2 work, ivec2 pixel, float z, float roughness)
     float alpha = brdf_alpha(roughness), a2 = alpha * alpha;
     mat3 world_from_tangent = basis_of(n);
     vec3 v = to_viewer * world_from_tangent;
-    v.z = max(v.z, LEAST_COSINE * LEAST_COSINE);
+    v.z = max(v.z, LEAST_COSINE);
     float spread = ssr_spread(roughness, ssr_of.spread_roughness);
     vec2 u = sample_of(work) * vec2(spread, 1.0);
     vec3 h = world_from_tangent * ssr_visible_normal(normalize(v), alpha, u);
