@@ -3,8 +3,8 @@
 //
 // Virtual lights of the reflective shadow maps and of emissive surfaces are injected into a grid as
 // spherical harmonics (inject), their light propagates from cell to cell past occluders (geometry,
-// propagate), and each pixel samples its irradiance (apply). Diffuse only; lights and geometry may
-// move.
+// propagate), and each pixel samples its irradiance, from which its specular lobe reflects a share
+// (apply). Lights and geometry may move.
 #include "techniques/lpv/lpv.h"
 
 #include "techniques/lpv/geometry/geometry.h"
@@ -139,14 +139,20 @@ static void lpv_update(void *state, struct gpu_cmd *cmd, const struct frame_view
     lpv_record_probes(lpv, cmd);
 }
 
+static void clear_layers(const struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    const float black[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
+    gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE], black);
+    if (lpv->options.specular) gpu_clear_image(cmd, view->layers[FRAME_SPECULAR], black);
+}
+
 static void lpv_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct lpv *lpv = state;
     if (lpv->lit)
         lpv_record_application(lpv, cmd, view);
     else
-        gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE],
-                        (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
+        clear_layers(lpv, cmd, view);
 }
 
 static void lpv_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
@@ -173,7 +179,8 @@ static bool lpv_probes(void *state, struct probe_volume *out)
 static uint32_t lpv_more_needs(const void *options)
 {
     const struct lpv_options *o = options;
-    return o->geometry == LPV_GEOMETRY_MAPS ? FRAME_UPDATE_NEEDS_GBUFFER : 0;
+    return (o->geometry == LPV_GEOMETRY_MAPS ? FRAME_UPDATE_NEEDS_GBUFFER : 0) |
+           (o->specular ? FRAME_WRITES_SPECULAR : 0);
 }
 
 #define LPV_TECHNIQUE(name_, title_, paper_, rows_, presets_)                                      \

@@ -1,4 +1,4 @@
-// Irradiance of each pixel, cascade by cascade.
+// Irradiance and specular light of each pixel, cascade by cascade.
 #include "techniques/lpv/lpv_stages.h"
 
 #include "techniques/lpv/lpv_bindings.h"
@@ -7,7 +7,9 @@
 static void apply(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view,
                   const struct lpv_grid *finer)
 {
-    struct lpv_apply_push push = { .open = lpv->grid.open, .coarsest = !lpv->params.boundary };
+    struct lpv_apply_push push = { .open = lpv->grid.open,
+                                   .coarsest = !lpv->params.boundary,
+                                   .has_dielectric = view->layers[FRAME_DIELECTRIC].id != 0 };
     if (finer) {
         push.finer_origin_m = finer->origin_m;
         push.finer_cell_m = finer->cell_m;
@@ -19,12 +21,11 @@ static void apply(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view 
     if (lpv->params.boundary) apply(lpv->coarser, cmd, view, &lpv->grid);
     const struct lpv_pipelines *p = &lpv->pipelines;
     gpu_dispatch(cmd, lpv->options.damping > 0.0f ? p->apply_damped : p->apply,
-                 GPU_BIND(lpv_grid_binding(lpv, cmd), view->constants_binding,
-                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-                          { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+                 GPU_BIND(lpv_grid_binding(lpv, cmd), FRAME_SURFACE_BINDINGS(view),
                           { .name = "light", .image = lpv->volumes.light, .sampler = lpv->linear },
                           { .name = "lpv_walls", .buffer = lpv_walls(lpv) },
-                          { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+                          { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] },
+                          { .name = "specular", .image = view->layers[FRAME_SPECULAR] }),
                  &push, sizeof push, gpu_groups(view->width, LPV_LOCAL),
                  gpu_groups(view->height, LPV_LOCAL), 1);
 }

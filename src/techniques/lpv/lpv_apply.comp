@@ -15,6 +15,9 @@
 //
 // Reconstruction. Trilinear between cells, with visible kinks at strong gradients (sec. 6.4), or a
 // cubic B-spline, smooth and wider.
+//
+// SPECULAR: also the radiance that the specular lobe reflects, by irradiance and vector irradiance
+// as light maps have it (light_map/lookup.glsl).
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -22,8 +25,17 @@
 #define FRAME_CONSTANTS_BINDING 1
 #define FRAME_CONSTANTS_COPIED
 #define LPV_GRID_COPIED
+#if SPECULAR
+#define GGX_ALBEDO_BINDING 7
+#endif
+#include "core/half.glsl"
+#include "core/math.glsl"
 #include "core/sh.glsl"
 #include "frame/frame.glsl"
+#if SPECULAR
+#include "frame/brdf.glsl"
+#include "techniques/common/light_map/lookup.glsl"
+#endif
 #include "frame/octahedral.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
@@ -46,6 +58,13 @@ layout(set = 0, binding = 2) uniform sampler2D depth;
 layout(set = 0, binding = 3) uniform sampler2D normal;
 layout(set = 0, binding = 4) uniform sampler3D light;
 layout(set = 0, binding = 5, rgba16f) uniform image2D irradiance;
+#if SPECULAR
+layout(set = 0, binding = 8) uniform sampler2D albedo;
+layout(set = 0, binding = 9) uniform sampler2D material;
+layout(set = 0, binding = 10) uniform sampler2D dielectric; // FRAME_DIELECTRIC if `has_dielectric`
+layout(set = 0, binding = 11, rgba16f) uniform image2D specular;
+#include "techniques/common/reflected.glsl"
+#endif
 
 bool covered_by_finer(vec3 surface)
 {
@@ -105,10 +124,47 @@ vec3 lookup_of(vec3 surface, vec3 n)
     return visible == moved ? at : visible;
 }
 
-vec3 surface_irradiance(vec3 surface, vec3 n)
+vec3 surface_irradiance(vec3 at, vec3 n)
 {
-    vec3 irradiance = lpv.irradiance_scale * damped_irradiance(lookup_of(surface, n), n);
-    return min(irradiance, vec3(HALF_MAX));
+    return min(lpv.irradiance_scale * damped_irradiance(at, n), vec3(HALF_MAX));
+}
+
+#if SPECULAR
+// Vector irradiance along the surface. At most 2/3 of the irradiance: radiance that is linear in
+// its direction is then nowhere negative. Clamped colours would show as bands of another hue.
+mat3 vector_along(lpv_light light, vec3 n, vec3 irradiance)
+{
+    mat3 vector = lpv.irradiance_scale * lpv_vector_irradiance(light);
+    for (int c = 0; c < 3; c++) {
+        vector[c] -= n * dot(n, vector[c]);
+        float size2 = max(dot(vector[c], vector[c]), 1e-12);
+        vector[c] *= min(irradiance[c] / 1.5 * inversesqrt(size2), 1.0);
+    }
+    return vector;
+}
+
+vec3 surface_reflected(ivec2 pixel, vec3 surface, vec3 n, vec3 at, vec3 irradiance)
+{
+    brdf_material m = pixel_material(pixel, push.has_dielectric != 0u);
+    vec3 to_viewer = frame_to_viewer(surface);
+    to_viewer *= inversesqrt(dot(to_viewer, to_viewer));
+    mat3 vector = vector_along(lpv_sample(light, at), n, irradiance);
+    vec3 radiance = light_map_radiance(light_map_light(irradiance, vector), n, to_viewer,
+                                       brdf_alpha(m.roughness));
+    return pixel_reflected(m, n, to_viewer, radiance);
+}
+#endif
+
+// Over the light of coarser cascades.
+void store(ivec2 pixel, vec3 arriving, vec3 reflected, float weight)
+{
+    bool alone = push.coarsest != 0u || weight == 1.0;
+    vec3 before = alone ? vec3(0.0) : imageLoad(irradiance, pixel).rgb;
+    imageStore(irradiance, pixel, vec4(mix(before, arriving, weight), 1.0));
+#if SPECULAR
+    before = alone ? vec3(0.0) : imageLoad(specular, pixel).rgb;
+    imageStore(specular, pixel, vec4(mix(before, reflected, weight), 1.0));
+#endif
 }
 
 // Dispatched from the coarsest cascade to the finest; each blends over the previous ones. Outside
@@ -120,18 +176,21 @@ void main()
     push = push_of_all;
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
-    float z = texelFetch(depth, pixel, 0).r;
-    vec3 result = vec3(0.0);
+    float z = texelFetch(depth, pixel, 0).r, weight = 1.0;
+    vec3 arriving = vec3(0.0), reflected = vec3(0.0);
     if (z > 0.0) {
         vec3 surface = frame_world_position(frame_uv(uvec2(pixel)), z);
-        float weight = lpv_cascade_weight(lpv_cells_from_world(surface), lpv_cells(), push.open);
+        weight = lpv_cascade_weight(lpv_cells_from_world(surface), lpv_cells(), push.open);
         if (covered_by_finer(surface) || (weight == 0.0 && push.coarsest == 0u)) return;
-        if (weight > 0.0)
-            result =
-                surface_irradiance(surface, octahedral_decode(texelFetch(normal, pixel, 0).rg));
-        if (weight < 0.999999) // a finer cascade's 1 leaves the coarser one out
-            result = mix(push.coarsest != 0u ? vec3(0.0) : imageLoad(irradiance, pixel).rgb, result,
-                         weight);
+        if (weight > 0.999999) weight = 1.0;
+        if (weight > 0.0) {
+            vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
+            vec3 at = lookup_of(surface, n);
+            arriving = surface_irradiance(at, n);
+#if SPECULAR
+            reflected = surface_reflected(pixel, surface, n, at, arriving);
+#endif
+        }
     }
-    imageStore(irradiance, pixel, vec4(result, 1.0));
+    store(pixel, arriving, reflected, weight);
 }

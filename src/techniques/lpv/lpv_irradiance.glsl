@@ -36,4 +36,21 @@ vec3 lpv_irradiance(lpv_light light, vec3 n)
            lpv.window_2 * SH_COSINE_2 * band_2;
 }
 
+// Vector irradiance ∫ L ω dω of the light that arrives, a column for each colour, in the unit of
+// lpv_irradiance. Its part along a surface is free of the surface's own light, which is symmetric
+// around the normal.
+mat3 lpv_vector_irradiance(lpv_light light)
+{
+    vec3 by_axis[3];
+    if (LPV_CLOSED) {
+        lpv_closure closed = lpv_closure_of(light);
+        vec3 beam = closed.beam / (lpv.mean_path * closed.steps);
+        for (int a = 0; a < 3; a++) by_axis[a] = -closed.wide_along[a] - beam * closed.direction[a];
+    } else {
+        float scale = LPV_CLOSURE == LPV_PRODUCT_CLOSURE ? 1.0 : lpv.window_1;
+        for (int a = 0; a < 3; a++) by_axis[a] = -scale / SH_Y1 * light.along[a];
+    }
+    return transpose(mat3(by_axis[0], by_axis[1], by_axis[2]));
+}
+
 #endif

@@ -97,6 +97,7 @@ struct lpv_apply_push {
     uint32_t finer_open;
     uint32_t open;     // LPV_OPEN sides of this cascade
     uint32_t coarsest; // 1: writes every pixel
+    uint32_t has_dielectric;
 };
 
 // Views of lpv_debug.comp.
@@ -114,7 +115,7 @@ struct lpv_view_push {
 _Static_assert(sizeof(struct lpv_reprojection) == 9 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_params) == 82 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_refine_push) == 7 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct lpv_apply_push) == 10 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_apply_push) == 11 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_view_push) == 8, "layout is shared with GLSL");
 #endif
 

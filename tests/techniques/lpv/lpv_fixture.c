@@ -10,8 +10,9 @@ struct lpv *lpv_fixture_create(struct gpu *gpu, const char *gi)
         strncmp(gi, "holpv", 5) == 0 ? &technique_holpv : &technique_lpv;
     struct lpv *lpv = calloc(1, technique->state_size);
     struct lpv_options options;
-    const char *plain = technique == &technique_lpv ? "cascades=1,bounces=0,steps=64"
-                                                    : "cascades=1,bounces=0,steps=32";
+    const char *plain = technique == &technique_lpv
+                            ? "cascades=1,bounces=0,specular=false,steps=64"
+                            : "cascades=1,bounces=0,specular=false,steps=32";
     option_defaults(&technique->options, &options);
     CHECK(option_parse(test_host(), &technique->options, "lpv", plain, &options));
     CHECK(option_parse(test_host(), &technique->options, "lpv", colon ? colon + 1 : "", &options));

@@ -81,6 +81,7 @@ void rsm_fixture_init(struct rsm_fixture *rsm, struct gpu *gpu, uint32_t width, 
     view->constants = &rsm->constants;
     view->constants_binding =
         (struct gpu_binding){ .name = "frame_constants", .buffer = rsm->constants_buffer };
+    view->ggx_albedo_binding = (struct gpu_binding){ .name = "ggx_albedo" }; // for no lobe
     view->layers[FRAME_DEPTH] = rsm->depth;
     view->layers[FRAME_NORMAL] = rsm->normal;
     view->layers[FRAME_IRRADIANCE] = rsm->irradiance;

@@ -5,3 +5,4 @@ target_link_libraries(ag_test_lpv PUBLIC ag_test_frame_fixture ag_test_technique
 foreach(name bounce cascades flux geometry_maps geometry_scene history math occlusion sky twin)
   ag_test(techniques/lpv/${name} USES techniques LIBRARIES ag_test_lpv)
 endforeach()
+ag_technique_tests(lpv/specular)
