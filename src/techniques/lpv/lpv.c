@@ -125,8 +125,8 @@ static bool record_light(struct lpv *lpv, struct gpu_cmd *cmd, const struct fram
 {
     const bool changed = lpv->coarser && record_light(lpv->coarser, cmd, view);
     if (lpv_is_kept(lpv, view) && !changed) return false;
-    lpv_record_injection(lpv, cmd, view);
     lpv_record_geometry(lpv, cmd, view);
+    lpv_record_injection(lpv, cmd, view);
     lpv_record_surfaces(lpv, cmd, view);
     lpv_record_propagation(lpv, cmd);
     return true;

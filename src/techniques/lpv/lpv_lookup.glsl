@@ -13,13 +13,42 @@ layout(set = 0, binding = LPV_WALLS_BINDING, scalar) readonly buffer lpv_walls
     uint walls[];
 };
 
+uint lpv_wall_bits(ivec3 cell, ivec3 cells, int axis)
+{
+    return walls[(cell.z * cells.y + cell.y) * cells.x + cell.x] >> (10 * axis);
+}
+
+float lpv_wall_place(uint wall)
+{
+    return float((wall >> 5 & 31u) + 1u) / float(2u * LPV_PLACES);
+}
+
 // The share of the light that surfaces occlude between the next lower centre along an axis and this
 // cell's, and their place in that interval, 0 to 1.
 vec2 lpv_wall_below(ivec3 cell, ivec3 cells, int axis)
 {
-    uint wall = walls[(cell.z * cells.y + cell.y) * cells.x + cell.x] >> (10 * axis);
+    uint wall = lpv_wall_bits(cell, cells, axis);
     return vec2(min(lpv.occlusion * float(wall & 31u) / float(LPV_LINES * LPV_LINES), 1.0),
-                float((wall >> 5 & 31u) + 1u) / float(2u * LPV_PLACES));
+                lpv_wall_place(wall));
+}
+
+// The cell of a position, on its side of the walls around: across a wall that crosses most of the
+// interval between two centres it is the one whose centre the position sees.
+ivec3 lpv_cell_on_side(vec3 at, ivec3 cells)
+{
+    ivec3 own = ivec3(floor(at));
+    if (LPV_GEOMETRY != LPV_GEOMETRY_SCENE) return own;
+    for (int i = 0; i < 6; i++) {
+        int axis = i % 3;
+        float low = floor(at[axis] - 0.5), f = at[axis] - 0.5 - low;
+        ivec3 cell = own;
+        cell[axis] = int(low) + 1;
+        if (cell[axis] < 1 || cell[axis] >= cells[axis]) continue;
+        uint wall = lpv_wall_bits(cell, cells, axis);
+        bool closed = (wall & 31u) >= uint(LPV_LINES * LPV_LINES / 2);
+        own[axis] = closed ? int(low) + (f > lpv_wall_place(wall) ? 1 : 0) : int(floor(at[axis]));
+    }
+    return own;
 }
 
 // The position, moved so that a filtered lookup does not see through walls of the grid of `cells`.

@@ -48,8 +48,8 @@ void lpv_add_pipelines(const struct lpv_options *o, struct gpu_objects *out)
                scene = o->geometry == LPV_GEOMETRY_SCENE;
     fill_constants(o, out->constants);
     GPU_ADD(out, offsetof(struct lpv_cascades, levels[0].pipelines),
-            PIPELINE(inject, true, inject, LIGHT),
-            PIPELINE(inject_emitters, true, inject_emitters, LIGHT),
+            PIPELINE(inject, true, inject, LIGHT | GEOMETRY),
+            PIPELINE(inject_emitters, true, inject_emitters, LIGHT | GEOMETRY),
             PIPELINE(resolve, true, inject_resolve, LIGHT),
             PIPELINE(propagate, true, propagate, LIGHT | GEOMETRY | NEIGHBOURS | CLOSURE),
             PIPELINE(apply, !o->specular, apply_diffuse, APPLY),

@@ -1,4 +1,5 @@
-// Adds virtual lights to the grid. Include after core/sh.glsl, lpv_grid.glsl and lpv_light.glsl;
+// Adds virtual lights to the grid. Include after core/sh.glsl, lpv_grid.glsl, lpv_light.glsl and
+// lpv_lookup.glsl;
 // define LPV_SUMS_BINDING.
 //
 // Sums are integers, so that the order of invocations does not change a bit: 64 bits in two words
@@ -38,11 +39,13 @@ void lpv_add(int cell, vec3 lobe[9])
             lpv_add_value(at + 2 * (3 * i + colour), lobe[i][colour]);
 }
 
-// Half a cell in front of the surface, so that a virtual light is on its lit side.
+// Half a cell in front of the surface, so that a virtual light is on its lit side; beside a wall,
+// too.
 int lpv_injection_cell(vec3 position, vec3 normal)
 {
-    ivec3 at = ivec3(floor(lpv_cells_from_world(position) + 0.5 * normal));
-    return lpv_inside(at) ? lpv_index(at) : LPV_NO_CELL;
+    vec3 at = lpv_cells_from_world(position) + 0.5 * normal;
+    if (!lpv_inside(ivec3(floor(at)))) return LPV_NO_CELL;
+    return lpv_index(lpv_cell_on_side(at, lpv_cells()));
 }
 
 // Coefficients of 1/π (n·ω)₊, a flux of 1. Those of unused bands are never read.

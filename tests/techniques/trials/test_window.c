@@ -4,10 +4,13 @@
 
 #define DICTIONARY TRIAL_DICTIONARY(16, 32, 32)
 
-// A fifth is what coarse places outdoors and few modes indoors lose.
+// A fifth is what coarse places outdoors and few modes indoors lose. Cells of lpv are as large as
+// the window.
 TEST_GPU(light_of_sunlit_ground_enters_by_a_window)
 {
     static const struct trial_bounds bounds[] = { { "radiosity:texels=16384", 0.95, 1.05 },
+                                                  { "lpv", 0.7, 1.2 },
+                                                  { "holpv", 0.9, 1.4 },
                                                   { "mrt" DICTIONARY, 0.8, 1.2 },
                                                   { "drt" DICTIONARY, 0.8, 1.2 } };
     trial_check_energy(gpu, trial_window, 1024, bounds, sizeof bounds / sizeof bounds[0]);

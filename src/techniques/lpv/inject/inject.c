@@ -13,7 +13,8 @@ static void inject_rsm(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_
                           { .name = "rsm_depth", .image = view->rsm_depth },
                           { .name = "rsm_normal", .image = view->rsm_normal },
                           { .name = "rsm_flux", .image = view->rsm_flux },
-                          { .name = "lpv_sums", .buffer = lpv->volumes.sums }),
+                          { .name = "lpv_sums", .buffer = lpv->volumes.sums },
+                          { .name = "lpv_walls", .buffer = lpv_walls(lpv) }),
                  NULL, 0, groups, groups, (uint32_t)view->rsm_face_count);
 }
 
@@ -22,7 +23,8 @@ static void inject_emitters(struct lpv *lpv, struct gpu_cmd *cmd, const struct f
     if (lpv->params.emitter_count == 0) return;
     gpu_dispatch(cmd, lpv->pipelines.inject_emitters,
                  GPU_BIND(lpv_grid_binding(lpv, cmd), view->emitters_binding,
-                          { .name = "lpv_sums", .buffer = lpv->volumes.sums }),
+                          { .name = "lpv_sums", .buffer = lpv->volumes.sums },
+                          { .name = "lpv_walls", .buffer = lpv_walls(lpv) }),
                  NULL, 0, gpu_groups(lpv->params.emitter_count, LPV_EMITTERS_LOCAL), 1, 1);
 }
 

@@ -12,6 +12,8 @@
 #include "frame/rsm/rsm.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
+#define LPV_WALLS_BINDING 6
+#include "techniques/lpv/lpv_lookup.glsl"
 #define LPV_SUMS_BINDING 5
 #include "techniques/lpv/lpv_sums.glsl"
 

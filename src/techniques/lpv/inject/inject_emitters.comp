@@ -8,6 +8,8 @@
 #include "frame/frame_shared.h"
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
+#define LPV_WALLS_BINDING 3
+#include "techniques/lpv/lpv_lookup.glsl"
 #define LPV_SUMS_BINDING 2
 #include "techniques/lpv/lpv_sums.glsl"
 
