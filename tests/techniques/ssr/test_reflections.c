@@ -251,8 +251,8 @@ static float *from_above(struct gpu *gpu, const char *gi, float roughness)
 
 TEST_GPU(rays_that_leave_the_image_keep_the_light_of_the_source)
 {
-    float *source = from_above(gpu, "vct:resolution=16,specular=true", 0.2f);
-    float *both = from_above(gpu, "vct:resolution=16,specular=true+ssr", 0.2f);
+    float *source = from_above(gpu, "vct:resolution=16,levels=2,specular=true", 0.2f);
+    float *both = from_above(gpu, "vct:resolution=16,levels=2,specular=true+ssr", 0.2f);
     CHECK(total(source) > 0);
     assert_memory_equal(source, both, 3 * PIXELS * sizeof *source);
     free(source);
@@ -291,8 +291,8 @@ static double furnace_specular(const float *position, const float *normal, vec3s
 TEST_GPU(a_furnace_stays_uniform)
 {
     static const float roughnesses[] = { 0, 0.1f, 0.2f, 0.3f };
-    static const char source_gi[] = "vct:resolution=16,specular=true";
-    static const char both_gi[] = "vct:resolution=16,specular=true+ssr";
+    static const char source_gi[] = "vct:resolution=16,levels=2,specular=true";
+    static const char both_gi[] = "vct:resolution=16,levels=2,specular=true+ssr";
     struct frame_fixture camera;
     open_furnace(&camera, gpu, 0);
     const vec3s eye = camera.input.camera.eye;
