@@ -124,6 +124,7 @@ static bool mrt_create(void *state, const struct technique_create *how)
     mrt->host = how->host;
     mrt->gpu = how->gpu;
     if (how->pose) mrt->materials = how->pose->scene->revisions.materials;
+    mrt->pose = how->pose;
     return !how->pose || mrt_make_map(mrt, how->pose);
 }
 
@@ -151,8 +152,10 @@ static bool mrt_load(void *state, const struct tensors *bake)
 {
     struct mrt *mrt = state;
     const struct mrt_dictionary_options options = dictionary_options(&mrt->options);
-    return mrt_dictionary_init(mrt->host, bake, &options, &mrt->dictionary) &&
-           (mrt_make_level(mrt) || mrt_update_pass_on(mrt));
+    const bool ok = mrt_dictionary_init(mrt->host, bake, &options, &mrt->dictionary) &&
+                    (mrt_make_level(mrt) || mrt_update_pass_on(mrt));
+    mrt->pose = NULL;
+    return ok;
 }
 
 static void mrt_set_options(void *state, const void *options)

@@ -84,7 +84,8 @@ static bool find_clutter(struct mrt_parts *out, const struct mrt *mrt,
                          const struct scene_pose *pose)
 {
     const struct mrt_clutter_options options = { CLUTTER_TEXELS, mrt->options.response_modes };
-    if (!mrt->delta || mrt_block_is_tube(&mrt->map.blocks[0])) return true;
+    if (!mrt->delta || mrt->leaves_out_clutter || mrt_block_is_tube(&mrt->map.blocks[0]))
+        return true;
     return mrt_clutter_init(&out->clutter, out->host, pose, &mrt->map, &options);
 }
 
@@ -254,29 +255,43 @@ struct mrt_runtime_options mrt_runtime_options_of(const struct mrt_options *opti
     };
 }
 
-// Clutter without its operators is lit by the probes of mrt. The warning is that of the start.
-static bool clutter_fits(const struct mrt *mrt, const struct mrt_parts *parts,
-                         const struct mrt_build *how, const struct mrt_operators *operators)
+// Bytes of the largest buffer of operators with clutter.
+static uint64_t clutter_bytes(const struct mrt *mrt, const struct mrt_parts *parts,
+                              const struct mrt_operators *operators, int *blocks)
 {
+    return mrt_clutter_numbers(operators, &mrt->map, &parts->clutter, blocks) *
+           (mrt_runtime_options_of(&mrt->options).half ? 2 : 4);
+}
+
+static bool check_clutter(const struct mrt *mrt, bool *fits)
+{
+    struct mrt_operators operators;
     const uint64_t most = gpu_limits(mrt->gpu)->max_storage_bytes;
-    int blocks;
-    const uint64_t numbers = mrt_clutter_numbers(operators, &mrt->map, &parts->clutter, &blocks);
-    const uint64_t bytes = numbers * (mrt_runtime_options_of(&mrt->options).half ? 2 : 4);
-    if (bytes <= most) return true;
-    if (!how->plan)
-        host_log(mrt->host, LOG_WARNING,
-                 "gi drt: operators of %d blocks with objects take up to %.0f MB in one buffer, of "
-                 "which the device allows %.0f MB: objects are lit as by mrt; use fewer texels or "
-                 "response_modes",
-                 blocks, (double)bytes * 1e-6, (double)most * 1e-6);
-    return false;
+    int blocks = 0;
+    *fits = true;
+    if (mrt->parts.clutter.triangles == 0) return true;
+    const bool ok = mrt_operators_init(&operators, mrt->host, &mrt->level);
+    const uint64_t bytes = ok ? clutter_bytes(mrt, &mrt->parts, &operators, &blocks) : 0;
+    mrt_operators_finish(&operators);
+    if (!ok || bytes <= most) return ok;
+    host_log(mrt->host, LOG_WARNING,
+             "gi drt: operators of %d blocks with objects take up to %.0f MB in one buffer, of "
+             "which the device allows %.0f MB: objects are lit as by mrt; use fewer texels or "
+             "response_modes",
+             blocks, (double)bytes * 1e-6, (double)most * 1e-6);
+    *fits = false;
+    return true;
 }
 
 static bool add_clutter(const struct mrt *mrt, const struct mrt_parts *parts,
                         const struct mrt_build *how, struct mrt_operators *operators)
 {
     const struct mrt_options *options = &mrt->options;
-    if (parts->clutter.triangles == 0 || !clutter_fits(mrt, parts, how, operators)) return true;
+    int blocks;
+    if (parts->clutter.triangles == 0) return true;
+    if (clutter_bytes(mrt, parts, operators, &blocks) > gpu_limits(mrt->gpu)->max_storage_bytes)
+        return host_fail(operators->host, FAIL_MEMORY,
+                         "operators of %d blocks with objects exceed the device's buffers", blocks);
     const struct mrt_clutter_changes changes = { .rays = options->delta_rays,
                                                  .depth = options->depth,
                                                  .occlusion = options->occlusion,
@@ -338,14 +353,32 @@ static struct mrt_retrace_limits limits_of(int32_t warp, const struct mrt_block_
     return LIMITS[warp == MRT_WARP_AUTO && map->is_single ? MRT_WARP_STRETCH : warp];
 }
 
-bool mrt_make_level(struct mrt *mrt)
+static bool init_level(struct mrt *mrt)
 {
     const struct mrt_level_options options = { .max_depth = mrt->options.depth,
                                                .retrace = limits_of(mrt->options.warp, &mrt->map) };
+    return mrt_level_init(mrt->host, &mrt->map, &mrt->dictionary, &options, &mrt->level);
+}
+
+// The map and the level of mrt: walls that clutter has opened are walls again.
+static bool leave_out_clutter(struct mrt *mrt)
+{
+    mrt->leaves_out_clutter = true;
+    mrt_level_finish(&mrt->level);
+    mrt_parts_finish(&mrt->parts);
+    mrt_published_finish(&mrt->published);
+    mrt_atlas_finish(&mrt->atlas);
+    mrt_block_map_finish(&mrt->map);
+    return mrt_make_map(mrt, mrt->pose) && init_level(mrt);
+}
+
+bool mrt_make_level(struct mrt *mrt)
+{
     const struct mrt_runtime_options runtime = mrt_runtime_options_of(&mrt->options);
+    bool fits;
     if (mrt->map.count == 0)
         return mrt_runtime_init_empty(&mrt->runtime, mrt->host, mrt->gpu, &runtime);
-    return mrt_level_init(mrt->host, &mrt->map, &mrt->dictionary, &options, &mrt->level) &&
+    return init_level(mrt) && check_clutter(mrt, &fits) && (fits || leave_out_clutter(mrt)) &&
            start_runtime(mrt) && make_depths(mrt) &&
            (mrt->options.solver == MRT_SOLVER_GPU ||
             mrt_host_solver_init(&mrt->host_solver, mrt->host, mrt->gpu, &mrt->level,

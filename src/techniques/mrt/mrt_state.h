@@ -44,7 +44,9 @@ struct mrt {
     struct mrt_options options;
     struct host *host;
     struct gpu *gpu;
-    bool delta; // drt
+    bool delta;              // drt
+    bool leaves_out_clutter; // its operators exceed the device's buffers: all surfaces are walls
+    const struct scene_pose *pose; // from `create` to the end of `load`
     // The level.
     struct mrt_block_map map; // no blocks: an empty scene
     struct mrt_atlas atlas;
@@ -74,7 +76,7 @@ char *mrt_map_json(struct host *host, const struct mrt_options *options, bool de
 // Blocks, light map and geometry image of the scene; resolves maze=auto.
 bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose);
 struct mrt_runtime_options mrt_runtime_options_of(const struct mrt_options *options);
-// Operators of the level, from the dictionary, on the GPU.
+// Operators of the level, from the dictionary, on the GPU. Uses mrt->pose.
 bool mrt_make_level(struct mrt *mrt);
 
 // Those of another pose. last: of the pose before, NULL: none; its geometry serves again where the
