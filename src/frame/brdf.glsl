@@ -30,6 +30,24 @@ brdf_material brdf_material_of(vec3 albedo, vec2 roughness_metallic, vec4 dielec
                          dielectric.rgb * dielectric.rgb, dielectric.a);
 }
 
+// D of GGX, 1/sr. a2: alpha². sin² is that of the cross product: 1 − n_h² cancels within the narrow
+// lobe of a smooth surface.
+float brdf_distribution(vec3 n, vec3 h, float a2)
+{
+    vec3 n_x_h = cross(n, h);
+    float n_h = clamp(dot(n, h), 0.0, 1.0);
+    float base = dot(n_x_h, n_x_h) + n_h * n_h * a2;
+    return a2 * INV_PI / (base * base);
+}
+
+// V = G / (4 n·l n·v).
+float brdf_visibility(float n_v, float n_l, float a2)
+{
+    float smith_v = n_l * sqrt(n_v * n_v * (1.0 - a2) + a2);
+    float smith_l = n_v * sqrt(n_l * n_l * (1.0 - a2) + a2);
+    return 0.5 / (smith_v + smith_l);
+}
+
 // Both lobes for one outgoing direction.
 struct brdf_lobes {
     vec3 diffuse;         // 1/sr
@@ -112,17 +130,10 @@ vec3 brdf_specular(brdf_lobes lobes, vec3 n, vec3 v, vec3 l)
     vec3 h = normalize(v + l);
     float n_l = clamp(dot(n, l), 1e-4, 1.0);
     float n_v = brdf_cosine(n, v);
-    float n_h = clamp(dot(n, h), 0.0, 1.0);
     float v_h = clamp(dot(v, h), 0.0, 1.0);
     float a2 = lobes.alpha * lobes.alpha;
 
-    // sin² from the cross product: 1 − n_h² cancels within the narrow lobe of a smooth surface.
-    vec3 n_x_h = cross(n, h);
-    float d_base = dot(n_x_h, n_x_h) + n_h * n_h * a2;
-    float d = a2 * INV_PI / (d_base * d_base);
-    float smith_v = n_l * sqrt(n_v * n_v * (1.0 - a2) + a2);
-    float smith_l = n_v * sqrt(n_l * n_l * (1.0 - a2) + a2);
-    float visibility = 0.5 / (smith_v + smith_l);
+    float d = brdf_distribution(n, h, a2), visibility = brdf_visibility(n_v, n_l, a2);
     float m = 1.0 - v_h;
     float m2 = m * m;
     vec3 f = lobes.f0 + (lobes.f90 - lobes.f0) * (m2 * m2 * m);

@@ -26,7 +26,8 @@ ssr_surface ssr_surface_at(ivec2 pixel)
     return s;
 }
 
-// light: radiance times confidence, confidence. Without confidence the layer stays as it is.
+// light: radiance times confidence, confidence. At confidence 0 the layer keeps the source's
+// radiance.
 void ssr_apply(ssr_surface s, ivec2 pixel, vec4 light)
 {
     float fade = 1.0 - smoothstep(SSR_FADE_FROM * ssr_of.max_roughness, ssr_of.max_roughness,

@@ -1,5 +1,5 @@
 // The distribution of visible normals of GGX (Heitz 2018, "Sampling the GGX Distribution of Visible
-// Normals"): directions, their density, and the lobe itself without Fresnel's factor.
+// Normals"): directions and their density.
 #ifndef AG_SSR_LOBE_GLSL
 #define AG_SSR_LOBE_GLSL
 
@@ -29,28 +29,11 @@ vec3 ssr_visible_normal(vec3 v, float alpha, vec2 u)
     return normalize(vec3(alpha * n.xy, max(n.z, 1.0e-6)));
 }
 
-// D of the half-vector: sin² by the cross product, as in brdf_specular.
-float ssr_distribution(vec3 n, vec3 h, float a2)
-{
-    vec3 across = cross(n, h);
-    float n_h = clamp(dot(n, h), 0.0, 1.0);
-    float base = dot(across, across) + n_h * n_h * a2;
-    return a2 * INV_PI / (base * base);
-}
-
 // Density of a sampled direction, 1/sr: G1 D / (4 n·v).
 float ssr_density(float distribution, float n_v, float a2)
 {
     float root = sqrt(n_v * n_v * (1.0 - a2) + a2);
     return distribution * 0.5 / (n_v + root);
-}
-
-// D V n·l, 1/sr.
-float ssr_lobe(float distribution, float n_v, float n_l, float a2)
-{
-    float smith_v = n_l * sqrt(n_v * n_v * (1.0 - a2) + a2);
-    float smith_l = n_v * sqrt(n_l * n_l * (1.0 - a2) + a2);
-    return distribution * n_l * 0.5 / (smith_v + smith_l);
 }
 
 #endif

@@ -49,7 +49,7 @@ vec4 mean_around(ivec2 pixel, ssr_surface s)
         vec4 hit = texelFetch(hits, at, 0), ray = texelFetch(rays, at, 0);
         vec3 l = normalize(hit.xyz - s.position), h = normalize(s.to_viewer + l);
         float n_l = clamp(dot(s.n, l), 1.0e-4, 1.0);
-        float lobe = ssr_lobe(ssr_distribution(s.n, h, a2), n_v, n_l, a2);
+        float lobe = brdf_distribution(s.n, h, a2) * brdf_visibility(n_v, n_l, a2) * n_l;
         float w = hit.a > 0.0 ? hit.a * lobe : 0.0;
         sum += (w * ray.a) * vec4(ray.rgb, 1.0);
         weights += w;

@@ -114,7 +114,7 @@ traced trace(ivec2 work, ivec2 pixel, float z, float roughness)
     vec2 u = sample_of(work) * vec2(spread, 1.0);
     vec3 h = world_from_tangent * ssr_visible_normal(normalize(v), alpha, u);
     vec3 direction = reflect(-to_viewer, h);
-    float density = ssr_density(ssr_distribution(n, h, a2), brdf_cosine(n, to_viewer), a2);
+    float density = ssr_density(brdf_distribution(n, h, a2), brdf_cosine(n, to_viewer), a2);
     vec2 at;
     vec4 hit = hit_of(ssr_ray_of(position, direction), position, direction, at);
     float mip = mip_of(position, hit, density, spread);

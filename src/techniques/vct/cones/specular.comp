@@ -1,10 +1,10 @@
 // Radiance that arrives from the directions of the specular lobe.
 //
-// With rays, each pixel traces one ray of the lobe's cone (frame/lobe.glsl), and the 4 x 4 pixels
-// around it the others: cones/lobe_average.comp takes their mean. Cones would average what is
-// behind a wall with it, and the sky behind may be a hundred times as bright as a room. Where there
-// are no rays, one cone per pixel has the width of the lobe (Hong 2015, sec. 2.5.3.3.7; Crassin et
-// al. 2011).
+// With rays, each pixel whose turn it is (cones/lobe_turns.glsl) traces one ray of the lobe's cone
+// (frame/lobe.glsl), and the pixels around it the others: cones/lobe_average.comp has their mean.
+// Cones would average what is behind a wall with it, and the sky behind may be a hundred times as
+// bright as a room. Where there are no rays, one cone per pixel has the width of the lobe (Hong
+// 2015, sec. 2.5.3.3.7; Crassin et al. 2011).
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -72,8 +72,8 @@ vec3 in_cone(ivec2 pixel, vec3 axis, float tan_half)
     vec2 disk = vct_disk(square);
     float cosine = 1.0 - dot(disk, disk) * (1.0 - inversesqrt(1.0 + tan_half * tan_half));
     float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
-    vec3 x = normalize(abs(axis.y) < 0.9 ? vec3(axis.z, 0.0, -axis.x) : vec3(0.0, axis.z, -axis.y));
     vec2 around = disk * inversesqrt(max(dot(disk, disk), 1e-12));
+    vec3 x = normalize(abs(axis.y) < 0.9 ? vec3(axis.z, 0.0, -axis.x) : vec3(0.0, axis.z, -axis.y));
     return cosine * axis + sine * (around.x * x + around.y * cross(axis, x));
 }
 
@@ -89,8 +89,9 @@ vec3 met_light(vct_ray_sum s, vec3 place, vec3 direction, float texel)
                                direction, coarse)
                  .light;
     vec4 found = mix(a, b, fract(level));
-    vec3 own = vct_ray_light(s.face, s.place);
-    return found.a > VCT_RAY_COVERED ? found.rgb / found.a : own;
+    vec3 radiance = found.rgb / max(found.a, VCT_RAY_COVERED);
+    if (found.a < VCT_RAY_COVERED) radiance = vct_ray_light(s.face, s.place);
+    return radiance;
 }
 
 vec3 ray_light(ivec2 pixel, vec3 at, vec3 n, vec3 mirror, float tan_half)
