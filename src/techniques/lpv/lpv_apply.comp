@@ -149,8 +149,8 @@ vec3 surface_reflected(ivec2 pixel, vec3 surface, vec3 n, vec3 at, vec3 irradian
     vec3 to_viewer = frame_to_viewer(surface);
     to_viewer *= inversesqrt(dot(to_viewer, to_viewer));
     mat3 vector = vector_along(lpv_sample(light, at), n, irradiance);
-    vec3 radiance = light_map_radiance(light_map_light(irradiance, vector), n, to_viewer,
-                                       brdf_alpha(m.roughness));
+    light_map_lobe lobe = light_map_lobe_of(n, to_viewer, brdf_alpha(m.roughness));
+    vec3 radiance = INV_PI * (irradiance + 1.5 * lobe.share * (lobe.along * vector));
     return pixel_reflected(m, n, to_viewer, radiance);
 }
 #endif

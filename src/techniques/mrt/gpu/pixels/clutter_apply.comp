@@ -62,7 +62,8 @@ bool find_light(ivec2 pixel, out vec3 irradiance)
     irradiance = level.gain * light.irradiance;
 #if SPECULAR
     mrt_reflection reflection = reflection_of(pixel, s.normal, s.to_viewer);
-    store_reflected(pixel, reflection, light_map_radiance_along(light, reflection.lobe.along));
+    store_reflected(pixel, reflection,
+                    light_map_radiance_of(light, s.normal, reflection.lobe.surface));
 #endif
     return true;
 }

@@ -41,15 +41,15 @@ void change_by_normal(vec3 uv, vec3 normal, inout light_map_light light)
 }
 
 // Reduced bases leave small negative values beside bright texels. Up to here light is linear.
-// `normal` and `along`, of mrt_lobe, are in the frame of struct mrt_point.
-mrt_light tile_light(vec2 first, vec2 st, vec3 normal, vec3 along)
+// `normal` and `lobe` are in the frame of struct mrt_point.
+mrt_light tile_light(vec2 first, vec2 st, vec3 normal, light_map_lobe lobe)
 {
     vec3 uv = light_map_uv(first, clamp(st, 0.0, 1.0));
     light_map_light light = light_map_light(textureLod(light_map, uv, 0.0).rgb, mat3(0.0));
     if (VALUES == 4u && (SPECULAR == 1 || normal.z < MRT_ALONG_WALL))
         change_by_normal(uv, normal, light);
     light.irradiance = max(light.irradiance, vec3(0.0));
-    return mrt_light(light.irradiance, max(light_map_radiance_along(light, along), vec3(0.0)));
+    return mrt_light(light.irradiance, light_map_radiance_of(light, normal, lobe));
 }
 
 // From the cell to the frame of mrt_point of a wall.
@@ -58,11 +58,12 @@ vec3 before_wall(mat3 frame, vec3 direction)
     return (direction * frame) * vec3(-1.0, 1.0, -1.0);
 }
 
-mrt_light wall_light(vec2 first, int face, vec3 cell, vec3 normal, vec3 along)
+mrt_light wall_light(vec2 first, int face, vec3 cell, vec3 normal, light_map_lobe lobe)
 {
     mat3 frame = cube_from_face(face);
+    lobe.along = before_wall(frame, lobe.along);
     return tile_light(first, 0.5 + vec2(dot(frame[0], cell), dot(frame[1], cell)),
-                      before_wall(frame, normal), before_wall(frame, along));
+                      before_wall(frame, normal), lobe);
 }
 
 struct mrt_wall {
@@ -104,7 +105,8 @@ vec3 walls_irradiance(mrt_place place, vec3 direction)
         if (!is_wall(faces, face)) continue;
         vec3 inner = -cube_from_face(face)[2];
         float cosine = max(dot(inner, direction), 0.0), weight = cosine * cosine + MRT_LEAST_WEIGHT;
-        mrt_light light = wall_light(tile_by_rows(block, face), face, place.cell, inner, vec3(0.0));
+        mrt_light light =
+            wall_light(tile_by_rows(block, face), face, place.cell, inner, MRT_NO_LOBE.surface);
         sum += weight * light.irradiance;
         weights += weight;
     }
@@ -206,10 +208,12 @@ mrt_light tube_light(mrt_place place, vec3 normal, mrt_lobe lobe)
     float share = share_of_wall(MRT_TUBE_RADIUS - length(at.off), n.z);
     mrt_light on_wall = MRT_DARK, inside = MRT_DARK;
     if (share > 0.0)
-        on_wall = tile_light(first, st, n, direction_in_cell(place, lobe.along) * at.frame);
+        on_wall = tile_light(first, st, n,
+                             light_map_lobe(direction_in_cell(place, lobe.surface.along) * at.frame,
+                                            lobe.surface.share));
     if (share < 1.0)
         inside = PROBES ? bricks_light(place, normal, lobe)
-                        : tile_light(first, st, vec3(0.0, 0.0, 1.0), vec3(0.0));
+                        : tile_light(first, st, vec3(0.0, 0.0, 1.0), MRT_NO_LOBE.surface);
     return mix_light(inside, on_wall, share);
 }
 
@@ -221,8 +225,9 @@ mrt_light room_light(vec3 position, vec3 normal, mrt_lobe lobe, mrt_place place)
     if (wall.share == 0.0) wall = wall_beyond(position + level.offset_m * normal, normal, place, n);
     mrt_light on_wall = MRT_DARK, inside = MRT_DARK;
     if (wall.share > 0.0)
-        on_wall = wall_light(tile_by_rows(uint(place.block), wall.face), wall.face, place.cell, n,
-                             direction_in_cell(place, lobe.along));
+        on_wall = wall_light(
+            tile_by_rows(uint(place.block), wall.face), wall.face, place.cell, n,
+            light_map_lobe(direction_in_cell(place, lobe.surface.along), lobe.surface.share));
     if (wall.share < 1.0)
         inside = PROBES ? bricks_light(place, normal, lobe) : walls_light(place, n, lobe);
     return mix_light(inside, on_wall, wall.share);

@@ -8,10 +8,10 @@
 
 // The specular lobe towards the viewer, in the world.
 struct mrt_lobe {
-    vec3 along; // light_map_shared_along
-    vec3 mean;  // direction, unit
+    light_map_lobe surface;
+    vec3 mean; // direction, unit
 };
-const mrt_lobe MRT_NO_LOBE = mrt_lobe(vec3(0.0), vec3(0.0));
+const mrt_lobe MRT_NO_LOBE = mrt_lobe(light_map_lobe(vec3(0.0), 0.0), vec3(0.0));
 
 struct mrt_light {
     vec3 irradiance;
@@ -22,7 +22,7 @@ const mrt_light MRT_DARK = mrt_light(vec3(0.0), vec3(0.0));
 
 mrt_lobe mrt_lobe_of(vec3 normal, vec3 to_viewer, float alpha)
 {
-    return mrt_lobe(light_map_shared_along(normal, to_viewer, alpha),
+    return mrt_lobe(light_map_lobe_of(normal, to_viewer, alpha),
                     normalize(lobe_mean(normal, to_viewer, alpha)));
 }
 

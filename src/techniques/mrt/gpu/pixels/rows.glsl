@@ -93,7 +93,7 @@ int plain_light(vec3 position, vec3 normal, mrt_lobe lobe, out mrt_light light)
     mrt_wall wall = wall_of(around.faces, around.cell, around.normal);
     int face = max(wall.face, 0);
     light = wall_light(tile_by_rows(rows.block, face), face, around.cell, around.normal,
-                       turned_by(edges, lobe.along));
+                       light_map_lobe(turned_by(edges, lobe.surface.along), lobe.surface.share));
     if (found && wall.share == 1.0) return MRT_OF_WALL;
     bool probes = PROBES && wall.share == 0.0 && is_beside_no_opening(around);
     return found && probes ? MRT_OF_PROBES : MRT_OF_SEVERAL;
