@@ -264,8 +264,8 @@ static void mrt_update(void *state, struct gpu_cmd *cmd, const struct frame_view
         mrt_record_direct(&mrt->runtime, cmd, view, mrt->options.emitters);
         record_solution(mrt, cmd, view);
         mrt_record_light_map(&mrt->runtime, cmd);
-        mrt_record_probes(&mrt->runtime, cmd, view, mrt->options.gain);
         mrt_record_outdoors(&mrt->runtime, cmd, view);
+        mrt_record_probes(&mrt->runtime, cmd, view, mrt->options.gain);
     }
     mrt->lit = true;
 }
@@ -329,9 +329,12 @@ static uint64_t estimate(const struct mrt_options *o, bool has_clutter)
     });
 }
 
+// The scene may have no room.
 static uint64_t mrt_memory_estimate(const void *options)
 {
-    return estimate(options, false);
+    const struct mrt_options *o = options;
+    const bool may_be_open = o->map != MRT_MAP_SINGLE && !o->blocks.at[0];
+    return estimate(o, false) + (may_be_open ? mrt_outdoors_bytes() : 0);
 }
 
 static uint64_t drt_memory_estimate(const void *options)

@@ -210,6 +210,7 @@ static bool make_blocks(struct mrt *mrt, const struct scene_pose *pose)
 {
     if (!choose_map(mrt->host, pose, &mrt->options, &mrt->map)) return false;
     if (mrt->options.maze == MRT_MAZE_AUTO) mrt->options.maze = (int32_t)maze_of(&mrt->map);
+    if (mrt->delta) mrt->map.is_open = false; // clutter shades and lights its block
     mrt->parts = (struct mrt_parts){ .host = mrt->host };
     return mrt->map.count == 0 || find_clutter_and_open(mrt, pose);
 }
@@ -229,9 +230,33 @@ char *mrt_map_json(struct host *host, const struct mrt_options *options, bool de
     return json;
 }
 
+static void log_map(const struct mrt *mrt, const char *scene)
+{
+    const char *technique = mrt->delta ? "drt" : "mrt";
+    if (mrt->map.is_open) {
+        host_log(mrt->host, LOG_INFO,
+                 "gi %s: no room found in %s: its surfaces have the light of a grid of probes "
+                 "outdoors; map=single takes the box around it for a room",
+                 technique, scene);
+        return;
+    }
+    int faces[2] = { 0 }; // openings, walls with holes: two faces for each
+    for (int b = 0; b < mrt->map.count; b++)
+        for (int f = 0; f < CUBE_FACES; f++)
+            if (mrt->map.blocks[b].neighbor[f].block >= 0)
+                faces[mrt_block_has_holes(&mrt->map.blocks[b], f)]++;
+    host_log(
+        mrt->host, LOG_INFO,
+        "gi %s: blocks of %s: %d, of a mean edge of %.3g m, joined by %d openings and holes in "
+        "%d walls%s",
+        technique, scene, mrt->map.count, (double)mrt_block_map_mean_edge(&mrt->map), faces[0] / 2,
+        faces[1] / 2, mrt->map.is_single ? "; its bounding box is taken for a room" : "");
+}
+
 bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
 {
     if (!make_blocks(mrt, pose)) return false;
+    if (mrt->map.count > 0) log_map(mrt, pose->scene->name);
     warn_of_clutter(mrt, pose->scene->name);
     const int resolution = mrt_face_texels((enum mrt_maze)mrt->options.maze, mrt->options.texels);
     return mrt->map.count == 0 ||

@@ -5,8 +5,9 @@
 #include "frame/frame_fixture.h"
 
 // A small dictionary of mrt or drt: texels along an edge of a wall, modes of bases and responses.
-#define TRIAL_DICTIONARY(texels, prior, modes)                                                     \
-    ":texels=" #texels ",rays=256,prior_modes=" #prior ",modes=" #modes                            \
+#define TRIAL_DICTIONARY(texels, prior, modes) ":" TRIAL_DICTIONARY_OPTIONS(texels, prior, modes)
+#define TRIAL_DICTIONARY_OPTIONS(texels, prior, modes)                                             \
+    "texels=" #texels ",rays=256,prior_modes=" #prior ",modes=" #modes                             \
     ",lightfield_positions=4,lightfield_directions=6,lightfield_modes=16,response_modes=" #modes   \
     ",block_probes=2"
 

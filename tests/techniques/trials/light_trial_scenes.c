@@ -178,6 +178,21 @@ void trial_street(struct frame_fixture *s, struct gpu *gpu, enum trial_street_ro
                  vec3_of(at.min.x, 1.2f, at.min.z + 0.5f));
 }
 
+void trial_outdoors(struct frame_fixture *s, struct gpu *gpu, enum trial_outdoors scene)
+{
+    fixture_init(s, gpu);
+    s->options.shadow_size = 2048;
+    const int white = fixture_matte(s, grey(0.7f)), ground = fixture_matte(s, grey(0.4f));
+    fixture_box(s, vec3_of(-1, 0, -1), vec3_of(1, 2, 1), false, white);
+    if (scene == TRIAL_OUTDOORS_GROUND)
+        fixture_box(s, vec3_of(-10, -0.5f, -10), vec3_of(10, 0, 10), false, ground);
+    else
+        fixture_box(s, vec3_of(1.5f, 1, -1), vec3_of(3.5f, 3, 1), false, white);
+    fixture_add_sun(s, vec3_of(0, -1, -1), grey(1000));
+    s->input.environment.sky = grey(100);
+    fixture_look(s, vec3_of(5, 3, -6), vec3_of(0.5f, 1, 0));
+}
+
 void trial_open_plane(struct frame_fixture *s, struct gpu *gpu, const struct trial_plane *plane)
 {
     const float half = 3, c = cosf(plane->tilt_rad), d = sinf(plane->tilt_rad);

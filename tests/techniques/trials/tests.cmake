@@ -6,7 +6,7 @@ target_link_libraries(ag_test_paint PUBLIC ag_test_frame_fixture ag_test_techniq
 
 ag_technique_tests(trials/emission trials/invariants trials/smoke trials/visibility)
 ag_test(techniques/trials/paint USES techniques LIBRARIES ag_test_paint)
-foreach(name ceiling_light door environment light mirror objects planes probes spots street window)
+foreach(name ceiling_light door environment light mirror objects outdoors planes probes spots street window)
   ag_test(techniques/trials/${name} USES techniques LIBRARIES ag_test_light_trial)
 endforeach()
 ag_shaders_for(test_techniques_trials techniques_test_shaders.h ${CMAKE_CURRENT_LIST_DIR}/shaders)

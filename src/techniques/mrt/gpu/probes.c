@@ -127,7 +127,9 @@ static bool make_volume(struct mrt_runtime *runtime, const struct mrt_runtime_in
            mrt_buffer_of(runtime, "mrt_probe_places", input->published->place,
                          probe_grid_count(p->grid) * sizeof(vec4s)) &&
            mrt_pipeline_of(runtime, "probe_volume", &shader_mrt_gpu_probe_volume_comp,
-                           1u << MRT_CONSTANT_TUBES | 1u << MRT_CONSTANT_SIGHT, &p->publish);
+                           1u << MRT_CONSTANT_TUBES | 1u << MRT_CONSTANT_SIGHT |
+                               1u << MRT_CONSTANT_OUTDOORS,
+                           &p->publish);
 }
 
 bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)

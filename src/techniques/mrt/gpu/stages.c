@@ -127,10 +127,13 @@ static void record_bricks(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 static void record_volume(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
     const struct mrt_runtime_probes *p = &runtime->probes;
-    mrt_dispatch(runtime, cmd, p->publish,
-                 GPU_BIND({ .name = "bricks", .image = p->bricks, .sampler = runtime->linear },
-                          { .name = "volume", .image = p->volume }),
-                 &p->grid, sizeof p->grid, gpu_groups(probe_grid_count(p->grid), MRT_LOCAL), 1, 1);
+    mrt_dispatch(
+        runtime, cmd, p->publish,
+        GPU_BIND(
+            { .name = "bricks", .image = p->bricks, .sampler = runtime->linear },
+            { .name = "outdoors", .image = runtime->outdoors.image, .sampler = runtime->linear },
+            { .name = "volume", .image = p->volume }),
+        &p->grid, sizeof p->grid, gpu_groups(probe_grid_count(p->grid), MRT_LOCAL), 1, 1);
 }
 
 void mrt_record_probes(struct mrt_runtime *runtime, struct gpu_cmd *cmd,

@@ -34,6 +34,7 @@ static int clamp_cell(float x, int cells)
 // Counts the blocks that touch each cell, and lists them where there are candidates.
 static void add_blocks(struct mrt_block_grid *grid, const struct mrt_block_map *map, float margin)
 {
+    if (map->is_open) return;
     for (int b = 0; b < map->count; b++) {
         const struct box3 box = bounds_of(&map->blocks[b], margin);
         int low[3], high[3];
@@ -101,7 +102,8 @@ bool mrt_block_grid_init(struct host *host, const struct mrt_block_map *map, flo
     if (!out->lists) return false;
     add_blocks(out, map, margin);
     out->candidate_count = place_lists(out);
-    out->candidates = host_alloc(host, out->candidate_count, sizeof *out->candidates);
+    out->candidates =
+        host_alloc(host, out->candidate_count + map->is_open, sizeof *out->candidates);
     if (!out->candidates) {
         mrt_block_grid_finish(out);
         return false;

@@ -20,6 +20,7 @@ struct mrt_block_map {
     int count;
     bool is_found;  // in the free space of a scene
     bool is_single; // one block stands for the scene
+    bool is_open;   // the scene has no room: no surface belongs to a block
     struct mrt_named_part *named;
     int named_count;
 };

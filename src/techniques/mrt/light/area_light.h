@@ -49,6 +49,8 @@ struct mrt_outdoors {
 bool mrt_outdoors_init(const struct trace_scene *scene, struct mrt_reflectors *reflectors,
                        struct box3 bounds, struct mrt_outdoors *out);
 void mrt_outdoors_finish(struct mrt_outdoors *outdoors); // accepts zero
+// About the most that a grid takes on the GPU, with what its probes receive of reflectors.
+uint64_t mrt_outdoors_bytes(void);
 
 // ---- area_light.c
 

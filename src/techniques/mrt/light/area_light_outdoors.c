@@ -94,3 +94,9 @@ void mrt_outdoors_finish(struct mrt_outdoors *outdoors)
     if (outdoors->host) host_free(outdoors->host, outdoors->probes);
     *outdoors = (struct mrt_outdoors){ 0 };
 }
+
+uint64_t mrt_outdoors_bytes(void)
+{
+    const uint64_t shares = RAYS * sizeof(struct mrt_reflector_share);
+    return POINTS * (sizeof(struct mrt_outdoor_probe) + shares);
+}

@@ -233,9 +233,6 @@ mrt_light room_light(vec3 position, vec3 normal, mrt_lobe lobe, mrt_place place)
     return mix_light(inside, on_wall, wall.share);
 }
 
-// Edges beyond its block over which a surface outdoors blends out of the light of the room.
-const float MRT_LEAVING = 0.25;
-
 // How much a surface faces away from its block along an axis across which it is beyond: the outer
 // side of a wall does, the reveals and the back of a niche do not.
 float facing_away(mrt_place place, vec3 normal)

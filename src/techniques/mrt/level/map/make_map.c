@@ -141,8 +141,11 @@ bool mrt_map_auto(struct host *host, const struct scene_pose *pose, const vec3s 
                     raycast_init(&raycast, host, pose) &&
                     mrt_regions_find(host, &raycast, pose->bounds, &regions) &&
                     add_blocks_in(&search, &cells, map) && add_rooms(host, pose, &cells, map);
+    const bool is_open = ok && map->count == 0 && mrt_box_is_open(&raycast, pose->bounds);
     mrt_regions_finish(&regions);
     raycast_finish(&raycast);
     if (!ok || map->count == 0) mrt_block_map_finish(map);
-    return ok && (map->blocks || mrt_map_single(host, pose, map));
+    if (!ok || (!map->blocks && !mrt_map_single(host, pose, map))) return false;
+    map->is_open = is_open;
+    return true;
 }

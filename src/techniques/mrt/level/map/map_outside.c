@@ -48,12 +48,18 @@ static vec3s place_in(const struct mrt_cells *cells, const int at[3], vec3s part
     return point;
 }
 
-// Place i between the planes of a cell.
-static vec3s sample_of(const struct mrt_cells *cells, const int at[3], int i)
+// Coordinates of place i in a cell, 0 … 1.
+static vec3s part_of(int i)
 {
     const vec3s part =
         vec3_of((float)(i % ALONG), (float)(i / ALONG % ALONG), (float)(i / (ALONG * ALONG)));
-    return place_in(cells, at, glms_vec3_divs(glms_vec3_adds(part, 0.5f), (float)ALONG));
+    return glms_vec3_divs(glms_vec3_adds(part, 0.5f), (float)ALONG);
+}
+
+// Place i between the planes of a cell.
+static vec3s sample_of(const struct mrt_cells *cells, const int at[3], int i)
+{
+    return place_in(cells, at, part_of(i));
 }
 
 static bool is_mostly_enclosed(const struct mrt_cells *cells, const int at[3])
@@ -73,6 +79,29 @@ static bool sees_the_sky(const struct mrt_cells *cells, const int at[3])
     for (uint32_t i = 0; i < MIDDLE_WAYS; i++)
         escaped += !raycast_blocked(cells->raycast, middle, sample_sphere(sobol_2d(i, 0)), far);
     return (float)escaped > OUTSIDE * (float)MIDDLE_WAYS;
+}
+
+// Part of all directions from a point in which no surface is, nor the back of one.
+static float open_part(const struct raycast *raycast, vec3s point, float far)
+{
+    struct raycast_hit hit;
+    int open = 0, backs = 0;
+    for (uint32_t i = 0; i < WAYS; i++) {
+        const bool found =
+            raycast_closest(raycast, point, sample_sphere(sobol_2d(i, 0)), far, &hit);
+        open += !found;
+        backs += found && !hit.front;
+    }
+    return 2 * backs > WAYS ? 1.0f : (float)open / (float)WAYS;
+}
+
+bool mrt_box_is_open(const struct raycast *raycast, struct box3 box)
+{
+    const float far = 2.0f * glms_vec3_norm(box3_size(box));
+    float open = 0.0f;
+    for (int i = 0; i < SAMPLES; i++)
+        open += open_part(raycast, glms_vec3_muladd(part_of(i), box3_size(box), box.min), far);
+    return open > OUTSIDE * (float)SAMPLES;
 }
 
 static struct box3 bounds_of(const struct mrt_cells *cells, const int at[3])
