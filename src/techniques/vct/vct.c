@@ -53,7 +53,8 @@ static const struct option_alias occlusion_aliases[] = {
 static const struct technique_preset presets[] = {
     { "low", "resolution=32,half_resolution=true" },
     { "medium", "" },
-    { "high", "resolution=128,temporal=true,specular=true" },
+    { "high",
+      "resolution=128,temporal=true,trace=rays,interleave=3,half_resolution=true,specular=true" },
     { NULL, NULL },
 };
 static const struct technique_preset occlusion_presets[] = {
@@ -308,6 +309,10 @@ static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view
     vct_record_cones(vct, cmd, view);
     if (vct->options.temporal)
         vct_temporal_record(vct->temporal, vct->accumulate, cmd, view, vct_result(vct, view));
+    if (vct_denoises(&vct->options))
+        vct_temporal_denoise(vct->temporal, vct->denoise, cmd, view,
+                             (uint32_t)vct->options.interleave * vct_step(&vct->options),
+                             vct_result(vct, view));
     if (vct->options.specular) record_specular(vct, cmd, view);
 }
 

@@ -24,6 +24,11 @@ bool vct_pixels_have_rays(const struct vct_options *options)
     return options->trace == VCT_BY_RAYS && fits_rays(options);
 }
 
+bool vct_denoises(const struct vct_options *options)
+{
+    return options->temporal && vct_pixels_have_rays(options);
+}
+
 bool vct_has_rays(const struct vct_options *options)
 {
     return options->occlusion ? vct_pixels_have_rays(options) : fits_rays(options);

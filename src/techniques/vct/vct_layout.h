@@ -9,6 +9,8 @@
 int vct_clip_count(const struct vct_options *options);
 // Rays need one grid of anisotropic voxels. Voxels use them where they can, pixels by option.
 bool vct_pixels_have_rays(const struct vct_options *options);
+// Whether accumulated irradiance is filtered over pixels.
+bool vct_denoises(const struct vct_options *options);
 bool vct_has_rays(const struct vct_options *options);
 bool vct_has_svo(const struct vct_options *options);
 // Pixels of the frame per pixel that traces cones, in x and y.

@@ -134,7 +134,7 @@ void vct_add_pipelines(const struct vct_options *o, struct gpu_objects *out)
     const uint32_t kind = o->occlusion ? OCCLUSION : 0,
                    half = o->half_resolution ? HALF_RESOLUTION : 0,
                    block = vct_block_level(o) == 2 ? LARGE_BLOCKS : 0;
-    const bool rays = vct_has_rays(o), lit = !o->occlusion;
+    const bool rays = vct_has_rays(o), lit = !o->occlusion, denoises = vct_denoises(o);
     fill_constants(o, out->constants);
     add_voxelize(o, out);
     add_light(o, out);
@@ -156,5 +156,9 @@ void vct_add_pipelines(const struct vct_options *o, struct gpu_objects *out)
                  kind | COLUMNS | half),
         PIPELINE(blur, "blur", &shader_vct_cones_blur_comp, CLIPS),
         PIPELINE(upsample, "upsample", half ? &shader_vct_cones_upsample_comp : NULL, kind | CLIPS),
-        PIPELINE(accumulate, "temporal", o->temporal ? &shader_vct_cones_temporal_comp : NULL, 0));
+        PIPELINE(accumulate, "temporal", o->temporal ? &shader_vct_cones_temporal_comp : NULL,
+                 denoises ? (uint32_t)RAYS : 0),
+        PIPELINE(denoise[0], "denoise", denoises ? &shader_vct_cones_denoise_within_comp : NULL, 0),
+        PIPELINE(denoise[1], "denoise_across",
+                 denoises ? &shader_vct_cones_denoise_across_comp : NULL, 0));
 }

@@ -23,13 +23,13 @@ static void change_scene(struct vct_fixture *fixture, int box, enum change chang
 }
 
 // Prints the error of the frames after the change, and returns that of the fourth.
-static double error_after(struct gpu *gpu, const char *options, enum change change)
+static double error_after(struct gpu *gpu, const char *options, uint32_t size, enum change change)
 {
     static const char *const names[] = { "a moving light", "a moving box", "a jump of the light" };
     enum { BEFORE = 40, SHOWN = 8, SETTLED = 200 };
     struct vct_fixture fixture;
     const int box = vct_fixture_room(&fixture, gpu);
-    fixture.frame_fixture.width = fixture.frame_fixture.height = 64;
+    fixture.frame_fixture.width = fixture.frame_fixture.height = size;
     vct_fixture_open(&fixture, options);
     const size_t count = (size_t)fixture.frame_fixture.width * fixture.frame_fixture.height * 3;
     float *e[SHOWN], *before = vct_fixture_irradiance_after(&fixture, BEFORE);
@@ -50,11 +50,37 @@ static double error_after(struct gpu *gpu, const char *options, enum change chan
     return fourth;
 }
 
+// The error of rays is noise, which is averaged over more pixels of a surface in a larger image.
 TEST_GPU(history_follows_a_change_within_four_frames)
 {
-    static const char *const options[] = { "resolution=32,temporal=true",
-                                           "resolution=128,temporal=true" };
-    for (int i = 0; i < 2; i++)
+    static const struct {
+        const char *options;
+        uint32_t size;
+        double most;
+    } cases[] = {
+        { "resolution=32,temporal=true", 64, 0.02 },
+        { "resolution=128,temporal=true", 64, 0.02 },
+        { "resolution=128,temporal=true,trace=rays,interleave=3,half_resolution=true", 160, 0.04 },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         for (enum change change = LIGHT_MOVES; change <= LIGHT_JUMPS; change++)
-            CHECK(error_after(gpu, options[i], change) <= 0.02);
+            CHECK(error_after(gpu, cases[i].options, cases[i].size, change) <= cases[i].most);
+}
+
+// Against the mean of 200 later frames.
+TEST_GPU(rays_have_little_noise_after_eight_frames)
+{
+    struct vct_fixture fixture;
+    vct_fixture_room(&fixture, gpu);
+    fixture.frame_fixture.width = fixture.frame_fixture.height = 160;
+    vct_fixture_open(&fixture,
+                     "resolution=64,temporal=true,trace=rays,interleave=3,half_resolution=true");
+    const size_t count = (size_t)fixture.frame_fixture.width * fixture.frame_fixture.height * 3;
+    float *eighth = vct_fixture_irradiance_after(&fixture, 8),
+          *settled = vct_fixture_irradiance_after(&fixture, 200);
+    const double error = vct_fixture_difference(eighth, settled, count);
+    print_message("after eight frames %.2f %% from the settled image\n", 100.0 * error);
+    CHECK(error <= 0.02);
+    free(eighth), free(settled);
+    vct_fixture_finish(&fixture);
 }

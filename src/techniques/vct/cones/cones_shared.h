@@ -56,6 +56,12 @@ struct vct_specular_params {
     uint32_t stride; // one in stride × stride pixels of rough surfaces has a ray in a frame
 };
 
+// Push constants of cones/denoise.comp.
+struct vct_denoise_push {
+    int32_t stride;   // of the taps, px
+    float step_per_m; // width of that many pixels at a distance of 1 m
+};
+
 // How the history follows a change of light: see cones/temporal.c.
 #define VCT_KEEP            0 // no light has changed
 #define VCT_FOLLOW_KNOWN    1 // by the difference of two frames of one rotation

@@ -5,23 +5,11 @@
 #ifndef AG_VCT_HISTORY_GLSL
 #define AG_VCT_HISTORY_GLSL
 
+#include "techniques/vct/cones/packed_normal.glsl"
+
 const float HISTORY_LEAST_COSINE = 0.9; // of two normals of one surface: 26 degrees
 const float HISTORY_TOLERANCE_PX = 4.0; // distance from the plane, in pixel widths at that depth
 const float HISTORY_LEAST = 0.1; // sum of the four tap weights below which history is rejected
-const float NORMAL_STEPS = 4096.0;
-
-// Octahedral, two times 12 bits as an integer that a float represents exactly.
-float packed_normal(vec3 n)
-{
-    vec2 whole = round(clamp(octahedral_encode(n) * 0.5 + 0.5, 0.0, 1.0) * (NORMAL_STEPS - 1.0));
-    return whole.x + NORMAL_STEPS * whole.y;
-}
-
-vec3 unpacked_normal(float bits)
-{
-    float y = floor(bits / NORMAL_STEPS);
-    return octahedral_decode(vec2(bits - NORMAL_STEPS * y, y) / (NORMAL_STEPS - 1.0) * 2.0 - 1.0);
-}
 
 // Size of the image plane at a distance, in units of vct_history_params.
 float previous_scale(float distance_m)

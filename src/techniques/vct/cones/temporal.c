@@ -155,3 +155,30 @@ void vct_temporal_record(struct vct_temporal *t, gpu_pipeline filter, struct gpu
                  gpu_groups(view->height, VCT_LOCAL_2D), 1);
     gpu_scope_end(cmd);
 }
+
+static void record_pass(const struct vct_temporal *t, gpu_pipeline filter, struct gpu_cmd *cmd,
+                        const struct frame_view *view, uint32_t stride, gpu_image from,
+                        gpu_image to)
+{
+    const float pixel = frame_camera_pixel(&view->camera, view->width, view->height);
+    const struct vct_denoise_push push = { (int32_t)stride, (float)stride * pixel };
+    gpu_dispatch(cmd, filter,
+                 GPU_BIND(view->constants_binding, { .name = "light", .image = from },
+                          { .name = "surface", .image = t->surface[t->newest] },
+                          { .name = "change", .image = t->change[t->newest] },
+                          { .name = "irradiance", .image = to }),
+                 &push, sizeof push, gpu_groups(view->width, VCT_LOCAL_2D),
+                 gpu_groups(view->height, VCT_LOCAL_2D), 1);
+}
+
+// Between the passes the light is in an image that the next frame begins to write.
+void vct_temporal_denoise(const struct vct_temporal *t, const gpu_pipeline filters[2],
+                          struct gpu_cmd *cmd, const struct frame_view *view, uint32_t block,
+                          gpu_image result)
+{
+    const gpu_image between = t->now[1 - t->newest];
+    gpu_scope_begin(cmd, "denoise");
+    record_pass(t, filters[0], cmd, view, (block + 1) / 2, t->light[t->newest], between);
+    record_pass(t, filters[1], cmd, view, block, between, result);
+    gpu_scope_end(cmd);
+}

@@ -13,6 +13,7 @@
 #include "frame/octahedral.glsl"
 #include "techniques/common/reproject.glsl"
 #include "techniques/vct/cones/cones_shared.h"
+#include "techniques/vct/vct_constants.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -32,7 +33,9 @@ layout(set = 0, binding = 9, rg32f) uniform writeonly image2D surface;
 layout(set = 0, binding = 10) uniform writeonly image2D irradiance;
 layout(set = 0, binding = 11) uniform sampler2D last_now;
 layout(set = 0, binding = 12) uniform sampler2D last_change;
+// Change; deviation of one frame alone from the mean, of the sum of colours.
 layout(set = 0, binding = 13, rgba16f) uniform writeonly image2D change;
+layout(constant_id = VCT_CONSTANT_RAYS) const bool VCT_RAYS = false;
 #include "techniques/vct/cones/history.glsl"
 
 // Relative deviation of one frame from the mean over rotations: measured in a room with all
@@ -41,27 +44,30 @@ const float FRAME_NOISE = 0.025;
 // Weight of a difference in a moving mean where pixels move: pixels that trace other cones of a
 // block differ without a change of light.
 const float MOVED_SHARE = 0.25;
-const float LATER_BOUNCE = 0.5; // change of light by a bounce over that of the bounce before
-const int RADIUS = 2;           // of the neighbourhood of the clamp, px
+const float LATER_BOUNCE = 0.5;    // change of light by a bounce over that of the bounce before
+const float FIRST_DEVIATION = 0.3; // of the first frame, over its light
+const float DEVIATION_FRAMES = 16.0;
+const int RADIUS = 2; // of the neighbourhood of the clamp, px
 
 struct history_sample {
     vec4 light;  // irradiance, weight in frames; 0 frames: rejected
     vec3 now;    // of the previous frame alone
-    vec3 change; // last known change of it
+    vec4 change; // last known change of it; deviation
 };
 
 history_sample sample_history(vec2 history_pixel, float distance_m, vec3 n)
 {
     vec4 expected = history_expected(history_pixel, distance_m);
     float weights = 0.0;
-    history_sample sum = history_sample(vec4(0.0), vec3(0.0), vec3(0.0));
+    history_sample sum = history_sample(vec4(0.0), vec3(0.0), vec4(0.0));
     for (int i = 0; i < 4; i++) {
         ivec2 at = reproject_tap(history_pixel, i);
         float weight = history_weight(history_pixel, i, expected, n);
         if (weight <= 0.0) continue;
         sum.light += weight * texelFetch(last_light, at, 0);
         if (set.follow != VCT_KEEP) sum.now += weight * texelFetch(last_now, at, 0).rgb;
-        if (set.follow != VCT_KEEP) sum.change += weight * texelFetch(last_change, at, 0).rgb;
+        if (VCT_RAYS || set.follow != VCT_KEEP)
+            sum.change += weight * texelFetch(last_change, at, 0);
         weights += weight;
     }
     float w = weights > HISTORY_LEAST ? 1.0 / weights : 0.0, scale = set.scale * w;
@@ -99,7 +105,7 @@ float less_certain(float w, vec3 before, vec3 after)
 // The history after the change of light since the previous frame. `change`: of one frame alone.
 vec4 follow(history_sample history, vec3 now, bool moves, out vec3 change)
 {
-    change = history.change;
+    change = history.change.rgb;
     if (set.follow == VCT_FOLLOW_KNOWN) {
         change = mix(change, now - history.now, moves ? MOVED_SHARE : 1.0);
         return followed(history.light, history.now, max(history.now + change, 0.0));
@@ -109,6 +115,17 @@ vec4 follow(history_sample history, vec3 now, bool moves, out vec3 change)
     if (set.follow == VCT_FOLLOW_EXPECTED) light = followed(light, history.now, expected);
     change *= LATER_BOUNCE;
     return vec4(light.rgb, less_certain(light.w, history.now, expected));
+}
+
+// Standard deviation of one frame: a moving mean of squares, of at most DEVIATION_FRAMES frames.
+// Two frames differ by twice the variance, a frame and the mean of w by 1 + 1/w of it.
+float deviation_after(history_sample history, vec4 old, vec3 now, float added)
+{
+    if (old.w <= 0.0) return FIRST_DEVIATION * total(now);
+    float difference = total(now) - total(old.rgb), before = history.change.a;
+    float square = difference * difference * old.w / (old.w + 1.0);
+    float share = added / (min(old.w, DEVIATION_FRAMES) + added);
+    return sqrt(mix(before * before, square, share));
 }
 
 vec3 position(ivec2 pixel, float z)
@@ -150,13 +167,13 @@ void main()
     float z = texelFetch(depth, pixel, 0).r;
     vec3 mean = texelFetch(now, pixel, 0).rgb, known = vec3(0.0);
     vec2 stored = vec2(0.0);
-    float frames = 0.0;
+    float frames = 0.0, deviation = 0.0;
     if (z > 0.0) {
         vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
         float distance_m = frame_view_distance(z);
         vec4 moved = texelFetch(motion, pixel, 0);
         float distance_before = reproject_distance(moved, distance_m);
-        history_sample history = history_sample(vec4(0.0), vec3(0.0), vec3(0.0));
+        history_sample history = history_sample(vec4(0.0), vec3(0.0), vec4(0.0));
         if (set.known != 0u && distance_before > 0.0)
             history =
                 sample_history(reproject_place(moved, pixel, vec2(frame.width, frame.height),
@@ -173,12 +190,13 @@ void main()
             old = follow(history_sample(old, history.now, history.change), mean, moves, known);
             if (!moves) added = set.added;
         }
+        if (VCT_RAYS) deviation = deviation_after(history, old, mean, added);
         mean = (old.w * old.rgb + added * mean) / (old.w + added);
         frames = min(old.w + added, set.most);
         stored = vec2(distance_m, packed_normal(n));
     }
     imageStore(light, pixel, vec4(mean, frames));
     imageStore(surface, pixel, vec4(stored, 0.0, 0.0));
-    imageStore(change, pixel, vec4(clamp(known, -HALF_MAX, HALF_MAX), 0.0));
-    imageStore(irradiance, pixel, vec4(mean, 1.0));
+    imageStore(change, pixel, vec4(clamp(known, -HALF_MAX, HALF_MAX), min(deviation, HALF_MAX)));
+    if (!VCT_RAYS) imageStore(irradiance, pixel, vec4(mean, 1.0));
 }

@@ -35,6 +35,11 @@ void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, i
 void vct_temporal_rotate_cones(const struct vct_temporal *t, struct vct_cone_params *params);
 // The image of this frame's cones.
 gpu_image vct_temporal_now(const struct vct_temporal *t);
-// Blends it with the history; writes `result` and the new history.
+// Blends it with the history; writes the new history, and `result` where it is not denoised.
 void vct_temporal_record(struct vct_temporal *t, gpu_pipeline filter, struct gpu_cmd *cmd,
                          const struct frame_view *view, gpu_image result);
+// Writes the history to `result`, averaged over pixels: filters within and across blocks.
+// block: px along a side that share one set of rays.
+void vct_temporal_denoise(const struct vct_temporal *t, const gpu_pipeline filters[2],
+                          struct gpu_cmd *cmd, const struct frame_view *view, uint32_t block,
+                          gpu_image result);
