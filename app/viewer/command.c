@@ -3,6 +3,7 @@
 
 #include "operations.h"
 #include "shell/words.h"
+#include "viewer/methods/tone.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -114,8 +115,9 @@ bool viewer_command(struct viewer *v, char *out, size_t size)
     words_add(&w, "%s", v->desc->scene_words);
     words_add(&w, " --gi");
     words_add_word(&w, v->gi);
-    if (v->desc->frame_options) words_add(&w, " --frame-options");
-    if (v->desc->frame_options) words_add_word(&w, v->desc->frame_options);
+    const char *options = viewer_frame_options(v);
+    if (options) words_add(&w, " --frame-options");
+    if (options) words_add_word(&w, options);
     words_add(&w, " --size %dx%d", v->main.width, v->main.height);
     add_camera(&w, v);
     add_lights(&w, v);
@@ -133,7 +135,7 @@ bool viewer_command(struct viewer *v, char *out, size_t size)
 bool viewer_write(struct viewer *v, const char *path)
 {
     const char *layer = v->debug_view ? "debug" : viewer_layers[v->layer];
-    const bool done = v->desc->write(v->desc->user, v->main.renderer, layer, path);
+    const bool done = v->desc->write(v->desc->user, v->main.renderer, v->tonemap, layer, path);
     if (done)
         viewer_say(v, "written: %s", path);
     else

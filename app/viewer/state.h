@@ -36,6 +36,8 @@ struct times {
     uint64_t frame; // number of the newest frame that was added
 };
 
+enum { VIEWER_OPTIONS = 1024 };
+
 struct undo;
 
 struct viewer {
@@ -49,6 +51,8 @@ struct viewer {
 
     struct method method, other_method;
     char gi[METHOD_SPEC], other_gi[METHOD_SPEC]; // running
+    char frame_options[VIEWER_OPTIONS];          // "": those of the command line
+    enum ag_tonemap tonemap;
     bool split;
     float split_at; // 0…1 of the region
     bool side_by_side;

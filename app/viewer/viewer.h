@@ -34,7 +34,8 @@ struct viewer_desc {
     const char *recent[VIEWER_RECENT];
     void *user; // of the functions
     // Writes the newest frame of a renderer as afterglow render does; false: see the last error.
-    bool (*write)(void *user, struct ag_renderer *renderer, const char *layer, const char *path);
+    bool (*write)(void *user, struct ag_renderer *renderer, enum ag_tonemap curve,
+                  const char *layer, const char *path);
     // On any thread: another context, with the scene as it was loaded and lit at first.
     bool (*open_copy)(void *user, struct ag_context **context, struct ag_scene **scene,
                       char error[512]);

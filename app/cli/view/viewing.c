@@ -34,10 +34,11 @@ struct views {
     struct viewing *all[2];
 };
 
-static bool write_image(void *user, struct ag_renderer *renderer, const char *layer,
-                        const char *path)
+static bool write_image(void *user, struct ag_renderer *renderer, enum ag_tonemap curve,
+                        const char *layer, const char *path)
 {
     struct viewing *viewing = user;
+    viewing->arguments.tonemap = curve;
     struct output output = { .layers = { layer },
                              .layer_count = 1,
                              .exr = has_extension(path, "exr") };

@@ -201,7 +201,7 @@ static void expose(struct viewer *v, struct ui_vertex *vertices, int count,
 {
     struct ag_image *display = NULL;
     if (!viewer_check(v, ag_image_tonemap_curve(v->desc->context, radiance, viewer_exposure(v),
-                                                v->desc->tonemap, &display)))
+                                                v->tonemap, &display)))
         return;
     for (int i = 0; i < count; i++) {
         const float *rgb = display->pixels + 3 * (size_t)i;

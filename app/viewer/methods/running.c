@@ -1,6 +1,7 @@
 #include "running.h"
 
 #include "bakes.h"
+#include "tone.h"
 #include "viewer/operations.h"
 
 #include <stdio.h>
@@ -16,7 +17,7 @@ static bool open_rendering(struct viewer *v, const char *gi, struct rendering *o
                                    .device = v->device,
                                    .scene = v->desc->scene,
                                    .gi = gi,
-                                   .frame_options = v->desc->frame_options };
+                                   .frame_options = viewer_frame_options(v) };
     viewer_image_size(v, &desc.width, &desc.height);
     const enum ag_result result = rendering_open(out, &desc);
     if (result == AG_OK && v->layer > 0)
@@ -129,7 +130,7 @@ static void take(struct viewer *v)
     if (v->difference)
         host_image_set(&v->truth_image, &v->gpu, &image);
     else if (viewer_check(v, ag_image_tonemap_curve(v->desc->context, &image, viewer_exposure(v),
-                                                    v->desc->tonemap, &display)))
+                                                    v->tonemap, &display)))
         host_image_set(&v->truth_image, &v->gpu, display);
     ag_image_destroy(v->desc->context, display);
     free(image.pixels);

@@ -3,6 +3,7 @@
 #include "viewer/methods/bakes.h"
 #include "viewer/operations.h"
 #include "viewer/methods/running.h"
+#include "viewer/methods/tone.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -207,7 +208,7 @@ static void show_bytes(struct viewer *v)
     desc.width = v->main.width;
     desc.height = v->main.height;
     desc.gi = v->gi;
-    desc.frame_options = v->desc->frame_options;
+    desc.frame_options = viewer_frame_options(v);
     desc.indirect_layer = desc.id_layer = true;
     if (ag_renderer_estimate_memory(v->desc->context, &desc, info.lights, &bytes) == AG_OK)
         ui_faint("%.1f MB on the GPU, without the scene", (double)bytes * 1e-6);

@@ -26,8 +26,8 @@ static uint32_t exposed(struct viewer *v, const float radiance[3])
     const struct ag_image one = { .width = 1, .height = 1, .channels = 3, .pixels = pixels };
     struct ag_image *display = NULL;
     uint32_t color = 0;
-    if (ag_image_tonemap_curve(v->desc->context, &one, viewer_exposure(v), v->desc->tonemap,
-                               &display) == AG_OK)
+    if (ag_image_tonemap_curve(v->desc->context, &one, viewer_exposure(v), v->tonemap, &display) ==
+        AG_OK)
         color = rgba(display->pixels);
     ag_image_destroy(v->desc->context, display);
     return color;

@@ -4,6 +4,7 @@
 #include "viewer/scene/opening.h"
 #include "viewer/operations.h"
 #include "viewer/scene/session_file.h"
+#include "viewer/methods/tone.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -52,6 +53,9 @@ static void edit_exposure(struct viewer *v)
         ui_faint("EV %.2f at ISO 100", (double)finished.exposure_ev);
     else if (ui_number("exposure (EV)", &v->exposure_ev, -6.0f, 22.0f, "%.2f", false))
         viewer_touch(v);
+    int curve = (int)v->tonemap;
+    if (ui_choice("tone curve", &curve, viewer_curves, 3))
+        viewer_set_tonemap(v, (enum ag_tonemap)curve);
 }
 
 static void choose_layer(struct viewer *v)

@@ -6,6 +6,7 @@
 #include "viewer/methods/bakes.h"
 #include "viewer/methods/running.h"
 #include "viewer/operations.h"
+#include "viewer/methods/tone.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,6 +35,7 @@ static bool apply(struct session_values *s)
     v->scene_camera = s->scene_camera;
     v->auto_exposure = s->auto_exposure;
     v->exposure_ev = s->exposure_ev;
+    if (!viewer_set_tonemap(v, (enum ag_tonemap)s->tonemap)) return false;
     v->scale = s->scale;
     v->split_at = s->split_at;
     v->side_by_side = s->side_by_side;
@@ -60,6 +62,7 @@ static void take(struct viewer *v, struct session_values *out)
     out->side_by_side = v->side_by_side;
     out->budget_ms = v->budget_ms;
     out->layer = v->layer;
+    out->tonemap = (int)v->tonemap;
     snprintf(out->gi, sizeof out->gi, "%s", v->gi);
     out->debug_view = v->debug_view;
     snprintf(out->other_gi, sizeof out->other_gi, "%s", v->split ? v->other_gi : "");

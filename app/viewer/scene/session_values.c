@@ -3,6 +3,7 @@
 #include "changes.h"
 #include "members.h"
 #include "viewer/operations.h"
+#include "viewer/methods/tone.h"
 
 #include <string.h>
 
@@ -194,9 +195,11 @@ static bool read_shown(struct read *r, json_t *document)
 {
     const char *layer = viewer_layers[r->s->layer], *gi = r->s->gi;
     const char *compare = r->s->reference ? "reference" : r->s->other_gi;
+    const char *curve = viewer_curves[r->s->tonemap];
     const json_t *exposure = json_object_get(document, "exposure_ev");
     if (exposure) r->s->auto_exposure = json_is_null(exposure);
     if (!member_text(&r->m, document, "layer", &layer) ||
+        !member_text(&r->m, document, "tonemap", &curve) ||
         !member_text(&r->m, document, "gi", &gi) ||
         !member_text(&r->m, document, "debug_view", &r->s->debug_view) ||
         !member_text(&r->m, document, "compare", &compare))
@@ -210,6 +213,11 @@ static bool read_shown(struct read *r, json_t *document)
     for (int i = 0; layer && i < viewer_layer_count; i++)
         if (strcmp(layer, viewer_layers[i]) == 0) r->s->layer = i;
     if (r->s->layer < 0) return member_wrong(&r->m, "unknown layer %.100s", layer ? layer : "null");
+    r->s->tonemap = -1;
+    for (int i = 0; curve && i < 3; i++)
+        if (strcmp(curve, viewer_curves[i]) == 0) r->s->tonemap = i;
+    if (r->s->tonemap < 0)
+        return member_wrong(&r->m, "unknown tone curve %.100s", curve ? curve : "null");
     return member_number(&r->m, document, "time_s", 0.0, 1e9, &r->s->time_s) &&
            (r->s->auto_exposure ||
             member_float(&r->m, document, "exposure_ev", -20.0f, 40.0f, &r->s->exposure_ev)) &&
@@ -251,7 +259,7 @@ static bool read_all(struct read *r, json_t *document)
         "exposure_ev",       "layer",      "gi",         "compare",   "split_at",
         "side_by_side",      "debug_view", "difference", "budget_ms", "lights",
         "instances",         "scale",      "sky",        "materials", "path",
-        "environment",       "paint"
+        "environment",       "paint",      "tonemap"
     };
     if (!is_of_scene(r, document) || !KNOWN(r, document, names) || !read_shown(r, document) ||
         !read_camera(r, json_object_get(document, "camera")) ||

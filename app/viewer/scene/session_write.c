@@ -5,6 +5,7 @@
 #include "viewer/methods/running.h"
 
 #include "shell/json_values.h"
+#include "viewer/methods/tone.h"
 
 static void put(json_t *object, const char *name, json_t *value)
 {
@@ -146,6 +147,7 @@ static json_t *document_of(const struct viewer *v)
     put(document, "camera", camera_of(v));
     put(document, "time_s", json_real(v->time_s));
     put(document, "exposure_ev", v->auto_exposure ? json_null() : json_float(v->exposure_ev));
+    put(document, "tonemap", json_string(viewer_curves[v->tonemap]));
     put(document, "layer", json_string(viewer_layers[v->layer]));
     put(document, "debug_view", text_or_null(v->debug_view));
     put(document, "scale", json_float(v->scale));

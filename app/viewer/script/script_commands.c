@@ -8,6 +8,7 @@
 #include "viewer/scene/session_file.h"
 #include "viewer/scene/undo.h"
 #include "shell/json_values.h"
+#include "viewer/methods/tone.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -129,6 +130,14 @@ static bool run_exposure(const struct words *w)
     if (!w->v->auto_exposure) w->v->exposure_ev = strtof(w->rest, NULL);
     viewer_change(w->v);
     return true;
+}
+
+static bool run_tonemap(const struct words *w)
+{
+    for (int i = 0; i < 3; i++)
+        if (strcmp(viewer_curves[i], w->rest) == 0)
+            return script_done(w, viewer_set_tonemap(w->v, (enum ag_tonemap)i));
+    return script_wrong(w->script, "tone curve is neutral, agx or linear:", w->rest);
 }
 
 static bool run_scale(const struct words *w)
@@ -280,6 +289,7 @@ const struct script_command script_commands[] = {
     { "samples", false, run_samples },
     { "layer", false, run_layer },
     { "exposure", false, run_exposure },
+    { "tonemap", false, run_tonemap },
     { "scale", false, run_scale },
     { "camera", false, run_camera },
     { "look", false, run_look },
