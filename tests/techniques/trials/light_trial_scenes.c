@@ -435,6 +435,26 @@ static int add_double_sided(struct frame_fixture *s, float albedo)
     return fixture_material(s, &cloth);
 }
 
+void trial_sheet_shade(struct frame_fixture *s, struct gpu *gpu, bool second_view)
+{
+    begin_furnished_room(s, gpu, second_view);
+    const int cloth = add_double_sided(s, 0.4f);
+    const float out = 0.3f, low = 1.6f, high = 1.9f;
+    const vec3s corner[4] = { vec3_of(-out, 0, -out), vec3_of(out, 0, -out), vec3_of(out, 0, out),
+                              vec3_of(-out, 0, out) };
+    for (int i = 0; i < 4; i++) { // fronts outwards and inwards in turns
+        vec3s a = corner[i], b = corner[(i + 1) % 4];
+        if (i % 2) {
+            const vec3s c = a;
+            a = b;
+            b = c;
+        }
+        fixture_quad(s, vec3_of(a.x, low, a.z), vec3_of(b.x, low, b.z), vec3_of(b.x, high, b.z),
+                     vec3_of(a.x, high, a.z), cloth);
+    }
+    fixture_add_point(s, vec3_of(0, 1.75f, 0), grey(200));
+}
+
 // Before the wall at x = −3.
 static void add_curtain(struct frame_fixture *s, float gap, int material)
 {

@@ -78,6 +78,8 @@ void trial_ceiling_light(struct frame_fixture *s, struct gpu *gpu, float gap);
 void trial_wardrobe(struct frame_fixture *s, struct gpu *gpu, bool second_view);
 // the light in a shade of 0.6 × 0.3 × 0.6 that is open above and below (albedo 0.4),
 void trial_shade(struct frame_fixture *s, struct gpu *gpu, bool second_view);
+// a shade of the same size, of double-sided sheets,
+void trial_sheet_shade(struct frame_fixture *s, struct gpu *gpu, bool second_view);
 // a double-sided curtain of 2 × 2.2, 10 cm from a wall (albedo 0.6),
 void trial_curtain(struct frame_fixture *s, struct gpu *gpu, bool second_view);
 // or furniture of double-sided sheets (albedo 0.4 and 0.6), some of them 3 to 8 cm from others.

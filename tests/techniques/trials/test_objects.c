@@ -22,6 +22,7 @@ TEST_GPU(light_of_a_shade)
     static const struct trial_bounds bounds[] = { { "radiosity:texels=16384", 0.95, 1.05 },
                                                   { "drt" DICTIONARY, 0.95, 1.05 } };
     trial_check_energy(gpu, trial_shade, 256, bounds, sizeof bounds / sizeof bounds[0]);
+    trial_check_energy(gpu, trial_sheet_shade, 256, bounds, sizeof bounds / sizeof bounds[0]);
 }
 
 TEST_GPU(light_of_a_room_with_a_curtain)

@@ -4,9 +4,9 @@
 //
 // Nodes can be named as clutter or as walls instead (docs/block-maps.md).
 //
-// Its triangles have charts (scene/charts), small ones joined. Their parts in each block are merged
-// into at most `max_faces` faces of that block. A face has one radiosity, the constant basis of
-// section 5.3.2.
+// Its triangles have charts (scene/charts), small ones joined. Their parts in each block, of
+// double-sided materials each side, are merged into at most `max_faces` faces of that block. A face
+// has one radiosity, the constant basis of section 5.3.2.
 #pragma once
 
 #include "scene/charts/charts.h"
@@ -23,10 +23,10 @@ struct mrt_part {
 
 struct mrt_clutter_face {
     int block;
-    uint32_t first_texel, texel_count; // in mrt_clutter.texels, fronts
+    uint32_t first_texel, texel_count; // in mrt_clutter.texels
 };
 
-// The face that a chart is part of in a block.
+// The face that a side of a chart is part of in a block.
 struct mrt_chart_face {
     int block, face;
 };
@@ -40,10 +40,10 @@ struct mrt_clutter {
     struct charts charts;           // of `objects`
     struct mrt_clutter_face *faces; // in the order of their blocks
     int face_count;
-    uint32_t *texels; // both sides, block after block: fronts, face after face, then backs
-    struct mrt_chart_face *chart_faces; // chart after chart
-    int *face_of_texel;                 // [charts.texel_count]
-    uint32_t *first_chart_face;         // [charts.count + 1]
+    uint32_t *texels;                   // of both sides, face after face
+    struct mrt_chart_face *chart_faces; // side after side of the charts: front, back
+    int *face_of_texel;                 // [charts.side_texel_count]
+    uint32_t *first_chart_face;         // [mrt_chart_sides + 1]
     uint32_t *scene_triangle_0;         // [instances + 1] of the scene, in scene_chart_triangle
     uint32_t *scene_chart_triangle; // [triangles of the scene] in charts.triangles; CHART_NONE: of
                                     // a wall, or without area
@@ -90,7 +90,9 @@ bool mrt_open_clutter_walls(struct mrt_block_map *map, const struct mrt_clutter 
 int mrt_face_of_hit(const struct mrt_clutter *clutter, int block, const struct trace_hit *hit);
 // The face of any block, by the texel that is hit.
 int mrt_face_at(const struct mrt_clutter *clutter, const struct trace_hit *hit);
-int mrt_face_of_chart(const struct mrt_clutter *clutter, int block, uint32_t chart);
+// back: of a chart that has one.
+int mrt_face_of_chart(const struct mrt_clutter *clutter, int block, uint32_t chart, bool back);
+size_t mrt_chart_sides(const struct mrt_clutter *clutter);
 bool mrt_make_clutter_faces(struct mrt_clutter *clutter, const struct mrt_block_map *map,
                             int max_faces);
 

@@ -6,16 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A sort key of texels: by block, then by chart or face.
+// A sort key of texels: by block, then by side of a chart or face.
 struct texel_place {
     int block;
     uint32_t group, texel;
 };
 
-// Texels of a chart in a block.
+// Texels of a side of a chart in a block.
 struct piece {
     int block, face;
-    uint32_t chart, first, count; // of the sorted texels
+    uint32_t side, first, count; // of the sorted texels
     float area_m2;
     vec3s centre, normal;
 };
@@ -27,6 +27,18 @@ struct builder {
     struct piece *pieces;
     uint32_t piece_count;
 };
+
+// Sides of charts: twice the chart, and 1 more for the back.
+static uint32_t side_of(uint32_t chart, bool back)
+{
+    return 2 * chart + back;
+}
+
+static vec3s side_normal(const struct charts *charts, uint32_t side)
+{
+    const vec3s normal = charts->charts[side / 2].normal;
+    return side % 2 ? glms_vec3_negate(normal) : normal;
+}
 
 // ---- blocks of texels
 
@@ -55,16 +67,24 @@ static int compare_places(const void *a, const void *b)
     return p->texel < q->texel ? -1 : p->texel > q->texel;
 }
 
+static void place_side(const struct builder *s, uint32_t chart, uint32_t first, bool back)
+{
+    const struct charts *charts = &s->clutter->charts;
+    for (uint32_t texel = first; texel < first + charts->charts[chart].texel_count; texel++)
+        s->places[texel] =
+            (struct texel_place){ block_of(s->map, chart_texel_of(charts, texel)->position),
+                                  side_of(chart, back), texel };
+}
+
 static void place_texels(const struct builder *s)
 {
     const struct charts *charts = &s->clutter->charts;
-    for (uint32_t c = 0; c < charts->count; c++)
-        for (uint32_t i = 0; i < charts->charts[c].texel_count; i++) {
-            const uint32_t texel = charts->charts[c].first_texel + i;
-            s->places[texel] =
-                (struct texel_place){ block_of(s->map, charts->texels[texel].position), c, texel };
-        }
-    qsort(s->places, charts->texel_count, sizeof *s->places, compare_places);
+    for (uint32_t c = 0; c < charts->count; c++) {
+        place_side(s, c, charts->charts[c].first_texel, false);
+        if (charts->charts[c].first_back != CHART_NONE)
+            place_side(s, c, charts->charts[c].first_back, true);
+    }
+    qsort(s->places, charts->side_texel_count, sizeof *s->places, compare_places);
 }
 
 // ---- pieces
@@ -80,16 +100,16 @@ static void make_pieces(struct builder *s)
 {
     const struct charts *charts = &s->clutter->charts;
     struct piece *last = NULL;
-    for (uint32_t i = 0; i < charts->texel_count; i++) {
+    for (uint32_t i = 0; i < charts->side_texel_count; i++) {
         const struct texel_place *place = &s->places[i];
-        if (!last || last->block != place->block || last->chart != place->group) {
+        if (!last || last->block != place->block || last->side != place->group) {
             last = &s->pieces[s->piece_count++];
             *last = (struct piece){ .block = place->block,
-                                    .chart = place->group,
+                                    .side = place->group,
                                     .first = i,
-                                    .normal = charts->charts[place->group].normal };
+                                    .normal = side_normal(charts, place->group) };
         }
-        add_to_piece(last, &charts->texels[place->texel]);
+        add_to_piece(last, chart_texel_of(charts, place->texel));
     }
     for (uint32_t i = 0; i < s->piece_count; i++)
         s->pieces[i].centre = glms_vec3_divs(s->pieces[i].centre, s->pieces[i].area_m2);
@@ -101,7 +121,7 @@ static int compare_pieces(const void *a, const void *b)
     const struct piece *p = a, *q = b;
     if (p->block != q->block) return p->block < q->block ? -1 : 1;
     if (p->area_m2 != q->area_m2) return p->area_m2 > q->area_m2 ? -1 : 1;
-    return p->chart < q->chart ? -1 : p->chart > q->chart;
+    return p->side < q->side ? -1 : p->side > q->side;
 }
 
 static float edge2_of(const struct mrt_block *block)
@@ -144,12 +164,10 @@ static int number_faces(const struct builder *s, int max_faces)
 
 // ---- faces
 
-// Backs of a block follow all its faces.
 static bool fill_faces(const struct builder *s)
 {
     struct mrt_clutter *clutter = s->clutter;
-    const struct charts *charts = &clutter->charts;
-    const uint32_t count = charts->side_texel_count;
+    const uint32_t count = clutter->charts.side_texel_count;
     struct texel_place *order = host_alloc(clutter->host, count, sizeof *order);
     if (!order) return false;
     for (uint32_t i = 0; i < s->piece_count; i++) {
@@ -159,15 +177,13 @@ static bool fill_faces(const struct builder *s)
             clutter->face_of_texel[s->places[piece->first + t].texel] = piece->face;
     }
     for (uint32_t t = 0; t < count; t++) {
-        const int face = clutter->face_of_texel[chart_front(charts, t)];
+        const int face = clutter->face_of_texel[t];
         order[t] = (struct texel_place){ clutter->faces[face].block, (uint32_t)face, t };
-        if (chart_is_back(charts, t)) order[t].group = (uint32_t)clutter->face_count;
     }
     qsort(order, count, sizeof *order, compare_places);
     for (uint32_t i = 0; i < count; i++) {
-        clutter->texels[i] = order[i].texel;
-        if (order[i].group == (uint32_t)clutter->face_count) continue;
         struct mrt_clutter_face *face = &clutter->faces[order[i].group];
+        clutter->texels[i] = order[i].texel;
         if (face->texel_count++ == 0) face->first_texel = i;
     }
     host_free(clutter->host, order);
@@ -177,21 +193,21 @@ static bool fill_faces(const struct builder *s)
 static bool fill_chart_faces(const struct builder *s)
 {
     struct mrt_clutter *clutter = s->clutter;
-    const size_t charts = clutter->charts.count;
-    uint32_t *first = host_alloc(clutter->host, charts + 1, sizeof *first);
+    const size_t sides = mrt_chart_sides(clutter);
+    uint32_t *first = host_alloc(clutter->host, sides + 1, sizeof *first);
     clutter->first_chart_face = first;
     clutter->chart_faces = host_alloc(clutter->host, s->piece_count, sizeof *clutter->chart_faces);
     if (!first || !clutter->chart_faces) return false;
-    for (uint32_t i = 0; i < s->piece_count; i++) first[s->pieces[i].chart + 1]++;
-    for (size_t c = 0; c < charts; c++) first[c + 1] += first[c];
+    for (uint32_t i = 0; i < s->piece_count; i++) first[s->pieces[i].side + 1]++;
+    for (size_t c = 0; c < sides; c++) first[c + 1] += first[c];
     for (uint32_t i = s->piece_count; i > 0; i--) {
         const struct piece *piece = &s->pieces[i - 1];
-        clutter->chart_faces[--first[piece->chart + 1]] =
+        clutter->chart_faces[--first[piece->side + 1]] =
             (struct mrt_chart_face){ piece->block, piece->face };
     }
-    // Each entry is now the first of its own chart, one place too late.
-    for (size_t c = 0; c < charts; c++) first[c] = first[c + 1];
-    first[charts] = s->piece_count;
+    // Each entry is now the first of its own side, one place too late.
+    for (size_t c = 0; c < sides; c++) first[c] = first[c + 1];
+    first[sides] = s->piece_count;
     return true;
 }
 
@@ -220,12 +236,12 @@ static bool make_faces(struct builder *s, int max_faces)
 bool mrt_make_clutter_faces(struct mrt_clutter *clutter, const struct mrt_block_map *map,
                             int max_faces)
 {
-    const size_t texels = clutter->charts.texel_count;
+    const size_t texels = clutter->charts.side_texel_count;
     struct host *host = clutter->host;
     struct builder s = { .clutter = clutter, .map = map };
     s.places = host_alloc(host, texels, sizeof *s.places);
     s.pieces = host_alloc(host, texels, sizeof *s.pieces);
-    clutter->texels = host_alloc(host, clutter->charts.side_texel_count, sizeof *clutter->texels);
+    clutter->texels = host_alloc(host, texels, sizeof *clutter->texels);
     clutter->face_of_texel = host_alloc(host, texels, sizeof *clutter->face_of_texel);
     const bool ok = s.places && s.pieces && clutter->texels && clutter->face_of_texel &&
                     make_faces(&s, max_faces);
@@ -234,26 +250,46 @@ bool mrt_make_clutter_faces(struct mrt_clutter *clutter, const struct mrt_block_
     return ok;
 }
 
-int mrt_face_of_chart(const struct mrt_clutter *clutter, int block, uint32_t chart)
+size_t mrt_chart_sides(const struct mrt_clutter *clutter)
 {
-    for (uint32_t i = clutter->first_chart_face[chart]; i < clutter->first_chart_face[chart + 1];
-         i++)
+    return 2 * (size_t)clutter->charts.count;
+}
+
+int mrt_face_of_chart(const struct mrt_clutter *clutter, int block, uint32_t chart, bool back)
+{
+    const uint32_t side = side_of(chart, back);
+    for (uint32_t i = clutter->first_chart_face[side]; i < clutter->first_chart_face[side + 1]; i++)
         if (clutter->chart_faces[i].block == block) return clutter->chart_faces[i].face;
     return -1;
+}
+
+// Whether a hit is one of a side of its own.
+static bool hits_back(const struct charts *charts, const struct trace_hit *hit, uint32_t chart)
+{
+    return !hit->front && charts->charts[chart].first_back != CHART_NONE;
+}
+
+static uint32_t chart_of_hit(const struct charts *charts, const struct trace_hit *hit)
+{
+    const uint32_t index =
+        charts->chart_triangle[charts->triangle_0[hit->instance] + hit->triangle];
+    return index == CHART_NONE ? CHART_NONE : charts->triangles[index].chart;
 }
 
 int mrt_face_of_hit(const struct mrt_clutter *clutter, int block, const struct trace_hit *hit)
 {
     const struct charts *charts = &clutter->charts;
-    const uint32_t index =
-        charts->chart_triangle[charts->triangle_0[hit->instance] + hit->triangle];
-    return index == CHART_NONE ? -1
-                               : mrt_face_of_chart(clutter, block, charts->triangles[index].chart);
+    const uint32_t chart = chart_of_hit(charts, hit);
+    if (chart == CHART_NONE) return -1;
+    return mrt_face_of_chart(clutter, block, chart, hits_back(charts, hit, chart));
 }
 
 int mrt_face_at(const struct mrt_clutter *clutter, const struct trace_hit *hit)
 {
+    const struct charts *charts = &clutter->charts;
+    const uint32_t chart = chart_of_hit(charts, hit);
+    const bool back = chart != CHART_NONE && hits_back(charts, hit, chart);
     const uint32_t texel =
-        chart_texel_at(&clutter->charts, hit->instance, hit->triangle, hit->u, hit->v, false);
+        chart_texel_at(charts, hit->instance, hit->triangle, hit->u, hit->v, back);
     return texel == CHART_NONE ? -1 : clutter->face_of_texel[texel];
 }

@@ -58,15 +58,18 @@ static struct hash128 add_triangles(struct hash128 key, const struct mrt_clutter
     for (uint32_t t = 0; t < clutter->charts.triangle_count; t++) {
         const struct chart_triangle *triangle = &clutter->charts.triangles[t];
         if (!box3_intersects(mrt_bounds_of_triangle(triangle), box)) continue;
-        const int face = mrt_face_of_chart(clutter, block, triangle->chart);
-        key = add_triangle(key, clutter, triangle, face < 0 ? -1 : face - first_face);
+        for (int back = 0; back < 2; back++) {
+            const int face = mrt_face_of_chart(clutter, block, triangle->chart, back);
+            if (back && face < 0) continue;
+            key = add_triangle(key, clutter, triangle, face < 0 ? -1 : face - first_face);
+        }
     }
     return key;
 }
 
 static struct hash128 add_texel(struct hash128 key, const struct charts *charts, uint32_t texel)
 {
-    const struct chart_texel *at = &charts->texels[texel];
+    const struct chart_texel *at = chart_texel_of(charts, texel);
     const vec3s normal = chart_texel_normal(charts, texel);
     const float values[7] = { at->position.x, at->position.y, at->position.z, at->area_m2,
                               normal.x,       normal.y,       normal.z };
@@ -83,7 +86,7 @@ static struct hash128 add_faces(struct hash128 key, const struct mrt_clutter *cl
         for (uint32_t t = 0; t < face->texel_count; t++) {
             const uint32_t texel = clutter->texels[face->first_texel + t];
             key = add_texel(key, &clutter->charts, texel);
-            *box = box3_add_point(*box, clutter->charts.texels[texel].position);
+            *box = box3_add_point(*box, chart_texel_of(&clutter->charts, texel)->position);
         }
     }
     return key;
@@ -148,7 +151,8 @@ static struct hash128 everything_of(const struct mrt_clutter *clutter)
     for (uint32_t t = 0; t < charts->triangle_count; t++)
         key = add_triangle(key, clutter, &charts->triangles[t], (int)charts->triangles[t].chart);
     return hash128_add(key, clutter->chart_faces,
-                       clutter->first_chart_face[charts->count] * sizeof *clutter->chart_faces);
+                       clutter->first_chart_face[mrt_chart_sides(clutter)] *
+                           sizeof *clutter->chart_faces);
 }
 
 struct contents {

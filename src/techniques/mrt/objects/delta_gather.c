@@ -71,7 +71,7 @@ static void trace_texel(const struct job *job, size_t face, uint32_t of_face, in
     // By places in the block, which do not depend on clutter of others.
     const uint32_t seed = pcg_hash(of_face + pcg_hash((uint32_t)face)) | 1u;
     const vec3s normal = chart_texel_normal(&clutter->charts, texel);
-    const vec3s position = clutter->charts.texels[texel].position;
+    const vec3s position = chart_texel_of(&clutter->charts, texel)->position;
     const vec3s from = glms_vec3_muladds(
         normal, 1e-4f * (1.0f + glms_vec3_max(glms_vec3_abs(position))), position);
     const mat3s frame = mrt_frame_of_normal(normal);
@@ -91,10 +91,10 @@ static void trace_face(void *user, size_t face)
     const int rays = mean_count(of->texel_count, job->input->rays);
     float area = 0.0f;
     for (uint32_t t = 0; t < of->texel_count; t++)
-        area += clutter->charts.texels[clutter->texels[of->first_texel + t]].area_m2;
+        area += chart_texel_of(&clutter->charts, clutter->texels[of->first_texel + t])->area_m2;
     for (uint32_t t = 0; t < of->texel_count; t++) {
         const uint32_t texel = clutter->texels[of->first_texel + t];
-        const float share = clutter->charts.texels[texel].area_m2 / area;
+        const float share = chart_texel_of(&clutter->charts, texel)->area_m2 / area;
         trace_texel(job, face, t, rays, share / (float)rays);
     }
 }
