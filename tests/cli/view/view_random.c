@@ -251,12 +251,8 @@ static void write_view(struct writer *w)
                                          "1e30,0,0 0,0,0", "0,0,0 0,-5,0",   "1,2,3",
                                          "nan,0,0 1,1,1",  "2,1,4 -1e6,0,3", "0.1,1,0 0,1,0" };
     static const char *const scales[] = { "0.1", "0.1", "0.15", "0.3", "0.2", "5", "nan" };
-    static const char *const curves[] = { "agx", "linear", "neutral", "x" };
     static const char *const cameras[] = { "given", "near", "far", "default", "x" };
-    switch (draw(w, 6)) {
-    case 4:
-        fprintf(w->out, "try tonemap %s\n", CHOOSE(w, curves));
-        break;
+    switch (draw(w, 5)) {
     case 0:
         fprintf(w->out, "exposure %s\n", CHOOSE(w, exposures));
         break;
