@@ -11,6 +11,13 @@ const char *const viewer_curves[3] = {
     [AG_TONEMAP_LINEAR] = "linear",
 };
 
+int viewer_curve_of(const char *name)
+{
+    for (int i = 0; i < (int)(sizeof viewer_curves / sizeof *viewer_curves); i++)
+        if (strcmp(name, viewer_curves[i]) == 0) return i;
+    return -1;
+}
+
 // The options of the command line, with another curve. false: they are too long.
 static bool options_with(const char *given, const char *curve, char *out, size_t size)
 {

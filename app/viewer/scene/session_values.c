@@ -213,9 +213,7 @@ static bool read_shown(struct read *r, json_t *document)
     for (int i = 0; layer && i < viewer_layer_count; i++)
         if (strcmp(layer, viewer_layers[i]) == 0) r->s->layer = i;
     if (r->s->layer < 0) return member_wrong(&r->m, "unknown layer %.100s", layer ? layer : "null");
-    r->s->tonemap = -1;
-    for (int i = 0; curve && i < 3; i++)
-        if (strcmp(curve, viewer_curves[i]) == 0) r->s->tonemap = i;
+    r->s->tonemap = curve ? viewer_curve_of(curve) : -1;
     if (r->s->tonemap < 0)
         return member_wrong(&r->m, "unknown tone curve %.100s", curve ? curve : "null");
     return member_number(&r->m, document, "time_s", 0.0, 1e9, &r->s->time_s) &&

@@ -134,10 +134,9 @@ static bool run_exposure(const struct words *w)
 
 static bool run_tonemap(const struct words *w)
 {
-    for (int i = 0; i < 3; i++)
-        if (strcmp(viewer_curves[i], w->rest) == 0)
-            return script_done(w, viewer_set_tonemap(w->v, (enum ag_tonemap)i));
-    return script_wrong(w->script, "tone curve is neutral, agx or linear:", w->rest);
+    const int curve = viewer_curve_of(w->rest);
+    if (curve < 0) return script_wrong(w->script, "tone curve is neutral, agx or linear:", w->rest);
+    return script_done(w, viewer_set_tonemap(w->v, (enum ag_tonemap)curve));
 }
 
 static bool run_scale(const struct words *w)

@@ -178,16 +178,16 @@ void trial_street(struct frame_fixture *s, struct gpu *gpu, enum trial_street_ro
                  vec3_of(at.min.x, 1.2f, at.min.z + 0.5f));
 }
 
-void trial_outdoors(struct frame_fixture *s, struct gpu *gpu, enum trial_outdoors scene)
+void trial_outdoors(struct frame_fixture *s, struct gpu *gpu, bool two_boxes)
 {
     fixture_init(s, gpu);
     s->options.shadow_size = 2048;
     const int white = fixture_matte(s, grey(0.7f)), ground = fixture_matte(s, grey(0.4f));
     fixture_box(s, vec3_of(-1, 0, -1), vec3_of(1, 2, 1), false, white);
-    if (scene == TRIAL_OUTDOORS_GROUND)
-        fixture_box(s, vec3_of(-10, -0.5f, -10), vec3_of(10, 0, 10), false, ground);
-    else
+    if (two_boxes)
         fixture_box(s, vec3_of(1.5f, 1, -1), vec3_of(3.5f, 3, 1), false, white);
+    else
+        fixture_box(s, vec3_of(-10, -0.5f, -10), vec3_of(10, 0, 10), false, ground);
     fixture_add_sun(s, vec3_of(0, -1, -1), grey(1000));
     s->input.environment.sky = grey(100);
     fixture_look(s, vec3_of(5, 3, -6), vec3_of(0.5f, 1, 0));
@@ -443,12 +443,7 @@ void trial_sheet_shade(struct frame_fixture *s, struct gpu *gpu, bool second_vie
     const vec3s corner[4] = { vec3_of(-out, 0, -out), vec3_of(out, 0, -out), vec3_of(out, 0, out),
                               vec3_of(-out, 0, out) };
     for (int i = 0; i < 4; i++) { // fronts outwards and inwards in turns
-        vec3s a = corner[i], b = corner[(i + 1) % 4];
-        if (i % 2) {
-            const vec3s c = a;
-            a = b;
-            b = c;
-        }
+        const vec3s a = corner[(i + i % 2) % 4], b = corner[(i + 1 - i % 2) % 4];
         fixture_quad(s, vec3_of(a.x, low, a.z), vec3_of(b.x, low, b.z), vec3_of(b.x, high, b.z),
                      vec3_of(a.x, high, a.z), cloth);
     }

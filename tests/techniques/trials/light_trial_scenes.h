@@ -35,14 +35,10 @@ enum trial_street_room {
 extern const struct box3 trial_street_rooms[TRIAL_STREET_ROOMS];
 void trial_street(struct frame_fixture *s, struct gpu *gpu, enum trial_street_room room);
 
-// No room: the sun of 1000 lux, 45° high, a sky of 100 cd/m², and
-enum trial_outdoors {
-    TRIAL_OUTDOORS_GROUND, // a box of 2 (albedo 0.7) on a ground of 20 × 20 (0.4)
-    TRIAL_OUTDOORS_BOXES,  // two boxes of 2, one beside and above the other
-    TRIAL_OUTDOORS_SCENES
-};
-// The camera sees a lit and a shaded side.
-void trial_outdoors(struct frame_fixture *s, struct gpu *gpu, enum trial_outdoors scene);
+// A scene without a room: a box of 2 (albedo 0.7) in a sun of 1000 lux, 45° high, and a sky of
+// 100 cd/m², on a ground of 20 × 20 (albedo 0.4), or else below and beside another box. The camera
+// sees a lit and a shaded side.
+void trial_outdoors(struct frame_fixture *s, struct gpu *gpu, bool two_boxes);
 
 // A square plane of 6 in the sun (1000 lux) or under a uniform sky (1 cd/m²), tilted around z.
 struct trial_plane {

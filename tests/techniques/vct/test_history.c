@@ -67,6 +67,34 @@ TEST_GPU(history_follows_a_change_within_four_frames)
             CHECK(error_after(gpu, cases[i].options, cases[i].size, change) <= cases[i].most);
 }
 
+static double mean_of(const float *values, size_t count)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) sum += (double)values[i];
+    return sum / (double)count;
+}
+
+// Rays of a frame alone are not filtered: their mean over pixels has the light that the filter is
+// to keep.
+TEST_GPU(the_filter_of_rays_keeps_their_light)
+{
+    static const char *const options[] = { "resolution=64,trace=rays,interleave=3",
+                                           "resolution=64,trace=rays,interleave=3,temporal=true" };
+    double mean[2];
+    for (int i = 0; i < 2; i++) {
+        struct vct_fixture fixture;
+        vct_fixture_room(&fixture, gpu);
+        fixture.frame_fixture.width = fixture.frame_fixture.height = 96;
+        vct_fixture_open(&fixture, options[i]);
+        float *e = vct_fixture_irradiance_after(&fixture, 8);
+        mean[i] = mean_of(e, (size_t)96 * 96 * 3);
+        free(e);
+        vct_fixture_finish(&fixture);
+    }
+    print_message("light of a frame %.4f, filtered %.4f\n", mean[0], mean[1]);
+    CHECK_RELATIVE(mean[1], mean[0], 0.03);
+}
+
 // Against the mean of 200 later frames.
 TEST_GPU(rays_have_little_noise_after_eight_frames)
 {

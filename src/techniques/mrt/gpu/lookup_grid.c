@@ -27,7 +27,7 @@ bool mrt_lookup_grid_upload(struct mrt_runtime *runtime, const struct mrt_block_
     set_params(&runtime->level, &grid, map);
     const bool ok = mrt_buffer_of(runtime, "mrt_cells", grid.lists, cells * sizeof *grid.lists) &&
                     mrt_buffer_of(runtime, "mrt_candidates", grid.candidates,
-                                  (grid.candidate_count + map->is_open) * sizeof *grid.candidates);
+                                  grid.candidate_count * sizeof *grid.candidates);
     mrt_block_grid_finish(&grid);
     return ok;
 }

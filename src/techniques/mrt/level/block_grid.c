@@ -101,9 +101,9 @@ bool mrt_block_grid_init(struct host *host, const struct mrt_block_map *map, flo
     out->lists = host_alloc(host, cells_of(out), sizeof *out->lists);
     if (!out->lists) return false;
     add_blocks(out, map, margin);
-    out->candidate_count = place_lists(out);
-    out->candidates =
-        host_alloc(host, out->candidate_count + map->is_open, sizeof *out->candidates);
+    const size_t candidates = place_lists(out);
+    out->candidate_count = candidates > 0 ? candidates : 1; // of an open map: one that no list has
+    out->candidates = host_alloc(host, out->candidate_count, sizeof *out->candidates);
     if (!out->candidates) {
         mrt_block_grid_finish(out);
         return false;

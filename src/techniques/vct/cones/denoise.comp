@@ -32,7 +32,6 @@ layout(push_constant, scalar) uniform push_block
 const int REACH = 1 + VCT_ACROSS, EVERY = 1 + VCT_ACROSS;
 const float DEVIATIONS = 4.0;    // of the mean, in which two pixels differ by noise alone
 const float CONVERGED = 512.0;   // frames: their noise does not show
-const float LEAST_COSINE = 0.9;  // of two normals
 const float PER_DISTANCE = 0.05; // distance from the plane over that along it
 
 float total(vec3 v)
@@ -61,11 +60,6 @@ float at_step(along_normal a, ivec2 by, float distance_m)
     return dot(a.o, weights) + distance_m * dot(a.r, weights);
 }
 
-float similarity(vec3 a, vec3 b)
-{
-    return clamp((dot(a, b) - LEAST_COSINE) / (1.0 - LEAST_COSINE), 0.0, 1.0);
-}
-
 // Deviation of a pixel's mean of some frames.
 float deviation_of(ivec2 pixel, float frames)
 {
@@ -87,7 +81,7 @@ vec3 denoised(ivec2 pixel, vec4 here, vec2 stored)
     float weights = here.w;
     for (int y = -REACH; y <= REACH; y++)
         for (int x = (y & EVERY - 1) - REACH; x <= REACH; x += EVERY) {
-            ivec2 by = ivec2(x, y), at = pixel + int(push.stride) * by;
+            ivec2 by = ivec2(x, y), at = pixel + push.stride * by;
             if (by == ivec2(0) || any(lessThan(at, ivec2(0))) ||
                 any(greaterThanEqual(at, ivec2(size))))
                 continue;
@@ -97,7 +91,7 @@ vec3 denoised(ivec2 pixel, vec4 here, vec2 stored)
             float off_plane = abs(at_step(a, by, there.x) - plane);
             float most = DEVIATIONS * max(deviation, deviation_of(at, tap.w));
             float unlike = abs(total(tap.rgb) - level) / max(most, 1e-12);
-            float weight = tap.w * similarity(n, unpacked_normal(there.y)) *
+            float weight = tap.w * normal_similarity(n, unpacked_normal(there.y)) *
                            max(1.0 - off_plane * per_m, 0.0) * max(1.0 - unlike, 0.0);
             sum += weight * tap.rgb;
             weights += weight;

@@ -7,7 +7,6 @@
 
 #include "techniques/vct/cones/packed_normal.glsl"
 
-const float HISTORY_LEAST_COSINE = 0.9; // of two normals of one surface: 26 degrees
 const float HISTORY_TOLERANCE_PX = 4.0; // distance from the plane, in pixel widths at that depth
 const float HISTORY_LEAST = 0.1; // sum of the four tap weights below which history is rejected
 
@@ -22,11 +21,6 @@ vec3 previous_point(vec2 pixel, float distance_m)
 {
     return distance_m * set.forward +
            previous_scale(distance_m) * (set.corner + pixel.x * set.right + pixel.y * set.down);
-}
-
-float normal_similarity(vec3 a, vec3 b)
-{
-    return clamp((dot(a, b) - HISTORY_LEAST_COSINE) / (1.0 - HISTORY_LEAST_COSINE), 0.0, 1.0);
 }
 
 // A pixel's surface in the previous frame: its point relative to the camera, and 1 over the
