@@ -32,18 +32,24 @@ static bool read_option(const char *name, const char *value, struct listed_scene
     return strcmp(name, "--fov") == 0 && sscanf(value, "%f%c", &s->fov_deg, &rest) == 1;
 }
 
-static bool set_path(const char *path, struct listed_scene *s)
+// The path of a built-in scene (@name), of a file in $AFTERGLOW_SCENES (SCENES/name), or of one
+// beside the list.
+static bool set_path(const char *list, const char *path, struct listed_scene *s)
 {
     static const char PREFIX[] = "SCENES/";
-    if (strncmp(path, PREFIX, strlen(PREFIX)) != 0)
-        return snprintf(s->path, sizeof s->path, "%s", path) < (int)sizeof s->path;
+    const size_t size = sizeof s->path;
+    if (path[0] == '@') return snprintf(s->path, size, "%s", path) < (int)size;
+    if (strncmp(path, PREFIX, strlen(PREFIX)) != 0) {
+        const char *slash = strrchr(list, '/');
+        const int length = slash ? (int)(slash + 1 - list) : 0;
+        return snprintf(s->path, size, "%.*s%s", length, list, path) < (int)size;
+    }
     const char *folder = getenv("AFTERGLOW_SCENES");
-    return folder && snprintf(s->path, sizeof s->path, "%s/%s", folder, path + strlen(PREFIX)) <
-                         (int)sizeof s->path;
+    return folder && snprintf(s->path, size, "%s/%s", folder, path + strlen(PREFIX)) < (int)size;
 }
 
 // False for a comment, an unknown option, and a file without its folder.
-static bool read_line(char *line, struct listed_scene *s)
+static bool read_line(const char *list, char *line, struct listed_scene *s)
 {
     static const char SPACE[] = " \t\r\n";
     *s = (struct listed_scene){ .fov_deg = DEFAULT_FOV_DEG };
@@ -51,7 +57,7 @@ static bool read_line(char *line, struct listed_scene *s)
     if (!name || name[0] == '#' || !strtok_r(NULL, SPACE, &rest)) return false;
     char *path = strtok_r(NULL, SPACE, &rest);
     snprintf(s->name, sizeof s->name, "%.*s", (int)sizeof s->name - 1, name);
-    if (!path || !set_path(path, s)) return false;
+    if (!path || !set_path(list, path, s)) return false;
     for (char *option; (option = strtok_r(NULL, SPACE, &rest));) {
         char *value = strtok_r(NULL, SPACE, &rest);
         if (value && read_option(option, value, s)) continue;
@@ -83,7 +89,8 @@ enum ag_result scene_list_each(const char *path, const char *text,
         return AG_ERROR_ARGUMENT;
     }
     while (result == AG_OK && fgets(line, sizeof line, file))
-        if (read_line(line, &scene) && matches(&regex, scene.name)) result = each(user, &scene);
+        if (read_line(path, line, &scene) && matches(&regex, scene.name))
+            result = each(user, &scene);
     regfree(&regex);
     fclose(file);
     return result;
