@@ -36,7 +36,7 @@ static void add_set(const struct vct_options *o, bool dynamic, size_t base, stru
             { GPU_IMAGE, SET(parts), .image = faces(o, 1, GPU_RGBA32U, lit) },
             { GPU_IMAGE, SET(bounced), .image = faces(o, 1, GPU_RGBA16F, lit) },
             { GPU_IMAGE, SET(part_of_face), .image = faces(o, 1, GPU_R32U, lit) },
-            { GPU_IMAGE, SET(planes), .image = faces(o, 1, GPU_R32U, vct_has_rays(o)) });
+            { GPU_IMAGE, SET(planes), .image = faces(o, 1, GPU_RG32U, vct_has_rays(o)) });
 }
 
 static void add_clip(const struct vct_options *o, size_t base, struct gpu_objects *out)

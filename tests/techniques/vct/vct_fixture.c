@@ -172,8 +172,9 @@ bool vct_fixture_reflectance(const struct vct_fixture *fixture, const struct vct
         before[index / 4] + (uint32_t)__builtin_popcount(mask[index / 4] & (bit - 1));
     const uint32_t *words = surfaces + (size_t)slot * 8; // two texels
     if (found)
-        *out = vec3_of((float)(words[0] & 0xffffu) / 65535.0f, (float)(words[0] >> 16) / 65535.0f,
-                       (float)(words[1] & 0xffffu) / 65535.0f);
+        *out = glms_vec3_divs(vec3_of((float)(words[0] & 8191u), (float)(words[0] >> 13 & 8191u),
+                                      (float)(words[0] >> 26 | words[1] >> 24 << 6)),
+                              8191.0f); // 13 bits each: voxelize/surface.glsl
     free(mask);
     free(before);
     free(surfaces);

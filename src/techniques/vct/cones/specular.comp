@@ -98,7 +98,7 @@ vec3 ray_light(ivec2 pixel, vec3 at, vec3 n, vec3 mirror, float tan_half)
 {
     vec3 direction = lifted(in_cone(pixel, mirror, tan_half), n);
     float share = tan_half / float(VCT_REFLECT_SIDE); // of the cone that the ray stands for
-    vct_ray_sum s = vct_ray_faces(2.0 * at + VCT_RAY_LIFT * n, n, direction, 0.0);
+    vct_ray_sum s = vct_ray_faces(vct_ray_of(2.0 * at + VCT_RAY_LIFT * n, n, direction), 0.0);
     vec3 last = vec3(0.0);
     if (s.visible > 0.0)
         last = met_light(s, at + 0.5 * s.distance * direction, direction, share * s.distance);

@@ -9,6 +9,7 @@
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/lighting/part.glsl"
 #include "techniques/vct/rays/jitter.glsl"
+#include "techniques/vct/rays/plane.glsl"
 #include "techniques/vct/volume/volume_shared.h"
 
 layout(local_size_x = VCT_BLOCK_LOCAL) in;
@@ -34,6 +35,7 @@ layout(set = 0, binding = 6, scalar) buffer vct_part_counts
 #define VCT_SLOTS_BINDING 7
 #include "techniques/vct/voxelize/slots.glsl"
 
+#include "techniques/vct/voxelize/line_places.glsl"
 #include "techniques/vct/voxelize/surface.glsl"
 
 ivec3 block_texel; // first texel of the block
@@ -43,6 +45,7 @@ const float ONE_SURFACE = 0.9; // least cosine between normals of one surface: 2
 // Largest distance from the plane of the first face, in voxels: a surface further behind is another
 // one, with its own light.
 const float PLANE_DISTANCE = 1.0;
+const float WALL_IN_FRONT = 0.01; // least height of a wall's mean above a surface, in voxels
 
 // The voxels of a block that have the invocation's face are stored in rows of texels along x, 8
 // bits per texel. Per row: those without a part yet, and those of the current part. Each invocation
@@ -119,21 +122,95 @@ void read_rows()
     }
 }
 
+// Walls of a voxel that stand on a face's surface, by the two axes across the face: the heights of
+// those along an axis and of those against it, from the voxel's centre. ±NO_WALL: none.
+struct walls {
+    vec2 along, against;
+};
+
+const float NO_WALL = 2.0; // voxels
+
+// A wall in front of the surface's plane stands on it; one behind, such as the side of a box that
+// the surface tops, does not.
+void add_walls(inout walls w, ivec3 voxel, vec3 from, vec3 normal)
+{
+    uint others = vct_faces(vct_index(voxel)) & 63u & ~(3u << (block_face & ~1u));
+    for (; others != 0u; others &= others - 1u) {
+        uint face = uint(findLSB(others)), slot = vct_slot(vct_face_index(voxel, face));
+        if (slot == VCT_NO_SLOT) continue;
+        vct_surface wall = vct_unpack_surface(texelFetch(vct_surfaces, vct_surface_texel(slot), 0));
+        if (!wall.covers || dot(wall.position - from, normal) < WALL_IN_FRONT) continue;
+        uint across = (face / 2u + 2u - block_face / 2u) % 3u; // 0 or 1: vct_across
+        if ((face & 1u) == 0u)
+            w.along[across] = wall.position[face / 2u];
+        else
+            w.against[across] = wall.position[face / 2u];
+    }
+}
+
+// Those of the voxel in front, then those of the face's own.
+walls walls_on(ivec3 voxel, vct_surface surface)
+{
+    walls w = walls(vec2(-NO_WALL), vec2(NO_WALL));
+    ivec3 in_front = voxel;
+    in_front[block_face / 2u] += (block_face & 1u) == 0u ? 1 : -1;
+    if (vct_inside(in_front))
+        add_walls(w, in_front, vec3(-NO_WALL) * surface.normal, surface.normal);
+    add_walls(w, voxel, surface.position, surface.normal);
+    return w;
+}
+
+// Quadrant, 0 to 3, of a place on a surface in front of its walls; 4 below a wall. A wall that is
+// thinner than the voxel has surface on both sides.
+uint quadrant_of(vec2 at, walls w)
+{
+    uvec2 after = uvec2(greaterThan(at, w.along)), before = uvec2(lessThan(at, w.against));
+    uvec2 thin = uvec2(greaterThanEqual(w.along, w.against));
+    bool open =
+        all(notEqual(mix(after & before, after | before, equal(thin, uvec2(1u))), uvec2(0u)));
+    uvec2 lower = thin & before;
+    return open ? lower.x + 2u * lower.y : 4u;
+}
+
+// Position of a face's surfaces in front of the walls that stand on it, from the voxel's centre.
+// The mean of all may be below a wall, and rays from there would see what is outside. Where a wall
+// has surface on both sides, the larger part counts. False: all is below walls.
+bool position_in_front(ivec3 voxel, vct_surface surface, out vec3 position)
+{
+    position = surface.position;
+    walls w = walls_on(voxel, surface);
+    if (w.along == vec2(-NO_WALL) && w.against == vec2(NO_WALL)) return true;
+    vec3 sums[5] = vec3[5](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+    for (uint i = 0u; i < VCT_LINES; i++) {
+        if ((surface.lines >> i & 1u) == 0u) continue;
+        vec2 at = (vec2(vct_line_place(i)) + 0.5) / float(VCT_LINES) - 0.5;
+        sums[quadrant_of(at, w)] += vec3(at, 1.0);
+    }
+    vec3 most = sums[0];
+    for (uint i = 1u; i < 4u; i++) most = sums[i].z > most.z ? sums[i] : most;
+    if (most.z == 0.0) return false;
+    uint axis = block_face / 2u;
+    vec2 moved = most.xy / most.z - vct_across(position, block_face);
+    position[(axis + 1u) % 3u] += moved.x;
+    position[(axis + 2u) % 3u] += moved.y;
+    position[axis] -= dot(vct_across(surface.normal, block_face), moved) / surface.normal[axis];
+    return true;
+}
+
 // Faces of one block that lie on one surface.
 struct vct_part {
     vec3 normal;
-    vec3 position; // voxels from the block's corner × weight
-    float weight;
+    vec3 position; // of visible faces, voxels from the block's corner × weight
+    float weight;  // of visible faces; 0: no light reaches the part
     vec3 first_normal;
-    float outermost; // largest distance of a face along `first_normal`, from the block's corner
-    bool covers;     // whether they cover any area
+    float outermost; // largest distance of a visible face along `first_normal`, from the corner
 };
 
 // Takes the first face without a part and all others with its normal and plane, on its side of
 // partitions. False: none is left.
 bool next_part(out vct_part part)
 {
-    part = vct_part(vec3(0.0), vec3(0.0), 0.0, vec3(0.0), -1e6, false);
+    part = vct_part(vec3(0.0), vec3(0.0), 0.0, vec3(0.0), -1e6);
     vec3 first_position = vec3(0.0);
     ivec3 first_side = ivec3(0);
     bool first = true;
@@ -155,23 +232,27 @@ bool next_part(out vct_part part)
         }
         vct_surface surface =
             vct_unpack_surface(texelFetch(vct_surfaces, vct_surface_texel(slot), 0));
-        vec3 position = vec3(voxel_of(row, bit)) + 0.5 + surface.position;
+        ivec3 voxel = ivec3(voxel_of(row, bit));
+        vec3 position = surface.position;
+        bool visible =
+            surface.covers && position_in_front(2 * block_texel + voxel, surface, position);
+        position += vec3(voxel) + 0.5;
         if (first) {
             part.first_normal = surface.normal;
             first_position = position;
-            first_side = side_of(ivec3(voxel_of(row, bit)));
+            first_side = side_of(voxel);
         } else if (dot(surface.normal, part.first_normal) < ONE_SURFACE ||
                    abs(dot(position - first_position, part.first_normal)) > PLANE_DISTANCE ||
-                   side_of(ivec3(voxel_of(row, bit))) != first_side) {
+                   side_of(voxel) != first_side) {
             continue;
         }
         first = false;
         taken |= 1u << bit;
         part.normal += surface.weight * surface.normal;
+        if (!visible) continue;
         part.position += surface.weight * position;
         part.weight += surface.weight;
-        part.covers = part.covers || surface.covers;
-        if (surface.covers) part.outermost = max(part.outermost, dot(position, part.first_normal));
+        part.outermost = max(part.outermost, dot(position, part.first_normal));
     }
 }
 
@@ -191,14 +272,14 @@ void store_part(uint part)
 // outermost one. A start behind a double-sided surface would see its back alone.
 vec3 start_of(vct_part part)
 {
-    vec3 mean = part.position / max(part.weight, 1.0);
+    vec3 mean = part.position / part.weight;
     float behind = part.outermost - dot(mean, part.first_normal);
     return mean + max(behind, 0.0) * part.first_normal;
 }
 
 uint enter(vct_part part, uint number)
 {
-    if (!part.covers) return VCT_NO_SLOT;
+    if (part.weight == 0.0) return VCT_NO_SLOT;
     uint place = atomicAdd(counts.count, 1u);
     atomicMax(counts.groups[0], place / VCT_BLOCK_LOCAL + 1u);
     atomicMax(counts.turn_groups[0], place / (VCT_BLOCK_LOCAL * VCT_PARTS_EACH) + 1u);

@@ -62,7 +62,7 @@ uint with_alignment(uint word, uint slot, usampler2D planes)
 {
     uint others = 0u; // voxels with other surfaces
     for (uint rest = word; rest != 0u && slot < vct.capacity; rest &= rest - 1u, slot++) {
-        vct_plane plane = vct_unpack_plane(texelFetch(planes, vct_face_texel(slot), 0).r);
+        vct_plane plane = vct_unpack_plane(texelFetch(planes, vct_face_texel(slot), 0).rg);
         if (!vct_plane_aligned(plane.normal)) others |= 1u << (uint(findLSB(rest)) & 24u);
     }
     return word | (VCT_EACH_VOXEL - others) << 6;

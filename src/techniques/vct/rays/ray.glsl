@@ -37,7 +37,7 @@ struct vct_ray {
     vec3 from, direction, inverse; // in voxels of the grid
     vec3 normal;                   // of the surface at the start
     uint facing, facing_aligned;   // faces that may face the ray, a byte for each voxel
-    float end;                     // distance at which it leaves the grid
+    float end;                     // distance at which it leaves the grid or ends
 };
 
 // Faces whose normals can be against the direction. slope: of their normals to the axis.
@@ -137,27 +137,30 @@ uint vct_ray_face(vct_ray_voxel v, uint face)
 
 vct_plane vct_ray_plane(uint face)
 {
-    uint packed = 0u, slot = face & ~VCT_RAY_DYNAMIC;
+    uint slot = face & ~VCT_RAY_DYNAMIC;
+    uvec2 packed = uvec2(0u);
     ivec2 at = vct_face_texel(slot);
     if (slot < vct.capacity) {
         if (face >= VCT_RAY_DYNAMIC)
-            packed = texelFetch(dynamic_planes, at, 0).r;
+            packed = texelFetch(dynamic_planes, at, 0).rg;
         else
-            packed = texelFetch(static_planes, at, 0).r;
+            packed = texelFetch(static_planes, at, 0).rg;
     }
     return vct_unpack_plane(packed);
 }
 
-// Distance to a plane; negative where the ray does not meet it in the voxel.
-float vct_ray_meets(vct_ray ray, vct_ray_voxel v, vct_plane plane)
+// Distance to a face's plane; negative where the ray does not meet its extent in the voxel.
+float vct_ray_meets(vct_ray ray, vct_ray_voxel v, vct_plane plane, uint face)
 {
     float approach = -dot(plane.normal, ray.direction);
     vec3 centre = vec3(v.at) + 0.5 - ray.from;
     float height = -dot(plane.normal, centre) - plane.distance; // of the start
     float least = dot(plane.normal, ray.normal) < -0.5 ? VCT_RAY_OWN : VCT_RAY_LEAST;
     float t = height / max(approach, 1e-4);
+    vec2 at = vct_across(ray.from + t * ray.direction - vec3(v.at), face);
     bool meets = approach > 1e-4 && height > least && t >= v.first - VCT_RAY_SEAM &&
-                 t <= v.last + VCT_RAY_SEAM;
+                 t <= min(v.last, ray.end) + VCT_RAY_SEAM && all(greaterThanEqual(at, plane.low)) &&
+                 all(lessThanEqual(at, plane.high));
     return meets ? t : -1.0;
 }
 
@@ -237,7 +240,7 @@ vct_ray_meeting vct_ray_meet(vct_ray ray, vct_ray_voxel v)
         uint bit = uint(findLSB(v.faces));
         uvec2 face = uvec2(vct_ray_face(v, bit), vct_ray_place(v.at, bit));
         vct_plane plane = vct_ray_plane(face.x);
-        float t = vct_ray_meets(ray, v, plane);
+        float t = vct_ray_meets(ray, v, plane, bit);
         if (t < 0.0 || plane.opacity == 0.0 || t >= m.distance.y) continue;
         bool first = t < m.distance.x;
         m.distance = first ? vec2(t, m.distance.x) : vec2(m.distance.x, t);
@@ -248,11 +251,9 @@ vct_ray_meeting vct_ray_meet(vct_ray ray, vct_ray_voxel v)
     return m;
 }
 
-// Faces along a ray from a surface of that normal, in voxels, without the light of the last one.
-// decay: of occlusion per voxel.
-vct_ray_sum vct_ray_faces(vec3 from, vec3 normal, vec3 direction, float decay)
+// Faces along a ray, without the light of the last one. decay: of occlusion per voxel.
+vct_ray_sum vct_ray_faces(vct_ray ray, float decay)
 {
-    vct_ray ray = vct_ray_of(from, normal, direction);
     vct_ray_voxel v;
     v.last = 0.0;
     vct_ray_sum s = vct_ray_sum(vec3(0.0), 0.0, 0.0, 0u, 0u, 0.0, 0.0);
@@ -278,12 +279,24 @@ vec4 vct_ray_total(vct_ray_sum s, vec3 last)
     return s.opacity > VCT_RAY_OPAQUE ? vec4(sum / s.opacity, 1.0) : vec4(sum, s.opacity);
 }
 
+// From a surface of that normal, in voxels.
 vec4 vct_trace_ray(vec3 from, vec3 normal, vec3 direction, float decay)
 {
-    vct_ray_sum s = vct_ray_faces(from, normal, direction, decay);
+    vct_ray_sum s = vct_ray_faces(vct_ray_of(from, normal, direction), decay);
     vec3 last = vec3(0.0);
     if (s.visible > 0.0) last = vct_ray_light(s.face, s.place);
     return vct_ray_total(s, last);
+}
+
+// Visibility between a surface of that normal and a place, up to `near` voxels before it.
+float vct_ray_visibility(vec3 from, vec3 normal, vec3 to, float near)
+{
+    vec3 path = to - from;
+    float distance = length(path);
+    vct_ray ray = vct_ray_of(from, normal, path / max(distance, 1e-6));
+    ray.end = min(ray.end, distance - near - VCT_RAY_SEAM);
+    float opacity = vct_ray_faces(ray, 0.0).opacity;
+    return opacity > VCT_RAY_OPAQUE ? 0.0 : 1.0 - opacity;
 }
 
 #endif

@@ -13,6 +13,7 @@
 #include "techniques/vct/voxelize/voxelize.glsl"
 #include "techniques/vct/voxelize/surface.glsl"
 #include "techniques/vct/voxelize/material.glsl"
+#include "techniques/vct/voxelize/line_places.glsl"
 #include "techniques/vct/voxelize/lines.glsl"
 #include "techniques/vct/voxelize/sum_words.glsl"
 
@@ -43,10 +44,11 @@ ivec3 whole(vec3 value, float one)
     return ivec3(roundEven(value * one));
 }
 
-// Contribution of a triangle to the sums of a voxel's face. lines: those on which it is visible.
+// Contribution of a triangle to the sums of a voxel's face. lines: those on which it is visible, as
+// bits.
 vct_sums part_of(vct_surface_point s, vec3 normal, uint lines)
 {
-    float covered = float(lines) * VCT_WEIGHT_LINE, weight = max(covered, 1.0);
+    float covered = float(bitCount(lines)) * VCT_WEIGHT_LINE, weight = max(covered, 1.0);
     float opaque = weight * s.opacity;
     uvec3 emission =
         EMISSIVE ? uvec3(whole(s.emission * vct.emission_fixed * opaque, 1.0)) : uvec3(0u);
@@ -59,6 +61,7 @@ vct_sums part_of(vct_surface_point s, vec3 normal, uint lines)
     part.position = whole(clamp(s.position, -1.0, 1.0) * weight, VCT_POSITION_ONE);
     part.emission = emission;
     part.covered = uint(covered * s.opacity);
+    part.lines = part.covered > 0u ? lines : 0u;
     return part;
 }
 
@@ -77,6 +80,7 @@ void add_part(uint to, vct_sums part)
     add(to + VCT_SUM_NORMAL, uvec3(part.normal));
     add(to + VCT_SUM_POSITION, uvec3(part.position));
     if (part.covered != 0u) atomicAdd(sums[to + VCT_SUM_COVERED], part.covered);
+    if (part.lines != 0u) atomicOr(sums[to + VCT_SUM_LINES], part.lines);
     if (EMISSIVE && part.emission != uvec3(0u)) add(to + VCT_SUM_EMISSION, part.emission);
 }
 
@@ -87,8 +91,8 @@ void sum_up(uint index, vct_surface_point s, vec3 normal, uvec4 lines)
     if (!vct_sum_words_of(index, first)) return;
     uint at = first + VCT_SUM_OUTERMOST;
     uvec4 outermost = uvec4(sums[at], sums[at + 1u], sums[at + 2u], sums[at + 3u]);
-    uint visible = vct_count_visible(lines, outermost);
-    if (visible > 0u || outermost == uvec4(0u)) add_part(first, part_of(s, normal, visible));
+    uint visible = vct_visible_lines(lines, outermost);
+    if (visible != 0u || outermost == uvec4(0u)) add_part(first, part_of(s, normal, visible));
 }
 
 void sum_up_faces(ivec3 voxel, vct_triangle t)
@@ -120,7 +124,7 @@ void vct_visit(ivec3 voxel, vct_triangle t)
     if (front_summed || back_summed) vct_defer(voxel, t);
     if (front_summed && (back_summed || !faces.both)) return;
     vct_surface_point s = vct_surface_point_in(voxel, t);
-    uint lines = vct_count_visible(vct_lines_through(voxel, t, faces.front), uvec4(0u));
+    uint lines = vct_visible_lines(vct_lines_through(voxel, t, faces.front), uvec4(0u));
     write(front, s, front_normal, lines);
     if (faces.both) write(back, s, -front_normal, lines);
 }

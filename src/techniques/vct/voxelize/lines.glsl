@@ -1,6 +1,6 @@
 // Sample lines through a voxel along a triangle's dominant axis. The lines that cross a triangle
 // are its coverage of the voxel's face. Its heights on them tell which of several surfaces on one
-// face hides the others: a depth buffer of VCT_LINES samples.
+// face hides the others: a depth buffer of VCT_LINES samples. Include line_places.glsl before.
 #ifndef AG_VCT_LINES_GLSL
 #define AG_VCT_LINES_GLSL
 
@@ -21,8 +21,7 @@ uvec4 vct_lines_through(ivec3 voxel, vct_triangle t, uint face)
     uint flip = (face & 1u) != 0u ? 127u : 0u;
     uvec4 lines = uvec4(0u);
     for (uint i = 0u; i < VCT_LINES; i++) {
-        precise vec2 at =
-            vec2(cell.xy) + (vec2(i, (i * 7u + 3u) % VCT_LINES) + 0.5) / float(VCT_LINES);
+        precise vec2 at = vec2(cell.xy) + (vec2(vct_line_place(i)) + 0.5) / float(VCT_LINES);
         precise vec2 u = at - t.u.xy;
         vec2 v = at - t.v.xy, w = at - t.w.xy;
         bool inside =
@@ -48,12 +47,13 @@ uvec4 vct_lines_behind(uvec4 lines)
     return lines ^ vct_bytes_of(lines & VCT_CROSSED);
 }
 
-// Number of lines on which the triangle is not hidden. outermost: heights of the face's outermost
-// surfaces.
-uint vct_count_visible(uvec4 lines, uvec4 outermost)
+// The lines on which the triangle is not hidden, a bit each. outermost: heights of the face's
+// outermost surfaces.
+uint vct_visible_lines(uvec4 lines, uvec4 outermost)
 {
-    ivec4 count = bitCount(((lines | VCT_CROSSED) - outermost) & lines & VCT_CROSSED);
-    return uint(count.x + count.y + count.z + count.w);
+    uvec4 bits = (((lines | VCT_CROSSED) - outermost) & lines & VCT_CROSSED) >> 7u;
+    bits = (bits | bits >> 7u | bits >> 14u | bits >> 21u) & 15u;
+    return bits.x | bits.y << 4 | bits.z << 8 | bits.w << 12;
 }
 
 // The outermost heights with those of another triangle.

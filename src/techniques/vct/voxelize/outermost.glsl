@@ -6,6 +6,7 @@
 
 #include "techniques/vct/voxelize/voxelize.glsl"
 #include "techniques/vct/voxelize/material.glsl"
+#include "techniques/vct/voxelize/line_places.glsl"
 #include "techniques/vct/voxelize/lines.glsl"
 #include "techniques/vct/voxelize/sum_words.glsl"
 

@@ -15,12 +15,14 @@ struct vct_sums {
     ivec3 position; // from the voxel's centre
     uvec3 emission; // × opacity; negative for small emitters
     uint covered;   // covered weight
+    uint lines;     // that cross it visibly, as bits
 };
 
 struct vct_surface {
     vec3 reflectance;
     float opacity;
     bool covers;   // whether it covers any area
+    uint lines;    // that cross it visibly, as bits: voxelize/line_places.glsl
     vec3 normal;   // unit
     vec3 position; // from the voxel's centre, in voxels
     float weight;  // of the surfaces, in units of 32
@@ -28,6 +30,7 @@ struct vct_surface {
 };
 
 const float VCT_SURFACE_WEIGHT = 32.0;
+const float VCT_REFLECTANCE_ONE = 8191.0; // 13 bits
 
 void vct_pack_sums(vct_sums s, out uvec4 first, out uvec4 second)
 {
@@ -43,8 +46,9 @@ void vct_pack_sums(vct_sums s, out uvec4 first, out uvec4 second)
     uvec3 place =
         uvec3(roundEven((clamp(position, -1.0, 1.0) * 0.5 + 0.5) * 1022.0)); // the centre is exact
     uint weight = min((s.weight + uint(VCT_SURFACE_WEIGHT) - 1u) / uint(VCT_SURFACE_WEIGHT), 127u);
-    first.x = packUnorm2x16(reflectance.rg);
-    first.y = packUnorm2x16(vec2(reflectance.b, 0.0)) | packUnorm4x8(vec4(0.0, 0.0, opacity, 0.0));
+    uvec3 colour = uvec3(roundEven(clamp(reflectance, 0.0, 1.0) * VCT_REFLECTANCE_ONE));
+    first.x = colour.r | colour.g << 13 | colour.b << 26;
+    first.y = s.lines | packUnorm4x8(vec4(0.0, 0.0, opacity, 0.0)) | colour.b >> 6 << 24;
     bool emits = any(notEqual(s.emission, uvec3(0u)));
     first.z = vct_pack_normal(unit) | weight << 24 | (emits ? 1u << 31 : 0u);
     first.w = place.x | place.y << 10 | place.z << 20 | (s.covered > 0u ? 1u << 30 : 0u);
@@ -54,7 +58,10 @@ void vct_pack_sums(vct_sums s, out uvec4 first, out uvec4 second)
 vct_surface vct_unpack_surface(uvec4 first)
 {
     vct_surface s;
-    s.reflectance = vec3(unpackUnorm2x16(first.x), unpackUnorm2x16(first.y).x);
+    s.reflectance =
+        vec3(first.x & 8191u, first.x >> 13 & 8191u, first.x >> 26 | first.y >> 24 << 6) /
+        VCT_REFLECTANCE_ONE;
+    s.lines = first.y & 0xffffu;
     s.opacity = unpackUnorm4x8(first.y).z;
     s.covers = (first.w & 1u << 30) != 0u;
     s.normal = vct_unpack_normal(first.z & 0xffffffu);

@@ -40,6 +40,7 @@ void main()
     s.position = ivec3(three(at + VCT_SUM_POSITION));
     s.emission = three(at + VCT_SUM_EMISSION);
     s.covered = sums[at + VCT_SUM_COVERED];
+    s.lines = sums[at + VCT_SUM_LINES];
     uvec4 first, second;
     vct_pack_sums(s, first, second);
     ivec2 to = vct_surface_texel(slot);

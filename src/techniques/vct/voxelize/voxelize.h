@@ -14,7 +14,7 @@ struct vct_voxel_set {
     gpu_buffer accumulated;         // a bit for each voxel whose triangles are summed up
     gpu_buffer accumulated_list;    // slots of those voxels
     gpu_image surfaces, lit_voxels; // RGBA32U, one entry for each occupied voxel
-    gpu_image planes;               // R32U, for rays: see rays/plane.glsl
+    gpu_image planes;               // RG32U, for rays: see rays/plane.glsl
     gpu_image part_of_face;         // R32U: see lighting/parts.comp
     gpu_image parts, bounced;       // RGBA32U and RGBA16F: parts, irradiance on them
     gpu_buffer part_counts;         // struct vct_part_count

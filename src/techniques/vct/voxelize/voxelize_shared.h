@@ -18,7 +18,8 @@
 #define VCT_SUM_EMISSION    11 // 3 words, × opacity; negative for small emitters
 #define VCT_SUM_COVERED     14 // covered weight
 #define VCT_SUM_OUTERMOST   15 // 4 words, heights: voxelize/lines.glsl
-#define VCT_SUM_WORDS       19
+#define VCT_SUM_LINES       19 // bits: the lines that cross it visibly
+#define VCT_SUM_WORDS       20
 
 // Coverage is the number of sample lines through a voxel that a triangle crosses.
 #define VCT_LINES        16
