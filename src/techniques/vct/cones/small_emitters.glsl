@@ -3,13 +3,13 @@
 // one of intensity I = L a along its normal is at normal incidence
 //     I cos θ / (d² + a/π), (1)
 // with a the emitter's area per point. It is exact at a large distance and on the axis of a disk.
-// The light volume gives the visibility.
+// The light volume gives the visibility; with rays, the faces of the voxels do.
 //
 // The number of samples is independent of the number of emitters. Each sample selects one emitter
 // in proportion to its unoccluded irradiance (resampled importance sampling: Talbot et al. 2005).
 //
-// Include after cones/trace.glsl, with the uniform block vct_cones as `set`. Binding:
-// VCT_SMALL_EMITTERS_BINDING.
+// Include after cones/trace.glsl, and after rays/ray.glsl where pixels or voxels trace rays, with
+// the uniform block vct_cones as `set`. Binding: VCT_SMALL_EMITTERS_BINDING.
 #ifndef AG_VCT_SMALL_EMITTERS_GLSL
 #define AG_VCT_SMALL_EMITTERS_GLSL
 
@@ -28,6 +28,7 @@ layout(constant_id = VCT_CONSTANT_SMALL_EMITTERS) const bool VCT_HAS_SMALL_EMITT
 const float VCT_WIDTH_FROM_SURFACE = 0.15, VCT_WIDTH_FROM_EMITTER = 0.5;
 // Texels around a sample point in which occluders are ignored: they are the emitter itself.
 const float VCT_EMITTER_NEAR = 1.5;
+const float VCT_EMITTER_NEAR_RAY = 1.0; // the same for rays, in voxels
 
 // Visibility between a surface and an emitter; both ends are offset from their surfaces. Lengths in
 // texels of level 0. first: level at the receiver. Sheets and the start are as in vct_trace.
@@ -116,9 +117,13 @@ vec3 vct_small_emitter_light(sampler3D light, uint point, vec3 at, vec3 normal, 
     vct_emitter_sample s = vct_sample_emitters(point, clips.origin_m + set.texel_m * at, normal);
     to = s.to;
     if (s.light == vec3(0.0)) return vec3(0.0);
-    return s.light * vct_emitter_visibility(light, at, normal, first,
-                                            (s.at - clips.origin_m) / set.texel_m,
-                                            s.emitter_normal);
+    vec3 emitter_at = (s.at - clips.origin_m) / set.texel_m;
+#ifdef AG_VCT_RAY_GLSL
+    if (VCT_RAYS)
+        return s.light * vct_ray_visibility(2.0 * at + VCT_RAY_LIFT * normal, normal,
+                                            2.0 * emitter_at, VCT_EMITTER_NEAR_RAY);
+#endif
+    return s.light * vct_emitter_visibility(light, at, normal, first, emitter_at, s.emitter_normal);
 }
 
 #endif
