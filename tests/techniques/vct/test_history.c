@@ -44,7 +44,7 @@ static double error_after(struct gpu *gpu, const char *options, uint32_t size, e
         free(e[i]);
     }
     print_message(" %%\n");
-    CHECK(changed > 5.0 * fourth); // without a change the test is void
+    CHECK(changed > 0.1); // without a change the test is void
     free(before), free(settled);
     vct_fixture_finish(&fixture);
     return fourth;

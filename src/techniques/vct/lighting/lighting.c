@@ -105,7 +105,7 @@ static void bounce(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd 
 }
 
 // Static voxels gather in turns. Moving ones are new in each frame: they trace fewer rays.
-enum { RAYS_OF_MOVING = 4 };
+enum { RAYS = 16, RAYS_COLUMNS = 4, RAYS_OF_MOVING = 4 };
 
 struct bounce_how {
     uint32_t new_sets; // of voxels whose records are not of this frame
@@ -117,6 +117,10 @@ static void bounce_all(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
 {
     struct vct_cone_params params = vct_voxel_cones(vct, view), moving;
     params.new_sets = how.new_sets;
+    if (vct_has_rays(&vct->options)) {
+        params.cone_count = RAYS;
+        params.columns = RAYS_COLUMNS;
+    }
     moving = params;
     if (how.in_turns && vct_has_rays(&vct->options)) {
         params.in_turns = (how.new_sets & 1u) == 0;

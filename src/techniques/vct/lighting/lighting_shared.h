@@ -6,7 +6,7 @@
 
 // Parts of static voxels that gather in each frame while light changes, approximately: blocks take
 // turns.
-#define VCT_PARTS_OF_TURN 2048
+#define VCT_PARTS_OF_TURN 1024
 #define VCT_PARTS_EACH    8 // that an invocation examines then
 
 // Buffer "vct_part_counts" of a voxel set.
