@@ -197,10 +197,11 @@ static void warn_of_lights(struct prt *s, const struct scene *scene)
     for (int i = 0; i < scene->light_count; i++) near += scene->lights[i].type != LIGHT_SUN;
     if (near == 0 || s->warned_lights) return;
     s->warned_lights = true;
-    host_log(s->host, LOG_WARNING,
-             "prt: %d point and spot lights give direct light alone: only distant light is "
-             "transferred; radiosity and ort bounce theirs",
-             near);
+    host_log(
+        s->host, LOG_WARNING,
+        "prt: %d point or spot light%s no indirect light: prt transfers light of suns, the "
+        "environment and emissive surfaces alone; --gi radiosity and --gi ort have all bounces",
+        near, near == 1 ? " gives" : "s give");
 }
 
 static void follow(void *state, const struct scene_pose *pose, bool wait)
@@ -322,7 +323,8 @@ static uint64_t memory_estimate(const void *options)
 
 const struct technique technique_prt = {
     .name = "prt",
-    .title = "precomputed radiance transfer of static geometry under distant light",
+    .title =
+        "precomputed radiance transfer of static geometry; no bounces of point and spot lights",
     .paper = "Sloan, Kautz & Snyder 2002, Precomputed Radiance Transfer for Real-Time Rendering "
              "in Dynamic, Low-Frequency Lighting Environments",
     .role = ROLE_SOURCE,

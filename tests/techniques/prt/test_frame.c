@@ -486,7 +486,8 @@ TEST_GPU(a_point_light_is_warned_of_once)
     struct prt_baked baked = prt_fixture_bake(&f, "", 0);
     open_stack(&g, &f, &baked, gpu, "", NULL);
     gi_follow(g.gi, &f.s.pose, true);
-    CHECK(strstr(test_last_message(), "prt: 1 point and spot lights"));
+    CHECK(strstr(test_last_message(), "prt: 1 point or spot light gives no indirect light"));
+    CHECK(strstr(test_last_message(), "--gi radiosity"));
     close_stack(&g);
     prt_baked_finish(&baked);
     prt_fixture_close(&f);
