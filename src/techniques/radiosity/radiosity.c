@@ -60,7 +60,9 @@ static void list_tables(const struct radiosity *s, struct gpu_objects *out)
         { GPU_IMAGE, "sent", TABLE(sent), .image = light_map_table(GPU_RG32U, nodes) },
         { GPU_IMAGE, "radiosity", TABLE(radiosity[0]), .image = light_map_table(GPU_RG32U, nodes) },
         { GPU_IMAGE, "radiosity", TABLE(radiosity[1]), .image = light_map_table(GPU_RG32U, nodes) },
-        { GPU_IMAGE, "solution", TABLE(solution), .image = light_map_table(GPU_RG32U, nodes) });
+        { GPU_IMAGE, "solution", TABLE(solution), .image = light_map_table(GPU_RG32U, nodes) },
+        { GPU_IMAGE, "strata", TABLE(strata),
+          .image = light_map_table(GPU_RG32U, s->stratum_count) });
 }
 
 static void list_pipelines(const struct radiosity *s, struct gpu_objects *out)
@@ -70,6 +72,7 @@ static void list_pipelines(const struct radiosity *s, struct gpu_objects *out)
             { GPU_PIPELINE, PIPELINE(clusters), .shader = &shader_radiosity_clusters_comp },
             { GPU_PIPELINE, PIPELINE(nodes), .shader = &shader_radiosity_nodes_comp },
             { GPU_PIPELINE, PIPELINE(solve), .shader = &shader_radiosity_solve_comp },
+            { GPU_PIPELINE, PIPELINE(strata), .shader = &shader_radiosity_strata_comp },
             { GPU_PIPELINE, PIPELINE(gather), .shader = &shader_radiosity_gather_comp },
             { GPU_PIPELINE, PIPELINE(smooth), .shader = &shader_radiosity_smooth_comp },
             { GPU_PIPELINE, PIPELINE(view), .shader = &shader_radiosity_view_comp });
@@ -91,9 +94,10 @@ static void list_uploads(struct gpu_objects *out)
 #define IMAGE(thing) { GPU_IMAGE, .member = TABLE(thing) }
     GPU_ADD(out, 0, IMAGE(texels), IMAGE(sky), IMAGE(neighbours), IMAGE(clusters), IMAGE(spans),
             IMAGE(members), IMAGE(groups), IMAGE(factors.order), IMAGE(factors.tiles),
-            IMAGE(cluster_factors.order), IMAGE(cluster_factors.tiles),
-            { GPU_BUFFER, .member = TABLE(labels) }, { GPU_BUFFER, .member = PROBES(table) },
-            { GPU_BUFFER, .member = PROBES(emission) }, { GPU_BUFFER, .member = PROBES(factors) },
+            IMAGE(shares.order), IMAGE(shares.tiles), IMAGE(cluster_factors.order),
+            IMAGE(cluster_factors.tiles), { GPU_BUFFER, .member = TABLE(labels) },
+            { GPU_BUFFER, .member = PROBES(table) }, { GPU_BUFFER, .member = PROBES(emission) },
+            { GPU_BUFFER, .member = PROBES(factors) },
             { GPU_IMAGE, .member = PROBES(volume.depth) });
 }
 
@@ -212,6 +216,7 @@ static void destroy(void *state)
     list(s, &objects);
     gpu_objects_destroy(s->gpu, &objects, s);
     radiosity_destroy_rows(s, &s->tables.factors);
+    radiosity_destroy_rows(s, &s->tables.shares);
     radiosity_destroy_rows(s, &s->tables.cluster_factors);
     light_map_paint_finish(&s->paint);
     light_map_followed_finish(&s->followed);
@@ -267,7 +272,7 @@ const struct technique technique_radiosity = {
     .capabilities =
         CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION | PUBLISHES_PROBES,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID,
-    .bake_version = 16,
+    .bake_version = 17,
     .options = OPTION_TABLE(struct radiosity_options, option_rows, NULL),
     .presets = presets,
     .debug_views = radiosity_views,

@@ -11,9 +11,11 @@ enum { BLOCK_TEXELS = 1 << 24, TEXEL_WORDS = 4, WINDOW = 64 * RADIOSITY_TILE };
 // Rows to upload. pack: writes the words of an entry.
 struct source_rows {
     const char *name;
-    const uint32_t *source;
+    const uint32_t *source; // of entries; NULL: their numbers in the row
     const uint16_t *factor;
-    size_t sources, in_texel; // entries of a row, of a texel
+    const uint32_t *first;    // [rows + 1] entries of rows; NULL: each has `sources`
+    const uint32_t *base;     // [rows] of the sources; NULL: 0
+    size_t sources, in_texel; // entries of a row at most, of a texel
     size_t stride;            // halves of an entry
     uint32_t rows;
     void (*pack)(const struct source_rows *from, size_t entry, uint32_t *words);
@@ -27,11 +29,11 @@ static uint32_t pack(uint32_t node, uint16_t factor)
 static void pack_texel(const struct source_rows *from, size_t entry, uint32_t *words)
 {
     const uint16_t *factor = from->factor + 3 * entry;
-    words[0] = pack(from->source[entry], factor[0]);
+    words[0] = pack((uint32_t)(entry % from->sources), factor[0]);
     words[1] = factor[1] | (uint32_t)factor[2] << 16;
 }
 
-static void pack_cluster(const struct source_rows *from, size_t entry, uint32_t *words)
+static void pack_source(const struct source_rows *from, size_t entry, uint32_t *words)
 {
     words[0] = pack(from->source[entry], from->factor[entry]);
 }
@@ -52,9 +54,15 @@ struct layout {
     uint32_t tile_count;
 };
 
+static size_t first_entry(const struct source_rows *from, size_t row)
+{
+    return from->first ? from->first[row] : row * from->sources;
+}
+
 static uint32_t entries_of(const struct source_rows *from, size_t row)
 {
     size_t count = from->sources;
+    if (from->first) return from->first[row + 1] - from->first[row];
     while (count > 0 && from->factor[(row * from->sources + count - 1) * from->stride] == 0)
         count--;
     return (uint32_t)count;
@@ -97,7 +105,7 @@ static void pack_row(const struct source_rows *from, const struct row *row, uint
     const size_t entry_words = TEXEL_WORDS / from->in_texel;
     for (size_t k = 0; k < row->entries; k++) {
         const size_t texel = k / from->in_texel * RADIOSITY_TILE;
-        from->pack(from, row->index * from->sources + k,
+        from->pack(from, first_entry(from, row->index) + k,
                    words + TEXEL_WORDS * texel + k % from->in_texel * entry_words);
     }
 }
@@ -160,9 +168,15 @@ static bool upload_blocks(struct radiosity *s, const struct source_rows *from, s
 static bool upload_order(struct radiosity *s, const struct source_rows *from,
                          const struct layout *l, gpu_image *out)
 {
-    uint32_t *order = host_alloc(s->host, light_map_table_capacity(from->rows), sizeof *order);
-    for (size_t i = 0; order && i < from->rows; i++) order[i] = l->rows[i].index;
-    return light_map_table_upload(s->host, s->gpu, "order", GPU_R32U, order, from->rows, out);
+    const size_t words = from->base ? 2 : 1;
+    uint32_t *order =
+        host_alloc(s->host, light_map_table_capacity(from->rows), words * sizeof *order);
+    for (size_t i = 0; order && i < from->rows; i++) {
+        order[words * i] = l->rows[i].index;
+        if (from->base) order[words * i + 1] = from->base[l->rows[i].index];
+    }
+    return light_map_table_upload(s->host, s->gpu, "order", from->base ? GPU_RG32U : GPU_R32U,
+                                  order, from->rows, out);
 }
 
 static float mean_entries(const struct source_rows *from, const struct layout *l)
@@ -189,27 +203,37 @@ static bool upload_rows(struct radiosity *s, const struct source_rows *from,
     return ok;
 }
 
-bool radiosity_upload_factors(struct radiosity *s, const uint32_t *source, const uint16_t *factor,
-                              const uint32_t *cluster_source, const uint16_t *cluster_factor)
+bool radiosity_upload_factors(struct radiosity *s, const struct radiosity_sources *from)
 {
     const size_t sources = (size_t)s->options.sources;
     const struct source_rows texels = { .name = "factors",
-                                        .source = source,
-                                        .factor = factor,
+                                        .factor = from->factor,
+                                        .base = from->strata->of,
                                         .sources = sources,
                                         .in_texel = RADIOSITY_PAIR,
                                         .stride = 3,
                                         .rows = s->map.texel_count,
                                         .pack = pack_texel };
+    const struct source_rows strata = { .name = "shares",
+                                        .source = from->strata->node,
+                                        .factor = from->strata->share,
+                                        .first = from->strata->first,
+                                        .sources = from->strata->most,
+                                        .in_texel = RADIOSITY_QUAD,
+                                        .stride = 1,
+                                        .rows = from->strata->count,
+                                        .pack = pack_source };
     const struct source_rows clusters = { .name = "cluster_factors",
-                                          .source = cluster_source,
-                                          .factor = cluster_factor,
+                                          .source = from->cluster_source,
+                                          .factor = from->cluster_factor,
                                           .sources = 2 * sources,
                                           .in_texel = RADIOSITY_QUAD,
                                           .stride = 1,
                                           .rows = s->map.cluster_count,
-                                          .pack = pack_cluster };
+                                          .pack = pack_source };
+    s->stratum_count = from->strata->count;
     return upload_rows(s, &texels, &s->tables.factors) &&
+           upload_rows(s, &strata, &s->tables.shares) &&
            upload_rows(s, &clusters, &s->tables.cluster_factors);
 }
 

@@ -1,5 +1,6 @@
-// Light of each texel: F B of the clusters and the sky; emissive surfaces and paint only without
-// smoothing, which adds them. By colour: irradiance along the normal and the vector irradiance.
+// Light of each texel: form factors times the light of its block's strata, and the sky; emissive
+// surfaces and paint only without smoothing, which adds them. By colour: irradiance along the
+// normal and the vector irradiance.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -18,22 +19,23 @@ layout(push_constant, scalar) uniform push_block
 {
     radiosity_gather_push push;
 };
-layout(set = 0, binding = 2) uniform usampler2D radiosity_order; // [row] texel
+layout(set = 0, binding = 2) uniform usampler2D radiosity_order; // [row] texel, first stratum
 layout(set = 0, binding = 3) uniform usampler2D radiosity_tiles; // first texel, texels of a row
 // Pairs of source and form factor; components along the tangents (halves).
 layout(set = 0, binding = 4, rgba32ui) uniform readonly uimage2D radiosity_factors;
-layout(set = 0, binding = 5, rg32ui) uniform readonly uimage2D radiosity_sent;
+layout(set = 0, binding = 5, rg32ui) uniform readonly uimage2D radiosity_strata;
 layout(set = 0, binding = 6, rg32ui) uniform writeonly uimage2D texel_light; // [colour][texel]
 
-// Light of clusters: irradiance, and vector irradiance along the tangents.
+// Light of strata: irradiance, and vector irradiance along the tangents.
 struct received {
     vec3 irradiance, by_u, by_v;
 };
 received sum = received(vec3(0.0), vec3(0.0), vec3(0.0));
 
-void add_entry(uvec2 word)
+// strata: the first one of the block.
+void add_entry(uint strata, uvec2 word)
 {
-    uvec2 sent = imageLoad(radiosity_sent, light_map_at(radiosity_source(word.x))).xy;
+    uvec2 sent = imageLoad(radiosity_strata, light_map_at(strata + radiosity_source(word.x))).xy;
     vec3 light = radiosity_form_factor(word.x) * radiosity_unpack(sent);
     vec2 along = unpackHalf2x16(word.y);
     sum.irradiance += light;
@@ -59,13 +61,13 @@ void main()
 {
     if (gl_GlobalInvocationID.x >= push.count) return;
     uint row = push.first + gl_GlobalInvocationID.x;
+    uvec2 texel = texelFetch(radiosity_order, light_map_at(row), 0).xy;
     uvec2 tile = texelFetch(radiosity_tiles, light_map_at(row / RADIOSITY_TILE), 0).xy;
     for (uint k = 0; k < tile.y; k++) {
         uvec4 pair =
             imageLoad(radiosity_factors, light_map_at(radiosity_row_texel(tile.x, k, row)));
-        add_entry(pair.xy);
-        add_entry(pair.zw);
+        add_entry(texel.y, pair.xy);
+        add_entry(texel.y, pair.zw);
     }
-    uint i = texelFetch(radiosity_order, light_map_at(row), 0).x;
-    store_light(i);
+    store_light(texel.x);
 }

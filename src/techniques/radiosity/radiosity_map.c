@@ -1,5 +1,7 @@
 #include "techniques/radiosity/radiosity_map.h"
 
+#include "scene/charts/squares.h"
+
 #include <string.h>
 
 // ---- clusters
@@ -106,7 +108,7 @@ bool radiosity_charts(const struct scene_pose *statics, const void *options, str
                                       .texels = (uint32_t)o->texels,
                                       .density = o->density,
                                       .most_charts = RADIOSITY_MAX_CLUSTERS / 2 };
-    return charts_init_wanted(out, host, statics, &wish);
+    return charts_init_wanted(out, host, statics, &wish) && charts_order_by_squares(out);
 }
 
 static bool refuse(const struct radiosity_map *map)

@@ -94,6 +94,28 @@ static void record_step(struct radiosity *s, struct gpu_cmd *cmd, int step, stru
     }
 }
 
+static void record_strata_of(struct radiosity *s, struct gpu_cmd *cmd,
+                             const struct radiosity_block *block, struct span rows)
+{
+    const struct radiosity_strata_push push = { rows.first, rows.count };
+    gpu_dispatch(cmd, s->pipelines.strata,
+                 GPU_BIND({ .name = "radiosity_order", .image = s->tables.shares.order },
+                          { .name = "radiosity_tiles", .image = s->tables.shares.tiles },
+                          { .name = "radiosity_factors", .image = block->table },
+                          { .name = "radiosity_sent", .image = s->tables.solution },
+                          { .name = "radiosity_strata", .image = s->tables.strata }),
+                 &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
+}
+
+static void record_strata(struct radiosity *s, struct gpu_cmd *cmd, struct span rows)
+{
+    const struct radiosity_rows *all = &s->tables.shares;
+    for (uint32_t i = 0; i < all->count; i++) {
+        const struct span part = rows_in(&all->blocks[i], rows);
+        if (part.count > 0) record_strata_of(s, cmd, &all->blocks[i], part);
+    }
+}
+
 static void record_gather_of(struct radiosity *s, struct gpu_cmd *cmd,
                              const struct frame_view *view, const struct radiosity_block *block,
                              struct span rows)
@@ -109,7 +131,7 @@ static void record_gather_of(struct radiosity *s, struct gpu_cmd *cmd,
                  { .name = "radiosity_order", .image = s->tables.factors.order },
                  { .name = "radiosity_tiles", .image = s->tables.factors.tiles },
                  { .name = "radiosity_factors", .image = block->table },
-                 { .name = "radiosity_sent", .image = s->tables.solution },
+                 { .name = "radiosity_strata", .image = s->tables.strata },
                  { .name = "texel_light", .image = s->tables.light }),
         &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
@@ -150,6 +172,8 @@ uint32_t radiosity_stage_rows(const struct radiosity *s, enum radiosity_stage st
         return s->map.texel_count;
     case RADIOSITY_BOUNCES:
         return s->map.cluster_count;
+    case RADIOSITY_STRATA:
+        return s->stratum_count;
     case RADIOSITY_SMOOTH:
     case RADIOSITY_SMOOTH_WIDE:
         return s->options.smooth ? s->map.texel_count : 0;
@@ -164,8 +188,8 @@ uint32_t radiosity_stage_rows(const struct radiosity *s, enum radiosity_stage st
 
 const char *radiosity_stage_name(enum radiosity_stage stage)
 {
-    static const char *const names[] = { "direct",      "bounces",   "gather", "smooth",
-                                         "smooth_wide", "light_map", "seams" };
+    static const char *const names[] = { "direct", "bounces",     "strata",    "gather",
+                                         "smooth", "smooth_wide", "light_map", "seams" };
     return names[stage];
 }
 
@@ -179,6 +203,9 @@ static void record_rows(struct radiosity *s, struct gpu_cmd *cmd, const struct f
         break;
     case RADIOSITY_BOUNCES:
         record_step(s, cmd, part->step, rows);
+        break;
+    case RADIOSITY_STRATA:
+        record_strata(s, cmd, rows);
         break;
     case RADIOSITY_GATHER:
         record_gather(s, cmd, view, rows);

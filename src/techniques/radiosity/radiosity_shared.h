@@ -9,8 +9,8 @@
 #define RADIOSITY_LOCAL    64 // workgroup size over texels and clusters
 #define RADIOSITY_LOCAL_2D 8  // over pixels, in x and y
 
-// An entry of a row: the node in the lower bits, above it the form factor as a half, of which the
-// upper two bits are zero: it is below 2.
+// An entry of a row: the node, or the stratum of a texel's block, in the lower bits, above it the
+// form factor as a half, of which the upper two bits are zero: it is below 2.
 #define RADIOSITY_NODE_BITS 18
 
 // Clusters of a group: their number is above the first one.
@@ -56,6 +56,10 @@ struct radiosity_clusters_push {
 struct radiosity_solve_push {
     uint32_t first, count;
     float over; // relaxation factor
+};
+
+struct radiosity_strata_push {
+    uint32_t first, count;
 };
 
 struct radiosity_nodes_push {

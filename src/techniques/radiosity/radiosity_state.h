@@ -11,6 +11,7 @@
 #include "techniques/common/light_map/paint.h"
 #include "techniques/radiosity/radiosity_reflectance.h"
 #include "techniques/radiosity/radiosity_shared.h"
+#include "techniques/radiosity/radiosity_strata.h"
 #include "techniques/radiosity/radiosity_tensors.h"
 
 // Tiles of rows of form factors in one table: all may be more than a table has.
@@ -19,13 +20,14 @@ struct radiosity_block {
     uint32_t first, count; // rows
 };
 
-// Rows of texels or clusters that are near to each other, by decreasing number of entries: few
-// entries of a tile are zeros.
+// Rows of texels, strata or clusters that are near to each other, by decreasing number of entries:
+// few entries of a tile are zeros.
 struct radiosity_rows {
     struct radiosity_block *blocks;
     uint32_t count;         // of blocks
     float mean_entries;     // of a row
-    gpu_image order, tiles; // [row] texel or cluster; [tile] first texel in its block, of a row
+    gpu_image order, tiles; // [row] texel and its block's first stratum, stratum or cluster;
+                            // [tile] first texel in its block, of a row
 };
 
 struct radiosity_tables {
@@ -34,18 +36,21 @@ struct radiosity_tables {
     gpu_image flux, light, smoothed;            // [texels] of the newest light
     gpu_image sent, radiosity[2];               // [clusters and nodes] likewise
     gpu_image solution;                         // [clusters and nodes] of all bounces
+    gpu_image strata;                           // [strata of blocks] of the solution
     gpu_buffer labels;                          // of places, for debug views
-    struct radiosity_rows factors, cluster_factors;
+    // factors: of texels, by strata of their blocks; shares: of strata, by clusters and nodes.
+    struct radiosity_rows factors, shares, cluster_factors;
 };
 
 struct radiosity_pipelines {
-    gpu_pipeline direct, clusters, nodes, solve, gather, smooth, view;
+    gpu_pipeline direct, clusters, nodes, solve, strata, gather, smooth, view;
 };
 
 // Stages of an update, in their order.
 enum radiosity_stage {
     RADIOSITY_DIRECT, // until the radiosity of clusters before any bounce
     RADIOSITY_BOUNCES,
+    RADIOSITY_STRATA,
     RADIOSITY_GATHER,
     RADIOSITY_SMOOTH,
     RADIOSITY_SMOOTH_WIDE,
@@ -76,7 +81,7 @@ struct radiosity {
     struct radiosity_map map; // without texels: an empty scene
     struct light_map light_map;
     struct light_map_paint paint;
-    uint32_t group_count;
+    uint32_t group_count, stratum_count;
     struct light_map_materials materials;
     struct light_map_emission emission;
     struct radiosity_reflectance reflectance;
@@ -94,10 +99,15 @@ struct radiosity {
 
 // Tables of the light map and of a bake on the GPU.
 bool radiosity_upload(struct radiosity *state, const struct tensors *bake);
-// The form factors of texels and of clusters, block after block. Rows are those of a bake.
-bool radiosity_upload_factors(struct radiosity *state, const uint32_t *source,
-                              const uint16_t *factor, const uint32_t *cluster_source,
-                              const uint16_t *cluster_factor);
+// Rows of a bake: of texels by strata of their blocks, and of clusters.
+struct radiosity_sources {
+    const uint16_t *factor; // [texels][sources][3]
+    const struct radiosity_strata *strata;
+    const uint32_t *cluster_source;
+    const uint16_t *cluster_factor; // [clusters][2 · sources]
+};
+// The form factors of texels and of clusters and the shares of strata, block after block.
+bool radiosity_upload_factors(struct radiosity *state, const struct radiosity_sources *from);
 void radiosity_destroy_rows(struct radiosity *state, struct radiosity_rows *rows);
 
 // The content of a bake about the surroundings of texels.

@@ -8,7 +8,9 @@
 #include "techniques/radiosity/radiosity_map.h"
 #include "techniques/technique.h"
 
-#define RADIOSITY_SOURCE         "texels/source"   // U32 [texels][sources]: nodes of the tree
+#define RADIOSITY_BLOCK_START    "blocks/start"    // U8 [texels] 1: the first texel of a block
+#define RADIOSITY_BLOCK_SOURCE   "blocks/source"   // U32 [texels][sources]: node, stratum
+#define RADIOSITY_BLOCK_SHARE    "blocks/share"    // F16 [texels][sources]
 #define RADIOSITY_FACTOR         "texels/factor"   // F16 [texels][sources][3]
 #define RADIOSITY_NEARNESS       "texels/nearness" // F32 [texels][4]
 #define RADIOSITY_SURFACE        "texels/surface"  // F32 [texels][10]: struct texel_factors

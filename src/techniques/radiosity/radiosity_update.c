@@ -21,13 +21,14 @@ static int steps_of(const struct radiosity *s)
 static float cost_of_row(const struct radiosity *s, enum radiosity_stage stage)
 {
     static const float COST[RADIOSITY_STAGES] = {
-        [RADIOSITY_DIRECT] = 40, [RADIOSITY_BOUNCES] = 3,      [RADIOSITY_GATHER] = 2,
-        [RADIOSITY_SMOOTH] = 10, [RADIOSITY_SMOOTH_WIDE] = 10, [RADIOSITY_LIGHT_MAP] = 5,
-        [RADIOSITY_SEAMS] = 32,
+        [RADIOSITY_DIRECT] = 40,   [RADIOSITY_BOUNCES] = 3, [RADIOSITY_STRATA] = 1,
+        [RADIOSITY_GATHER] = 2,    [RADIOSITY_SMOOTH] = 10, [RADIOSITY_SMOOTH_WIDE] = 10,
+        [RADIOSITY_LIGHT_MAP] = 5, [RADIOSITY_SEAMS] = 32,
     };
-    static const float CLUSTER_ENTRY = 0.35f; // half the words, no direction
+    static const float SHORT_ENTRY = 0.35f; // half the words, no direction
     if (stage == RADIOSITY_BOUNCES)
-        return COST[stage] + CLUSTER_ENTRY * s->tables.cluster_factors.mean_entries;
+        return COST[stage] + SHORT_ENTRY * s->tables.cluster_factors.mean_entries;
+    if (stage == RADIOSITY_STRATA) return COST[stage] + SHORT_ENTRY * s->tables.shares.mean_entries;
     if (stage == RADIOSITY_GATHER) return COST[stage] + s->tables.factors.mean_entries;
     return COST[stage];
 }

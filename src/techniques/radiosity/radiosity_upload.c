@@ -4,7 +4,8 @@
 #include <string.h>
 
 struct content {
-    const uint32_t *source, *cluster_source;
+    struct radiosity_block_rows blocks;
+    const uint32_t *cluster_source;
     const uint16_t *factor, *cluster_factor;
     const uint8_t *part;
     const float *surface; // [texels] struct texel_factors
@@ -20,8 +21,12 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
     const uint64_t c = radiosity_cluster_rows(&s->map);
     const uint64_t k = (uint64_t)s->options.sources;
 #define EXPECT(...) TENSORS_EXPECT(s->host, bake, __VA_ARGS__)
-    *out = (struct content){ .sources = k, .cluster_sources = 2 * k };
-    return (out->source = EXPECT(RADIOSITY_SOURCE, TENSOR_U32, n, k)) &&
+    *out = (struct content){ .blocks = { .texels = s->map.texel_count, .sources = k },
+                             .sources = k,
+                             .cluster_sources = 2 * k };
+    return (out->blocks.start = EXPECT(RADIOSITY_BLOCK_START, TENSOR_U8, n)) &&
+           (out->blocks.source = EXPECT(RADIOSITY_BLOCK_SOURCE, TENSOR_U32, n, k)) &&
+           (out->blocks.share = EXPECT(RADIOSITY_BLOCK_SHARE, TENSOR_F16, n, k)) &&
            (out->factor = EXPECT(RADIOSITY_FACTOR, TENSOR_F16, n, k, 3)) &&
            (out->part = EXPECT(RADIOSITY_PART, TENSOR_U8, n)) &&
            (out->surface = EXPECT(RADIOSITY_SURFACE, TENSOR_F32, n, 10)) &&
@@ -49,6 +54,15 @@ static bool are_below(const uint32_t *at, size_t count, uint32_t limit)
     return true;
 }
 
+static bool are_in_strata(const struct radiosity_block_rows *rows, uint32_t nodes)
+{
+    for (size_t i = 0; i < rows->texels * rows->sources; i++)
+        if (radiosity_source_node(rows->source[i]) >= nodes ||
+            radiosity_source_stratum(rows->source[i]) >= rows->sources)
+            return false;
+    return true;
+}
+
 // Every `stride`-th value is a form factor.
 static bool are_below_2(const uint16_t *half, size_t count, size_t stride)
 {
@@ -59,7 +73,8 @@ static bool are_below_2(const uint16_t *half, size_t count, size_t stride)
 
 static bool check_factors(struct radiosity *s, const struct content *c)
 {
-    if (are_below_2(c->factor, s->map.texel_count * c->sources, 3) &&
+    const size_t entries = s->map.texel_count * c->sources;
+    if (are_below_2(c->factor, entries, 3) && are_below_2(c->blocks.share, entries, 1) &&
         are_below_2(c->cluster_factor, s->map.cluster_count * c->cluster_sources, 1))
         return true;
     return host_fail(s->host, FAIL_FORMAT, "bake of radiosity: a form factor is not in 0…2");
@@ -68,7 +83,7 @@ static bool check_factors(struct radiosity *s, const struct content *c)
 static bool check_sources(struct radiosity *s, const struct content *c)
 {
     const uint32_t nodes = s->map.tree.count;
-    if (are_below(c->source, s->map.texel_count * c->sources, nodes) &&
+    if (are_in_strata(&c->blocks, nodes) &&
         are_below(c->cluster_source, s->map.cluster_count * c->cluster_sources, nodes))
         return true;
     return host_fail(s->host, FAIL_FORMAT, "bake of radiosity: a source of light is beyond %u",
@@ -151,15 +166,38 @@ static bool upload_light_map(struct radiosity *s, const struct content *c,
     return ok;
 }
 
+// Strata without a source give no light: a damaged row must not read those of the next block.
+static bool check_strata(struct radiosity *s, const struct content *c,
+                         const struct radiosity_strata *strata)
+{
+    for (uint32_t i = 0; i < s->map.texel_count; i++) {
+        const uint32_t left = strata->count - strata->of[i];
+        for (size_t k = left; k < c->sources; k++)
+            if (c->factor[3 * (i * c->sources + k)] != 0)
+                return host_fail(s->host, FAIL_FORMAT,
+                                 "bake of radiosity: a form factor without a source of light");
+    }
+    return true;
+}
+
+static bool upload_factors(struct radiosity *s, const struct content *c)
+{
+    struct radiosity_strata strata;
+    const bool ok =
+        radiosity_strata_init(&strata, s->host, &c->blocks) && check_strata(s, c, &strata) &&
+        radiosity_upload_factors(s, &(struct radiosity_sources){
+                                        c->factor, &strata, c->cluster_source, c->cluster_factor });
+    radiosity_strata_finish(&strata);
+    return ok;
+}
+
 static bool upload_all(struct radiosity *s, const struct content *c, const struct tensors *bake)
 {
     return light_map_upload_texels(&c->texels, s->host, s->gpu, &s->tables.texels) &&
            light_map_emission_upload(&s->emission, s->host, s->gpu, &s->materials.emission,
                                      s->map.texel_count, bake) &&
            light_map_upload_sky(&c->texels, s->host, s->gpu, bake, &s->tables.sky) &&
-           radiosity_upload_factors(s, c->source, c->factor, c->cluster_source,
-                                    c->cluster_factor) &&
-           upload_light_map(s, c, bake) && upload_clusters(s) &&
+           upload_factors(s, c) && upload_light_map(s, c, bake) && upload_clusters(s) &&
            radiosity_view_init(s, c->texels.point, c->nearest_valid);
 }
 

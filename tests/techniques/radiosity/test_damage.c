@@ -86,7 +86,8 @@ static void check_value(struct damage_fixture *u, const struct damage *d)
 TEST_GPU(a_bake_with_a_value_out_of_range_is_refused)
 {
     static const struct damage damages[] = {
-        { "texels/source", BEYOND, "a source of light is beyond" },
+        { "blocks/source", BEYOND, "a source of light is beyond" },
+        { "blocks/share", HALF_2, "a form factor is not in 0…2" },
         { "clusters/source", BEYOND, "a source of light is beyond" },
         { "texels/factor", HALF_2, "a form factor is not in 0…2" },
         { "clusters/factor", HALF_2, "a form factor is not in 0…2" },

@@ -46,6 +46,8 @@ uint32_t radiosity_cluster_at(const struct radiosity_scene *scene, const struct 
 
 // Texels beside walls, parts of all texels, the clusters that follow, and which nodes are groups.
 bool radiosity_subdivide(struct radiosity_scene *scene);
+// Whether two texels see each other a little above the surface.
+bool radiosity_texels_see(const struct radiosity_scene *scene, uint32_t a, uint32_t b);
 
 // ----
 

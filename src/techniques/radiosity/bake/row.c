@@ -10,7 +10,11 @@ bool radiosity_rows_init(struct radiosity_rows *rows, struct host *host,
     rows->sum = host_alloc(host, tree->count, sizeof *rows->sum);
     rows->touched = host_alloc(host, tree->count, sizeof *rows->touched);
     rows->heap = host_alloc(host, tree->count, sizeof *rows->heap);
-    return rows->sum && rows->touched && rows->heap;
+    rows->cut = host_alloc(host, tree->count, sizeof *rows->cut);
+    rows->stratum = host_alloc(host, tree->count, sizeof *rows->stratum);
+    rows->stratum_node = host_alloc(host, tree->count, sizeof *rows->stratum_node);
+    return rows->sum && rows->touched && rows->heap && rows->cut && rows->stratum &&
+           rows->stratum_node;
 }
 
 void radiosity_rows_finish(struct radiosity_rows *rows)
@@ -19,6 +23,9 @@ void radiosity_rows_finish(struct radiosity_rows *rows)
     host_free(rows->host, rows->sum);
     host_free(rows->host, rows->touched);
     host_free(rows->host, rows->heap);
+    host_free(rows->host, rows->cut);
+    host_free(rows->host, rows->stratum);
+    host_free(rows->host, rows->stratum_node);
     *rows = (struct radiosity_rows){ 0 };
 }
 
@@ -115,22 +122,86 @@ static uint32_t group_of(const struct radiosity_rows *rows, uint32_t node, float
     return node;
 }
 
+static uint32_t add_all(struct radiosity_rows *rows, const struct radiosity_gather *gather)
+{
+    uint32_t touched = 0;
+    for (uint32_t i = 0; i < gather->hit_count; i++)
+        touched = add_upwards(rows, gather->hit[i], gather->factor[gather->hit[i]], touched);
+    return touched;
+}
+
+static void clear_sums(struct radiosity_rows *rows, uint32_t touched)
+{
+    for (uint32_t i = 0; i < touched; i++)
+        rows->sum[rows->touched[i]] = (struct radiosity_factor){ 0 };
+}
+
+// Refines the nodes of the heap until there are `most`; returns their number.
+static uint32_t refine_all(struct radiosity_rows *rows, uint32_t heap, uint32_t most,
+                           struct radiosity_entry *out)
+{
+    uint32_t count = 0;
+    while (heap > 0) {
+        const struct radiosity_entry entry = pop(rows->heap, &heap);
+        // Entries in the heap stay, in the end.
+        const uint32_t spare = most - (count + heap + 1);
+        if (!refine(rows, entry.node, spare, &heap)) out[count++] = entry;
+    }
+    return count;
+}
+
+static uint32_t refine_root(struct radiosity_rows *rows, uint32_t touched, uint32_t most,
+                            struct radiosity_entry *out)
+{
+    uint32_t heap = 0;
+    if (touched > 0) push(rows->heap, &heap, entry_of(rows, root_of(rows->tree)));
+    return refine_all(rows, heap, most, out);
+}
+
 uint32_t radiosity_make_row(struct radiosity_rows *rows, const struct radiosity_gather *gather,
                             uint32_t most, float phase, struct radiosity_entry *out)
 {
-    uint32_t touched = 0, count = 0, heap = 0;
-    for (uint32_t i = 0; i < gather->hit_count; i++)
-        touched = add_upwards(rows, gather->hit[i], gather->factor[gather->hit[i]], touched);
-    if (touched > 0) push(rows->heap, &heap, entry_of(rows, root_of(rows->tree)));
-    while (heap > 0) {
-        struct radiosity_entry entry = pop(rows->heap, &heap);
-        // Entries in the heap stay, in the end.
-        const uint32_t spare = most - (count + heap + 1);
-        if (refine(rows, entry.node, spare, &heap)) continue;
-        entry.node = group_of(rows, entry.node, phase);
-        out[count++] = entry;
-    }
-    for (uint32_t i = 0; i < touched; i++)
-        rows->sum[rows->touched[i]] = (struct radiosity_factor){ 0 };
+    const uint32_t touched = add_all(rows, gather);
+    const uint32_t count = refine_root(rows, touched, most, out);
+    for (uint32_t i = 0; i < count; i++) out[i].node = group_of(rows, out[i].node, phase);
+    clear_sums(rows, touched);
     return count;
+}
+
+// ---- strata
+
+uint32_t radiosity_stratum_of(const struct radiosity_rows *rows, uint32_t cluster)
+{
+    uint32_t node = cluster;
+    while (rows->stratum[node] == 0) node = rows->tree->nodes[node].parent;
+    return rows->stratum[node] - 1;
+}
+
+uint32_t radiosity_make_strata(struct radiosity_rows *rows, const struct radiosity_gather *sum,
+                               uint32_t strata, uint32_t most, float phase,
+                               struct radiosity_share *out)
+{
+    const uint32_t touched = add_all(rows, sum);
+    uint32_t heap = 0, count = refine_root(rows, touched, strata, rows->cut);
+    rows->stratum_count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        rows->stratum_node[i] = rows->cut[i].node;
+        rows->stratum[rows->cut[i].node] = 1 + i;
+        push(rows->heap, &heap, rows->cut[i]);
+    }
+    count = refine_all(rows, heap, most, rows->cut);
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t node = rows->cut[i].node, stratum = radiosity_stratum_of(rows, node);
+        out[i] = (struct radiosity_share){ group_of(rows, node, phase), stratum,
+                                           rows->sum[node].weight /
+                                               rows->sum[rows->stratum_node[stratum]].weight };
+    }
+    clear_sums(rows, touched);
+    return count;
+}
+
+void radiosity_clear_strata(struct radiosity_rows *rows)
+{
+    for (uint32_t i = 0; i < rows->stratum_count; i++) rows->stratum[rows->stratum_node[i]] = 0;
+    rows->stratum_count = 0;
 }

@@ -16,6 +16,10 @@ struct radiosity_rows {
     struct radiosity_factor *sum; // [nodes] of the clusters that rays hit; all 0 between the calls
     uint32_t *touched;            // [nodes] those that are not
     struct radiosity_entry *heap;
+    struct radiosity_entry *cut; // [nodes] the result of a refinement
+    uint32_t *stratum;           // [nodes] 1 + number of the stratum; 0: none
+    uint32_t *stratum_node;      // [nodes] of each stratum
+    uint32_t stratum_count;
 };
 bool radiosity_rows_init(struct radiosity_rows *rows, struct host *host,
                          const struct radiosity_scene *scene);
@@ -28,3 +32,19 @@ void radiosity_rows_finish(struct radiosity_rows *rows);
 // low-discrepancy sequence choose groups that complement each other.
 uint32_t radiosity_make_row(struct radiosity_rows *rows, const struct radiosity_gather *gather,
                             uint32_t most, float phase, struct radiosity_entry *out);
+
+// A source of a stratum, and its share of the stratum's light.
+struct radiosity_share {
+    uint32_t node, stratum;
+    float share;
+};
+
+// Strata of neighbouring texels, found from the sum of what their rays meet: at most `strata` nodes
+// by the refinement of a row, and at most `most` sources below them, by the same refinement.
+// Returns the number of sources. The strata stay until radiosity_clear_strata.
+uint32_t radiosity_make_strata(struct radiosity_rows *rows, const struct radiosity_gather *sum,
+                               uint32_t strata, uint32_t most, float phase,
+                               struct radiosity_share *out);
+// The stratum of a cluster of that sum.
+uint32_t radiosity_stratum_of(const struct radiosity_rows *rows, uint32_t cluster);
+void radiosity_clear_strata(struct radiosity_rows *rows);

@@ -5,9 +5,10 @@
 #include "bake/scene_key.h"
 #include "core/half.h"
 #include "trace/texels/close.h"
-#include "techniques/radiosity/bake/row.h"
+#include "techniques/radiosity/bake/block.h"
 #include "techniques/radiosity/bake/shared_samples.h"
 #include "techniques/radiosity/probes/stage.h"
+#include "techniques/radiosity/radiosity_strata.h"
 
 #include <string.h>
 
@@ -49,37 +50,45 @@ struct scratch {
     struct radiosity_gather gather;
     struct radiosity_rows rows;
     struct radiosity_entry *row;
+    struct radiosity_block_rays block; // of the stage of texels
+    float *weights;                    // [sources] of the stage of clusters
 };
 
 static bool scratch_init(struct scratch *scratch, struct host *host, const struct job *job)
 {
     const struct radiosity_tree *tree = &job->scene.map.tree;
     const size_t entries = 2 * (size_t)job->options.sources;
-    *scratch = (struct scratch){ .row = host_alloc(host, entries, sizeof *scratch->row) };
+    *scratch = (struct scratch){ .row = host_alloc(host, entries, sizeof *scratch->row),
+                                 .weights = host_alloc(host, entries, sizeof(float)) };
     scratch->gather.factor = host_alloc(host, tree->leaves, sizeof *scratch->gather.factor);
     scratch->gather.hit = host_alloc(host, tree->leaves, sizeof *scratch->gather.hit);
-    return scratch->row && scratch->gather.factor && scratch->gather.hit &&
+    return scratch->row && scratch->weights && scratch->gather.factor && scratch->gather.hit &&
            radiosity_rows_init(&scratch->rows, host, &job->scene);
 }
 
 static size_t scratch_size(uint64_t clusters)
 {
     const size_t sum = sizeof(struct radiosity_factor) + sizeof(uint32_t);
-    return (size_t)clusters * (sum + 2 * (sum + sizeof(struct radiosity_entry)));
+    const size_t of_node = sum + 2 * sizeof(struct radiosity_entry) + 2 * sizeof(uint32_t);
+    return (size_t)clusters * (sum + 2 * of_node);
 }
 
 static void scratch_finish(struct scratch *scratch, struct host *host)
 {
     radiosity_rows_finish(&scratch->rows);
+    radiosity_block_finish(&scratch->block);
     host_free(host, scratch->gather.factor);
     host_free(host, scratch->gather.hit);
     host_free(host, scratch->row);
+    host_free(host, scratch->weights);
 }
 
 // ---- texels
 
 enum {
-    OUT_SOURCE,
+    OUT_BLOCK_START,
+    OUT_BLOCK_SOURCE,
+    OUT_BLOCK_SHARE,
     OUT_FACTOR,
     OUT_SURFACE,
     OUT_SKY,
@@ -91,34 +100,47 @@ enum {
     OUT_COUNT
 };
 
-static void write_row(const struct radiosity_entry *row, uint32_t count, uint32_t *source,
-                      uint16_t *factor)
+static void write_row(const struct radiosity_factor *row, uint32_t count, uint16_t *factor)
 {
     for (uint32_t k = 0; k < count; k++) {
-        source[k] = row[k].node;
-        factor[3 * k] = half_from_float(row[k].factor.weight);
-        factor[3 * k + 1] = half_from_float(row[k].factor.along[0]);
-        factor[3 * k + 2] = half_from_float(row[k].factor.along[1]);
+        factor[3 * k] = half_from_float(row[k].weight);
+        factor[3 * k + 1] = half_from_float(row[k].along[0]);
+        factor[3 * k + 2] = half_from_float(row[k].along[1]);
     }
 }
 
-static void gather_texel(const struct bake_task *task, struct scratch *scratch, uint64_t first,
+// The sources of a block are in the rows of its texels, one after another.
+static void write_block(const struct bake_task *task, struct scratch *scratch, uint64_t i)
+{
+    const struct job *job = task->job;
+    const uint32_t sources = (uint32_t)job->options.sources;
+    const struct radiosity_block_rays *block = &scratch->block;
+    *(uint8_t *)bake_row(task, OUT_BLOCK_START, i) = 1;
+    for (uint32_t k = 0; k < block->share_count; k++) {
+        const struct radiosity_share *share = &block->shares[k];
+        uint32_t *source = bake_row(task, OUT_BLOCK_SOURCE, i + k / sources);
+        uint16_t *of = bake_row(task, OUT_BLOCK_SHARE, i + k / sources);
+        source[k % sources] = radiosity_stratum_source(share->node, share->stratum);
+        of[k % sources] = half_from_float(share->share);
+    }
+    for (uint32_t t = 0; t < block->texels; t++)
+        write_row(radiosity_block_row(&scratch->block, &scratch->rows, t),
+                  scratch->rows.stratum_count, bake_row(task, OUT_FACTOR, i + t));
+}
+
+// False: the texel has no rays.
+static bool gather_texel(const struct bake_task *task, struct scratch *scratch, uint64_t first,
                          uint64_t i)
 {
     const struct job *job = task->job;
     const uint32_t texel = (uint32_t)(first + i);
     struct radiosity_gather *gather = &scratch->gather;
     const struct charts *charts = &job->scene.map.charts;
-    const struct chart_texel *place = chart_texel_of(charts, texel);
     const struct texel_point point = texel_find_point(job->scene.trace, charts, texel);
     memcpy(bake_row(task, OUT_POINT, i), &point, sizeof point);
     *(uint8_t *)bake_row(task, OUT_PART, i) = job->scene.part[texel];
-    if (point.share == 0.0f) return;
+    if (point.share == 0.0f) return false;
     radiosity_gather(&job->scene, texel, point.position, task->bake_seed, gather);
-    const uint32_t count =
-        radiosity_make_row(&scratch->rows, gather, (uint32_t)job->options.sources,
-                           radiosity_shared_phase(place->x, place->y), scratch->row);
-    write_row(scratch->row, count, bake_row(task, OUT_SOURCE, i), bake_row(task, OUT_FACTOR, i));
     memcpy(bake_row(task, OUT_SKY, i), &gather->light.sky, sizeof gather->light.sky);
     texel_sky_shares(&gather->light, bake_row(task, OUT_SKY_SHARES, i));
     memcpy(bake_row(task, OUT_EMISSION, i), gather->light.columns,
@@ -126,18 +148,39 @@ static void gather_texel(const struct bake_task *task, struct scratch *scratch, 
     memcpy(bake_row(task, OUT_NEARNESS, i), gather->nearness.raw, sizeof gather->nearness.raw);
     const struct texel_factors factors = texel_free_factors(job->scene.trace, charts, texel);
     memcpy(bake_row(task, OUT_SURFACE, i), &factors, sizeof factors);
+    return true;
+}
+
+static void gather_block(const struct bake_task *task, struct scratch *scratch, uint64_t first,
+                         uint64_t i, uint32_t texels)
+{
+    const struct job *job = task->job;
+    const struct chart_texel *place = chart_texel_of(&job->scene.map.charts, (uint32_t)(first + i));
+    radiosity_block_begin(&scratch->block);
+    for (uint32_t t = 0; t < texels; t++)
+        radiosity_block_add(&scratch->block,
+                            gather_texel(task, scratch, first, i + t) ? &scratch->gather : NULL);
+    radiosity_block_end(
+        &scratch->block, &scratch->rows, (uint32_t)job->options.sources,
+        radiosity_shared_phase(place->x / RADIOSITY_BLOCK_EDGE, place->y / RADIOSITY_BLOCK_EDGE));
+    write_block(task, scratch, i);
 }
 
 static bool run_texels(const struct bake_task *task)
 {
     const struct job *job = task->job;
-    uint64_t count, first = bake_task_rows(task, OUT_SOURCE, &count);
+    uint64_t count, first = bake_task_rows(task, OUT_FACTOR, &count);
     struct scratch scratch;
-    bool ok = scratch_init(&scratch, task->host, job);
+    bool ok = scratch_init(&scratch, task->host, job) &&
+              radiosity_block_init(&scratch.block, task->host, &job->scene);
     if (job->scene.map.texel_count == 0) count = 0;
-    for (uint64_t i = 0; ok && i < count; i++) {
+    for (uint64_t i = 0; ok && i < count;) {
         ok = !bake_task_cancelled(task);
-        if (ok) gather_texel(task, &scratch, first, i);
+        if (!ok) break;
+        const uint32_t texels =
+            radiosity_block_texels(&job->scene, (uint32_t)(first + i), (uint32_t)(count - i));
+        gather_block(task, &scratch, first, i, texels);
+        i += texels;
     }
     scratch_finish(&scratch, task->host);
     return ok;
@@ -148,7 +191,9 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
 {
     const uint64_t sources = (uint64_t)job->options.sources;
     const struct bake_output out[OUT_COUNT] = {
-        { RADIOSITY_SOURCE, TENSOR_U32, 2, { texels, sources }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_BLOCK_START, TENSOR_U8, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_BLOCK_SOURCE, TENSOR_U32, 2, { texels, sources }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_BLOCK_SHARE, TENSOR_F16, 2, { texels, sources }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_FACTOR, TENSOR_F16, 3, { texels, sources, 3 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_SURFACE, TENSOR_F32, 2, { texels, 10 }, BAKE_ROWS, BAKE_SAVED },
         { LIGHT_MAP_SKY, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
@@ -165,15 +210,17 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
     };
     const size_t tasks = (size_t)((texels + TEXELS_PER_TASK - 1) / TEXELS_PER_TASK);
     return bake_plan_add(
-        plan, &(struct bake_stage){ .name = "texels",
-                                    .wave = 0,
-                                    .task_count = tasks,
-                                    .run = run_texels,
-                                    .outputs = out,
-                                    .output_count = OUT_COUNT,
-                                    .rays = (double)texels * job->options.rays / (double)tasks,
-                                    .texels = (double)texels / (double)tasks,
-                                    .scratch_bytes = scratch_size(clusters) });
+        plan,
+        &(struct bake_stage){ .name = "texels",
+                              .wave = 0,
+                              .task_count = tasks,
+                              .run = run_texels,
+                              .outputs = out,
+                              .output_count = OUT_COUNT,
+                              .rays = (double)texels * job->options.rays / (double)tasks,
+                              .texels = (double)texels / (double)tasks,
+                              .scratch_bytes = scratch_size(clusters) +
+                                               radiosity_block_bytes(clusters, &job->options) });
 }
 
 // ---- probes
@@ -194,10 +241,9 @@ static bool run_probes(const struct bake_task *task)
 
 struct clusters {
     const struct radiosity_map *map;
-    const uint32_t *source;
+    struct radiosity_block_rows blocks;
     const uint16_t *factor;
     const struct texel_point *points;
-    size_t sources;
     float *area; // [clusters] of the texels, as far as they are open, m²
 };
 
@@ -226,25 +272,50 @@ static void add_node(const struct clusters *of, const struct radiosity_node *nod
     }
 }
 
-static void add_row(const struct clusters *of, uint32_t texel, float share,
-                    struct radiosity_gather *sum)
+// Adds the sources of a block, each with its share of the weight of its stratum.
+static void add_block(const struct clusters *of, uint32_t first, const float *weights,
+                      struct radiosity_gather *sum)
 {
-    for (size_t k = 0; k < of->sources; k++) {
-        const size_t at = texel * of->sources + k;
-        const float weight = share * float_from_half(of->factor[3 * at]);
-        if (weight == 0.0f) return;
-        add_node(of, &of->map->tree.nodes[of->source[at]], weight, sum);
+    const struct radiosity_block_rows *rows = &of->blocks;
+    const size_t end = radiosity_block_after(rows, first) * rows->sources;
+    for (size_t k = first * rows->sources; k < end && rows->share[k] != 0; k++) {
+        const float weight = weights[radiosity_source_stratum(rows->source[k])];
+        if (weight > 0.0f)
+            add_node(of, &of->map->tree.nodes[radiosity_source_node(rows->source[k])],
+                     weight * float_from_half(rows->share[k]), sum);
     }
 }
 
-static void sum_texels(const struct clusters *of, uint32_t cluster, struct radiosity_gather *sum)
+// Adds the texel's factors by stratum.
+static void add_factors(const struct clusters *of, uint32_t texel, float share, float *weights)
 {
+    const size_t sources = of->blocks.sources;
+    for (size_t k = 0; k < sources; k++)
+        weights[k] += share * float_from_half(of->factor[3 * (texel * sources + k)]);
+}
+
+static uint32_t block_of(const struct clusters *of, uint32_t texel)
+{
+    while (texel > 0 && of->blocks.start[texel] == 0) texel--;
+    return texel;
+}
+
+// Sums the rows of a cluster's texels, those of a block at once. weights: [sources].
+static void sum_texels(const struct clusters *of, uint32_t cluster, float *weights,
+                       struct radiosity_gather *sum)
+{
+    const size_t bytes = of->blocks.sources * sizeof *weights;
     for (uint32_t i = 0; i < sum->hit_count; i++) sum->factor[sum->hit[i]].weight = 0.0f;
     sum->hit_count = 0;
     if (!(of->area[cluster] > 0.0f)) return;
-    for (uint32_t m = of->map->first[cluster]; m < of->map->first[cluster + 1]; m++) {
-        const uint32_t texel = of->map->members[m];
-        add_row(of, texel, area_of(of, texel) / of->area[cluster], sum);
+    const uint32_t end = of->map->first[cluster + 1];
+    memset(weights, 0, bytes);
+    for (uint32_t m = of->map->first[cluster]; m < end; m++) {
+        const uint32_t texel = of->map->members[m], block = block_of(of, texel);
+        add_factors(of, texel, area_of(of, texel) / of->area[cluster], weights);
+        if (m + 1 < end && block_of(of, of->map->members[m + 1]) == block) continue;
+        add_block(of, block, weights, sum);
+        memset(weights, 0, bytes);
     }
 }
 
@@ -257,10 +328,10 @@ static float phase_of(const struct radiosity_map *map, uint32_t cluster)
 static void merge_rows(const struct bake_task *task, const struct clusters *of,
                        struct scratch *scratch)
 {
-    const size_t most = 2 * of->sources;
+    const size_t most = 2 * of->blocks.sources;
     uint64_t count, first = bake_task_rows(task, 0, &count);
     for (uint64_t i = 0; i < count && first + i < of->map->cluster_count; i++) {
-        sum_texels(of, (uint32_t)(first + i), &scratch->gather);
+        sum_texels(of, (uint32_t)(first + i), scratch->weights, &scratch->gather);
         const uint32_t entries =
             radiosity_make_row(&scratch->rows, &scratch->gather, (uint32_t)most,
                                phase_of(of->map, (uint32_t)(first + i)), scratch->row);
@@ -276,16 +347,18 @@ static void merge_rows(const struct bake_task *task, const struct clusters *of,
 static bool run_clusters(const struct bake_task *task)
 {
     const struct job *job = task->job;
-    const struct tensor *source = bake_task_input(task, RADIOSITY_SOURCE);
+    const struct tensor *start = bake_task_input(task, RADIOSITY_BLOCK_START);
+    const struct tensor *source = bake_task_input(task, RADIOSITY_BLOCK_SOURCE);
+    const struct tensor *share = bake_task_input(task, RADIOSITY_BLOCK_SHARE);
     const struct tensor *factor = bake_task_input(task, RADIOSITY_FACTOR);
     const struct tensor *points = bake_task_input(task, LIGHT_MAP_POINT);
-    if (!source || !factor || !points) return false;
+    if (!start || !source || !share || !factor || !points) return false;
     const struct radiosity_map *map = &job->scene.map;
     const struct clusters of = { map,
-                                 source->data,
+                                 { start->data, source->data, share->data, map->texel_count,
+                                   (size_t)job->options.sources },
                                  factor->data,
                                  points->data,
-                                 (size_t)job->options.sources,
                                  host_alloc(task->host, map->cluster_count, sizeof(float)) };
     struct scratch scratch;
     const bool ok = scratch_init(&scratch, task->host, job) && of.area;

@@ -29,6 +29,11 @@ static bool are_mutually_visible(const struct radiosity_scene *scene, struct sur
     return height == 0.0f || !trace_occluded(scene->trace, from, glms_vec3_sub(to, from), 1.0f);
 }
 
+bool radiosity_texels_see(const struct radiosity_scene *scene, uint32_t a, uint32_t b)
+{
+    return are_mutually_visible(scene, point_of(scene, a), point_of(scene, b));
+}
+
 // The first texel of a cluster outside geometry; without one the first.
 static uint32_t first_open(const struct radiosity_scene *scene, uint32_t cluster)
 {
