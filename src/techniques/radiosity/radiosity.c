@@ -239,10 +239,10 @@ static uint64_t rows_bytes(uint64_t rows, uint64_t bytes)
 }
 
 // Assumes a light map with the wanted number of texels, on one side, two thirds of it covered by
-// charts, a triangle for each texel, and an emissive material.
+// charts, a triangle for each texel, whole blocks, and an emissive material.
 static uint64_t memory_estimate(const void *options)
 {
-    enum { COLUMNS = 1, SH_BYTES = 36 };
+    enum { COLUMNS = 1, SH_BYTES = 36, STRATUM_TEXELS = 16 };
     const struct radiosity_options *o = options;
     const uint64_t texels = (uint64_t)o->texels, places = texels * 3 / 2;
     const uint64_t clusters = texels / (uint64_t)(o->cluster * o->cluster) + 1;
@@ -250,6 +250,8 @@ static uint64_t memory_estimate(const void *options)
     const uint64_t of_texels =
         light_map_table_bytes((TEXEL_PARTS + TEXEL_SKY_WORDS) * texels, 16) +
         light_map_table_bytes(COLUMNS * texels, 16) + rows_bytes(texels, 8 * sources) +
+        rows_bytes(texels, 4 * sources) + // of strata
+        light_map_table_bytes(texels * sources / STRATUM_TEXELS, 8 + 4) +
         light_map_table_bytes(
             RADIOSITY_SMOOTH_PASSES * RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR * texels, 16) +
         light_map_table_bytes(texels, 16) + 2 * light_map_table_bytes(3 * texels, 8) +
