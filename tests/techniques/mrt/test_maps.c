@@ -52,6 +52,63 @@ static void print_map(const char *spec, const struct mrt_block_map *map)
     }
 }
 
+// The surface of a box, as seen from inside or from outside.
+static void add_box(struct scene *scene, vec3s low, vec3s high, bool inwards)
+{
+    static const uint32_t seen_inside[] = { 0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1,
+                                            2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3 };
+    uint32_t indices[36];
+    vec3s positions[8], normals[8];
+    for (int i = 0; i < 36; i++) indices[i] = seen_inside[inwards ? i : 35 - i];
+    for (int i = 0; i < 8; i++) {
+        const vec3s corner = vec3_of((float)(i & 1), (float)(i >> 1 & 1), (float)(i >> 2));
+        positions[i] = glms_vec3_muladd(corner, glms_vec3_sub(high, low), low);
+        normals[i] = vec3_unit(glms_vec3_sub(vec3_of(0.5f, 0.5f, 0.5f), corner));
+        if (!inwards) normals[i] = glms_vec3_negate(normals[i]);
+    }
+    const struct material material = material_default();
+    const struct node node = node_default();
+    const struct mesh mesh = { .vertex_count = 8,
+                               .index_count = 36,
+                               .positions = positions,
+                               .normals = normals,
+                               .indices = indices,
+                               .material = scene_add_material(scene, &material) };
+    const struct instance it = { .node = scene_add_node(scene, &node),
+                                 .mesh = scene_add_mesh(scene, &mesh),
+                                 .skin = -1 };
+    CHECK(scene_add_instance(scene, &it) >= 0);
+}
+
+// The inside of a box around the origin.
+static struct scene *make_box(vec3s half)
+{
+    struct scene *scene = scene_create(test_host(), "box");
+    add_box(scene, glms_vec3_negate(half), half, true);
+    return scene;
+}
+
+// A cube of 3 m in walls of 20 cm, with a wardrobe near a wall, a sofa and a table.
+static struct scene *make_furnished_room(void)
+{
+    static const struct box3 solids[] = {
+        { { { -1.7f, -1.7f, -1.7f } }, { { 1.7f, -1.5f, 1.7f } } },
+        { { { -1.7f, 1.5f, -1.7f } }, { { 1.7f, 1.7f, 1.7f } } },
+        { { { -1.7f, -1.5f, -1.7f } }, { { -1.5f, 1.5f, 1.7f } } },
+        { { { 1.5f, -1.5f, -1.7f } }, { { 1.7f, 1.5f, 1.7f } } },
+        { { { -1.5f, -1.5f, -1.7f } }, { { 1.5f, 1.5f, -1.5f } } },
+        { { { -1.5f, -1.5f, 1.5f } }, { { 1.5f, 1.5f, 1.7f } } },
+        { { { -1.45f, -1.5f, -1 } }, { { -0.9f, 0.6f, 0.3f } } },
+        { { { 0.7f, -1.4f, -1 } }, { { 1.4f, -1, 1 } } },
+        { { { 1.2f, -1, -1 } }, { { 1.4f, -0.6f, 1 } } },
+        { { { -0.6f, -0.8f, -0.4f } }, { { 0.5f, -0.75f, 0.4f } } },
+    };
+    struct scene *scene = scene_create(test_host(), "furnished");
+    for (size_t i = 0; i < sizeof solids / sizeof solids[0]; i++)
+        add_box(scene, solids[i].min, solids[i].max, false);
+    return scene;
+}
+
 TEST(a_single_block_is_the_bounding_box)
 {
     struct made made = { .scene = scene_load(test_host(), "@atrium") };
@@ -69,6 +126,22 @@ TEST(a_room_is_one_block_that_ends_at_its_walls)
     print_map("@cornell", &made.map);
     CHECK_NEAR(made.map.blocks[0].corner[0].y, 0, 1e-4);
     CHECK(made.map.count == 1);
+    finish(&made);
+}
+
+// The two sides of each wall, a table and a wardrobe beside a wall have large surfaces.
+TEST(a_furnished_room_between_thick_walls_ends_at_them)
+{
+    const vec3s seed = vec3_of(0, 0.5f, 0.8f);
+    struct made made = { .scene = make_furnished_room() };
+    CHECK(pose_init(&made.pose, made.scene, -1, 0.0f));
+    CHECK(mrt_map_auto(test_host(), &made.pose, &seed, 1, &made.map));
+    print_map("furnished", &made.map);
+    CHECK(made.map.count == 1);
+    for (int a = 0; a < 3; a++) {
+        CHECK_NEAR(made.map.blocks[0].corner[0].raw[a], -1.5, 1e-4);
+        CHECK_NEAR(made.map.blocks[0].corner[7].raw[a], 1.5, 1e-4);
+    }
     finish(&made);
 }
 
@@ -145,33 +218,6 @@ TEST(without_a_seed_in_a_room_the_default_camera_is_one)
     CHECK(far.map.count == made.map.count && far.map.count > 1);
     finish(&far);
     finish(&made);
-}
-
-// The inside of a box around the origin.
-static struct scene *make_box(vec3s half)
-{
-    static uint32_t indices[] = { 0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1,
-                                  2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3 };
-    vec3s positions[8], normals[8];
-    for (int i = 0; i < 8; i++) {
-        const vec3s corner = vec3_of(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
-        positions[i] = glms_vec3_mul(half, corner);
-        normals[i] = vec3_unit(glms_vec3_negate(corner));
-    }
-    struct scene *scene = scene_create(test_host(), "box");
-    const struct material material = material_default();
-    const struct node node = node_default();
-    const struct mesh mesh = { .vertex_count = 8,
-                               .index_count = 36,
-                               .positions = positions,
-                               .normals = normals,
-                               .indices = indices,
-                               .material = scene_add_material(scene, &material) };
-    const struct instance it = { .node = scene_add_node(scene, &node),
-                                 .mesh = scene_add_mesh(scene, &mesh),
-                                 .skin = -1 };
-    CHECK(scene_add_instance(scene, &it) == 0);
-    return scene;
 }
 
 // As long as the limits of a scene allow: an int would not count its cubes.

@@ -68,6 +68,7 @@ static bool add_blocks_in(const struct search *search, struct mrt_cells *cells,
     struct mrt_block_map more = { 0 };
     mrt_cells_find_planes(cells);
     bool ok = fill(search, cells);
+    while (ok && mrt_cells_drop_objects(cells)) ok = fill(search, cells);
     if (ok && mrt_cells_join_walls(cells)) ok = fill(search, cells);
     if (ok) {
         mrt_cells_snap(cells);

@@ -7,8 +7,9 @@
 #include "techniques/mrt/level/holes.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-enum { SAMPLES = 8 };              // along each edge of a face
+enum { SAMPLES = MRT_FACE_SAMPLES };
 static const float ALIGNED = 0.9f; // cosine between a wall's normal and the axis
 static const float REACH = 0.25f;  // of a cell: surfaces this near to a face belong to it
 
@@ -54,15 +55,28 @@ static vec3s outward(int face)
     return d;
 }
 
+static bool is_blocked(const struct mrt_cells *cells, const int at[3], int face,
+                       const int beyond[3], int i)
+{
+    const float inside = REACH * size_along(cells, at, face / 2);
+    const float outside = REACH * size_along(cells, beyond, face / 2);
+    return raycast_blocked(cells->raycast, face_sample(cells, at, face, inside, i), outward(face),
+                           inside + outside);
+}
+
+bool mrt_cells_is_air(const struct mrt_cells *cells, const int at[3], int face, const int beyond[3],
+                      int u, int v)
+{
+    const int i = v * SAMPLES + u;
+    if (is_blocked(cells, at, face, beyond, i)) return false;
+    return !mrt_is_in_solid(cells, face_sample(cells, at, face, 0.0f, i));
+}
+
 static float open_share(const struct mrt_cells *cells, const int at[3], int face,
                         const int beyond[3])
 {
-    float inside = REACH * size_along(cells, at, face / 2);
-    float outside = REACH * size_along(cells, beyond, face / 2);
     int open = 0;
-    for (int i = 0; i < SAMPLES * SAMPLES; i++)
-        open += !raycast_blocked(cells->raycast, face_sample(cells, at, face, inside, i),
-                                 outward(face), inside + outside);
+    for (int i = 0; i < SAMPLES * SAMPLES; i++) open += !is_blocked(cells, at, face, beyond, i);
     return (float)open / (float)(SAMPLES * SAMPLES);
 }
 
@@ -95,7 +109,8 @@ static void free_cell_of(struct mrt_cells *cells, vec3s seed)
         for (at[a] = 0; at[a] + 1 < mrt_cells_along(cells, a); at[a]++)
             if (seed.raw[a] < plane[at[a] + 1]) break;
     }
-    mrt_cell_at(cells, at)->free = !mrt_cell_at(cells, at)->outside;
+    struct mrt_cell *cell = mrt_cell_at(cells, at);
+    cell->free = !cell->outside && !cell->solid;
 }
 
 static bool has_free_neighbor(const struct mrt_cells *cells, int i)
@@ -114,11 +129,22 @@ static void flood(struct mrt_cells *cells)
     for (bool changed = true; changed;) {
         changed = false;
         for (int i = 0; i < mrt_cells_count(cells); i++) {
-            if (cells->cell[i].free || cells->cell[i].outside) continue;
+            const struct mrt_cell *cell = &cells->cell[i];
+            if (cell->free || cell->outside || cell->solid) continue;
             if (!has_free_neighbor(cells, i)) continue;
             cells->cell[i].free = changed = true;
         }
     }
+}
+
+// Frees the cells that are connected with the seeds. Returns whether there is one.
+static bool free_cells(struct mrt_cells *cells, const vec3s *seeds, size_t count)
+{
+    for (size_t i = 0; i < count; i++) free_cell_of(cells, seeds[i]);
+    flood(cells);
+    for (int i = 0; i < mrt_cells_count(cells); i++)
+        if (cells->cell[i].free) return true;
+    return false;
 }
 
 bool mrt_cells_fill(struct host *host, struct mrt_cells *cells, const vec3s *seeds, size_t count)
@@ -131,9 +157,12 @@ bool mrt_cells_fill(struct host *host, struct mrt_cells *cells, const vec3s *see
         int at[3];
         mrt_cell_place(cells, i, at);
         cells->cell[i].outside = mrt_cell_is_outside(cells, at);
+        cells->cell[i].solid = !cells->cell[i].outside && mrt_cell_is_solid(cells, at);
     }
-    for (size_t i = 0; i < count; i++) free_cell_of(cells, seeds[i]);
-    flood(cells);
+    if (free_cells(cells, seeds, count)) return true;
+    // A room whose surfaces all show their backs to it is no solid.
+    for (int i = 0; i < mrt_cells_count(cells); i++) cells->cell[i].solid = false;
+    free_cells(cells, seeds, count);
     return true;
 }
 
@@ -144,21 +173,31 @@ struct wall_distance {
     int hits;
 };
 
-// Surfaces near a closed face of a free cell, as seen from inside.
+static int ascending(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+// Surfaces near a closed face of a free cell, as seen from inside. Their median: objects in front
+// of a wall are less than half of what is seen.
 static void add_wall(const struct mrt_cells *cells, const int at[3], int face,
                      struct wall_distance *wall)
 {
     int axis = face / 2;
-    float inside = REACH * size_along(cells, at, axis);
+    float inside = REACH * size_along(cells, at, axis), place[SAMPLES * SAMPLES];
+    int hits = 0;
     for (int i = 0; i < SAMPLES * SAMPLES; i++) {
         struct raycast_hit hit;
         vec3s from = face_sample(cells, at, face, inside, i);
         if (!raycast_closest(cells->raycast, from, outward(face), 2.0f * inside, &hit)) continue;
         // Backs are seen from inside a wall.
         if (!hit.front || fabsf(hit.normal.raw[axis]) < ALIGNED) continue;
-        wall->sum += from.raw[axis] + (face & 1 ? hit.distance : -hit.distance);
-        wall->hits++;
+        place[hits++] = from.raw[axis] + (face & 1 ? hit.distance : -hit.distance);
     }
+    qsort(place, (size_t)hits, sizeof *place, ascending);
+    if (hits > 0) wall->sum += (float)hits * place[hits / 2];
+    wall->hits += hits;
 }
 
 static float snapped(const struct mrt_cells *cells, int axis, int plane)

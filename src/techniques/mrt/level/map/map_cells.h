@@ -10,7 +10,8 @@ enum { MRT_MAX_PLANES = 11 }; // per axis, with the two of the bounds: at most 1
 
 struct mrt_cell {
     bool outside;  // open to the sky rather than enclosed
-    bool free;     // connected with a seed, and not outside
+    bool solid;    // inside of a wall or an object
+    bool free;     // connected with a seed, and neither outside nor solid
     unsigned open; // bit f: nothing separates it from what is beyond face f
     unsigned hole; // bit f: a wall with holes, such as a door, does
 };
@@ -34,6 +35,17 @@ void mrt_cells_find_planes(struct mrt_cells *cells);
 bool mrt_cells_fill(struct host *host, struct mrt_cells *cells, const vec3s *seeds, size_t count);
 // Moves the planes to the walls, as seen from the free cells on either side.
 void mrt_cells_snap(struct mrt_cells *cells);
+
+enum { MRT_FACE_SAMPLES = 8 }; // along each edge of a face
+
+// Whether neither a surface nor a solid is at place (u, v) of the face between two cells; u and v
+// are the axes after that of the face.
+bool mrt_cells_is_air(const struct mrt_cells *cells, const int at[3], int face, const int beyond[3],
+                      int u, int v);
+
+// Removes planes of objects, which leave air above or beside them, from between free cells. The
+// cells must be filled again where it returns true.
+bool mrt_cells_drop_objects(struct mrt_cells *cells);
 
 // Makes one plane of the two sides of a thick wall, whose cells light enters by holes alone, if at
 // all. The cells must be filled again where it returns true.

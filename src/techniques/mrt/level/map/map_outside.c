@@ -17,6 +17,7 @@ static const float OPEN = 0.8f;     // least part about a house that is under th
 static const float FITS = 0.7f;     // least part of a cell that its room has
 static const float PART = 0.1f;     // least part of a room that a cell has
 static const float REACH = 0.5f;    // of the scene's longest edge
+static const float AIR = 0.05f;     // most part of a solid cell
 
 float mrt_roof_reach(struct box3 scene)
 {
@@ -168,4 +169,27 @@ bool mrt_cell_is_outside(const struct mrt_cells *cells, const int at[3])
 {
     if (!cells->regions) return !is_mostly_enclosed(cells, at);
     return sees_the_sky(cells, at) || has_a_house(cells, at);
+}
+
+bool mrt_is_in_solid(const struct mrt_cells *cells, vec3s point)
+{
+    const float far = 2.0f * glms_vec3_norm(box3_size(cells->bounds));
+    int backs = 0;
+    for (int face = 0; face < CUBE_FACES; face++) {
+        struct raycast_hit hit;
+        vec3s way = vec3_of(0, 0, 0);
+        way.raw[face / 2] = face & 1 ? 1.0f : -1.0f;
+        backs += raycast_closest(cells->raycast, point, way, far, &hit) && !hit.front;
+    }
+    return 2 * backs > CUBE_FACES;
+}
+
+bool mrt_cell_is_solid(const struct mrt_cells *cells, const int at[3])
+{
+    int air = 0;
+    for (int i = 0; i < SAMPLES; i++) {
+        air += !mrt_is_in_solid(cells, sample_of(cells, at, i));
+        if ((float)air > AIR * (float)SAMPLES) return false;
+    }
+    return true;
 }

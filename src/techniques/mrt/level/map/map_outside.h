@@ -11,3 +11,7 @@ bool mrt_is_enclosed(const struct raycast *raycast, vec3s point, float reach);
 bool mrt_box_is_open(const struct raycast *raycast, struct box3 box);
 // Whether a cell is no room: open to the sky, or a part of the outdoors that has a room in it.
 bool mrt_cell_is_outside(const struct mrt_cells *cells, const int at[3]);
+// Whether rays along the axes mostly meet backs.
+bool mrt_is_in_solid(const struct mrt_cells *cells, vec3s point);
+// Whether a cell is the inside of a wall or an object: no twentieth of it is air.
+bool mrt_cell_is_solid(const struct mrt_cells *cells, const int at[3]);
