@@ -401,17 +401,46 @@ static void begin_furnished_room(struct frame_fixture *s, struct gpu *gpu, bool 
         fixture_look(s, vec3_of(2.7f, 1.7f, 2.7f), vec3_of(-1.5f, 1, -2));
 }
 
-void trial_wardrobe(struct frame_fixture *s, struct gpu *gpu, bool second_view)
+static void add_table(struct frame_fixture *s, int wood)
 {
-    begin_furnished_room(s, gpu, second_view);
-    const int wood = fixture_matte(s, grey(0.4f));
-    add_solid(s, vec3_of(-2.95f, 0, -1), vec3_of(-2.35f, 2.1f, 1), wood);
     add_solid(s, vec3_of(0, 0.7f, -0.4f), vec3_of(1.6f, 0.75f, 0.4f), wood);
     for (int leg = 0; leg < 4; leg++) {
         const vec3s at = vec3_of(leg % 2 ? 1.49f : 0.05f, 0, leg / 2 ? 0.29f : -0.35f);
         add_solid(s, at, glms_vec3_add(at, vec3_of(0.06f, 0.7f, 0.06f)), wood);
     }
+}
+
+void trial_wardrobe(struct frame_fixture *s, struct gpu *gpu, bool second_view)
+{
+    begin_furnished_room(s, gpu, second_view);
+    const int wood = fixture_matte(s, grey(0.4f));
+    add_solid(s, vec3_of(-2.95f, 0, -1), vec3_of(-2.35f, 2.1f, 1), wood);
+    add_table(s, wood);
     fixture_add_point(s, vec3_of(1, 2.4f, 1.2f), grey(200));
+}
+
+void trial_long_room(struct frame_fixture *s, struct gpu *gpu, bool second_view)
+{
+    fixture_init(s, gpu);
+    s->options.shadow_size = 1024;
+    add_house(s, (struct box3){ vec3_of(-2.5f, 0, -2), vec3_of(2.5f, 2.6f, 2) }, box3_empty(),
+              fixture_matte(s, grey(0.7f)));
+    fixture_add_point(s, vec3_of(1, 2.2f, 1.2f), grey(200));
+    add_camera(s, vec3_of(0, 1.5f, 1));
+    if (second_view)
+        fixture_look(s, vec3_of(-2.2f, 1.7f, 0.3f), vec3_of(1.5f, 0.7f, 1.5f));
+    else
+        fixture_look(s, vec3_of(2.2f, 1.7f, 1.7f), vec3_of(-1.5f, 1, -1.5f));
+}
+
+void trial_thick_walls(struct frame_fixture *s, struct gpu *gpu, bool second_view)
+{
+    trial_long_room(s, gpu, second_view);
+    const int wood = fixture_matte(s, grey(0.4f));
+    add_solid(s, vec3_of(-2.45f, 0, -1.6f), vec3_of(-1.85f, 2.1f, -0.2f), wood);
+    add_solid(s, vec3_of(1.5f, 0.1f, -1), vec3_of(2.4f, 0.45f, 1), wood);
+    add_solid(s, vec3_of(2.2f, 0.45f, -1), vec3_of(2.4f, 0.9f, 1), wood);
+    add_table(s, wood);
 }
 
 void trial_shade(struct frame_fixture *s, struct gpu *gpu, bool second_view)

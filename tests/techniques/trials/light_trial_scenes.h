@@ -81,6 +81,11 @@ void trial_curtain(struct frame_fixture *s, struct gpu *gpu, bool second_view);
 // or furniture of double-sided sheets (albedo 0.4 and 0.6), some of them 3 to 8 cm from others.
 void trial_sheets(struct frame_fixture *s, struct gpu *gpu, bool second_view);
 
+// A room of 5 × 2.6 × 4 in solid walls of 20 cm (albedo 0.7) with a point light: two blocks.
+void trial_long_room(struct frame_fixture *s, struct gpu *gpu, bool second_view);
+// The same with a wardrobe 5 cm from a wall, a sofa and a table (albedo 0.4).
+void trial_thick_walls(struct frame_fixture *s, struct gpu *gpu, bool second_view);
+
 // A room of 6 × 3 × 6 (albedo 0.5, double-sided) with a point light. Walls like these are hidden
 // behind it, at a distance of `gap`; 0: none.
 void trial_lined_room(struct frame_fixture *s, struct gpu *gpu, float gap);

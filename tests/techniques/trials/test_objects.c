@@ -16,6 +16,23 @@ TEST_GPU(light_of_a_room_with_a_wardrobe_close_to_a_wall)
     trial_check_energy(gpu, trial_wardrobe, 256, BOUNDS, COUNT);
 }
 
+// Light crosses the opening between two blocks that are no cubes.
+TEST_GPU(light_of_a_room_of_two_blocks)
+{
+    static const struct trial_bounds bounds[] = { { "radiosity:texels=16384", 0.95, 1.05 },
+                                                  { "mrt" DICTIONARY, 0.95, 1.05 } };
+    trial_check_energy(gpu, trial_long_room, 256, bounds, sizeof bounds / sizeof bounds[0]);
+}
+
+// Walls are solids, and furniture is large: neither is a block of its own. In mrt furniture does
+// not darken the room.
+TEST_GPU(light_of_a_furnished_room_between_thick_walls)
+{
+    static const struct trial_bounds bounds[] = { { "radiosity:texels=16384", 0.95, 1.05 },
+                                                  { "drt" DICTIONARY, 0.95, 1.05 } };
+    trial_check_energy(gpu, trial_thick_walls, 256, bounds, sizeof bounds / sizeof bounds[0]);
+}
+
 // mrt takes the inside of the shade, which is the brightest surface, for a wall.
 TEST_GPU(light_of_a_shade)
 {

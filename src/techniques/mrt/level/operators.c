@@ -1,6 +1,8 @@
 // Operators of the dictionary in the frames of the blocks of a level.
 #include "operators.h"
 
+#include "techniques/mrt/level/opening_view.h"
+
 #include <string.h>
 
 // ---- bases
@@ -101,6 +103,53 @@ static bool make_pairs(struct mrt_operators *o, const struct mrt_level *level, i
     return true;
 }
 
+// Room of a device's buffers: openings beyond these have the cube's.
+enum { MOST_SCALED = 96 };
+
+// The response of an opening of a block that is no cube, from that of a cube. Probes keep the
+// latter, as in their bases.
+static bool add_scaled_response(struct mrt_operators *o, const struct mrt_level *level,
+                                const struct mrt_entry *entry, int of_cube)
+{
+    const struct mrt_block *block = &level->map->blocks[entry->block];
+    const struct mrt_shape closed = mrt_cube(level->resolution, 0);
+    const size_t texels = (size_t)mrt_shape_texels(&closed);
+    struct mrt_block_response *to = &o->responses[o->response_count++];
+    float *ratios = host_alloc(o->host, texels, sizeof *ratios);
+    bool ok = ratios;
+    if (ok)
+        mrt_opening_ratios(&closed, mrt_warp_jacobian(block->corner, GLMS_VEC3_ZERO), entry->face,
+                           ratios);
+    for (int m = 0; ok && m < MRT_MEASURES; m++) {
+        const struct matrix_f32 *from = &o->responses[of_cube].u[m];
+        if (from->rows == 0) continue;
+        ok = matrix_f32_copy(o->host, from, from->columns, &to->u[m]);
+        const size_t values = (size_t)mrt_values_of((enum mrt_measure)m);
+        for (size_t i = 0; ok && m != MRT_PROBE && i < texels * values * from->columns; i++)
+            to->u[m].at[i / from->columns * to->u[m].stride + i % from->columns] *=
+                ratios[i / (values * from->columns)];
+    }
+    host_free(o->host, ratios);
+    return ok;
+}
+
+// Blocks of the same proportions and turn share the responses of their openings.
+static bool scale_response(struct mrt_operators *o, const struct mrt_level *level, int entry)
+{
+    struct mrt_opening *to = &o->openings[entry];
+    if (!mrt_level_retraced(level, to->block)) return true;
+    for (int i = 0; i < entry; i++) {
+        const struct mrt_opening *like = &o->openings[i];
+        if (like->face != to->face || !same_basis(level, like->block, to->block)) continue;
+        to->response = like->response;
+        return true;
+    }
+    if (o->response_count >= MRT_RESPONSES + MOST_SCALED) return true;
+    const int of_cube = to->response;
+    to->response = o->response_count;
+    return add_scaled_response(o, level, &level->entries[entry], of_cube);
+}
+
 static bool make_openings(struct mrt_operators *o, const struct mrt_level *level)
 {
     for (int i = 0; i < level->entry_count; i++) {
@@ -109,7 +158,7 @@ static bool make_openings(struct mrt_operators *o, const struct mrt_level *level
         to->block = entry.block;
         to->face = entry.face;
         to->response = mrt_response_of(&level->map->blocks[entry.block], entry.face);
-        if (!make_pairs(o, level, i, to)) return false;
+        if (!scale_response(o, level, i) || !make_pairs(o, level, i, to)) return false;
     }
     return true;
 }
@@ -123,10 +172,11 @@ bool mrt_operators_init(struct mrt_operators *out, struct host *host, const stru
                                    .k_r = options->response_modes,
                                    .probes = options->block_probes,
                                    .response_count = MRT_RESPONSES };
-    // Each block may get a basis and an opening of its own, each opening a response.
+    // Each block may get a basis and an opening of its own, each opening a response, with clutter
+    // a second one.
     out->bases = host_alloc(host, 2 * blocks, sizeof *out->bases);
     out->basis_of_block = host_alloc(host, blocks, sizeof *out->basis_of_block);
-    out->responses = host_alloc(host, MRT_RESPONSES + entries + blocks, sizeof *out->responses);
+    out->responses = host_alloc(host, MRT_RESPONSES + 2 * entries + blocks, sizeof *out->responses);
     out->openings = host_alloc(host, entries + blocks, sizeof *out->openings);
     return out->bases && out->basis_of_block && out->responses && out->openings &&
            make_bases(out, level) && make_responses(out, level) && make_openings(out, level);

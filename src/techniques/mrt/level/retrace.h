@@ -1,6 +1,6 @@
 // Bases of blocks that are far from cubes (Loos 2015, figure 3.4): the light of L_imp gathered
-// again by rays in the block's own proportions, and T_d→b fitted to it (projection.h). L_imp and
-// light through openings stay those of the cube.
+// again by rays in the block's own proportions, and T_d→b fitted to it (projection.h). L_imp stays
+// that of the cube, light through openings is scaled (opening_view.h).
 #pragma once
 
 #include "techniques/mrt/dictionary/dictionary.h"

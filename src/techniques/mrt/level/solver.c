@@ -3,6 +3,8 @@
 
 #include "core/parallel.h"
 
+#include "techniques/mrt/level/opening_view.h"
+
 #include <string.h>
 
 // ---- products of a matrix with three colours at once, eight elements at a time: vectors of the
@@ -134,6 +136,26 @@ static bool copy_retraced(struct mrt_solver *s)
     return ok;
 }
 
+// Light that enters blocks that are no cubes.
+static bool copy_ratios(struct mrt_solver *s)
+{
+    const struct mrt_level *level = s->level;
+    const struct mrt_shape closed = mrt_cube(level->resolution, 0);
+    const size_t texels = (size_t)mrt_shape_texels(&closed);
+    if (level->retraces.count == 0) return true;
+    s->ratios = host_alloc(s->host, (size_t)level->entry_count * texels, sizeof *s->ratios);
+    for (int e = 0; s->ratios && e < level->entry_count; e++) {
+        const struct mrt_entry *entry = &level->entries[e];
+        float *to = s->ratios + (size_t)e * texels;
+        for (size_t t = 0; t < texels; t++) to[t] = 1.0f;
+        if (mrt_level_retraced(level, entry->block))
+            mrt_opening_ratios(
+                &closed, mrt_warp_jacobian(level->map->blocks[entry->block].corner, GLMS_VEC3_ZERO),
+                entry->face, to);
+    }
+    return s->ratios;
+}
+
 // Walls of a shape that light enters.
 static size_t entered_walls(const struct mrt_solver *s)
 {
@@ -232,7 +254,8 @@ bool mrt_solver_init(struct host *host, const struct mrt_level *level, struct mr
     int n = level->resolution * level->resolution;
     *solver = (struct mrt_solver){ .host = host, .level = level };
     solver->face_texels = (n + MRT_LANES - 1) / MRT_LANES * MRT_LANES;
-    bool ok = allocate(solver) && copy_response(solver) && copy_retraced(solver);
+    bool ok =
+        allocate(solver) && copy_response(solver) && copy_retraced(solver) && copy_ratios(solver);
     for (int i = 0; ok && i < mrt_dictionary_shapes(level->maze); i++) ok = copy_cube(solver, i);
     if (ok)
         map_texels(solver);
@@ -244,6 +267,7 @@ bool mrt_solver_init(struct host *host, const struct mrt_level *level, struct mr
 void mrt_solver_finish(struct mrt_solver *solver)
 {
     if (solver->host) {
+        host_free(solver->host, solver->ratios);
         for (int i = 0; i < MRT_MAX_CUBES; i++) {
             host_free(solver->host, solver->t_db[i]);
             host_free(solver->host, solver->u_b[i]);
@@ -326,9 +350,9 @@ static const float *receive(struct mrt_solver *s, int entry)
 }
 
 // U_r r on the walls of one block.
-static void add_response(const struct mrt_solver *s, int block, int entry_face, const float *r,
-                         float *irradiance)
+static void add_response(const struct mrt_solver *s, int entry, const float *r, float *irradiance)
 {
+    const int block = s->level->entries[entry].block, entry_face = s->level->entries[entry].face;
     const struct mrt_block *of = &s->level->map->blocks[block];
     const int response = mrt_response_of(of, entry_face);
     int n = s->level->resolution * s->level->resolution, face = s->face_texels;
@@ -342,8 +366,10 @@ static void add_response(const struct mrt_solver *s, int block, int entry_face, 
         int from = s->entered_face[response][wall];
         expand(s->u_r + (size_t)(from * k_r) * (size_t)face, face, k_r, face, r, planes);
         const int *texel = s->entered_texel + (response * CUBE_FACES + wall) * n;
+        const float *ratios = s->ratios ? s->ratios + (entry * CUBE_FACES + wall) * n : NULL;
         for (int t = 0; t < n; t++)
-            for (int c = 0; c < 3; c++) irradiance[3 * t + c] += planes[c][texel[t]];
+            for (int c = 0; c < 3; c++)
+                irradiance[3 * t + c] += (ratios ? ratios[t] : 1.0f) * planes[c][texel[t]];
         irradiance += 3 * n;
     }
 }
@@ -366,7 +392,7 @@ static void light_block(void *user, size_t i)
     for (int f = 0; f < CUBE_FACES; f++) {
         int entry = level->entry_of_face[CUBE_FACES * block + f];
         if (entry < 0) continue;
-        add_response(s, block, f, receive(s, entry), out);
+        add_response(s, entry, receive(s, entry), out);
     }
 }
 

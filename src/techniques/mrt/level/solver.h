@@ -11,8 +11,9 @@ struct mrt_solver {
     // Per shape of the dictionary: k_b rows over the padded texels of its walls.
     float *t_db[MRT_MAX_CUBES], *u_b[MRT_MAX_CUBES];
     float **t_retraced, **u_retraced; // the same for each of level->retraces
-    float *u_r;                       // [walls of all mrt_entered_shape] × k_r × face_texels
-    int *cube_texel;                  // [texels of the level]: padded texel of the shape
+    float *ratios;   // [entries] × 6 n² texels of a cube: mrt_opening_ratios; NULL: all are 1
+    float *u_r;      // [walls of all mrt_entered_shape] × k_r × face_texels
+    int *cube_texel; // [texels of the level]: padded texel of the shape
     int entered_face[MRT_RESPONSES][CUBE_FACES]; // by mrt_response_of and wall
     int *entered_texel;                          // [MRT_RESPONSES] × [6 walls] × texels of a wall
     float *light; // [texels of a closed cube or a tube, padded] × 3 colours for each block
