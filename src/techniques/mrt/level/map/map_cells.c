@@ -11,6 +11,7 @@
 
 enum { SAMPLES = MRT_FACE_SAMPLES };
 static const float ALIGNED = 0.9f; // cosine between a wall's normal and the axis
+static const float RELIEF = 0.05f; // of a cell: of a wall, whose objects stand further out
 static const float REACH = 0.25f;  // of a cell: surfaces this near to a face belong to it
 
 void mrt_cell_place(const struct mrt_cells *cells, int i, int at[3])
@@ -179,8 +180,8 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Surfaces near a closed face of a free cell, as seen from inside. Their median: objects in front
-// of a wall are less than half of what is seen.
+// Surfaces near a closed face of a free cell, as seen from inside. Objects in front of a wall are
+// less than half of what is seen: only what is near the median belongs to it.
 static void add_wall(const struct mrt_cells *cells, const int at[3], int face,
                      struct wall_distance *wall)
 {
@@ -195,9 +196,14 @@ static void add_wall(const struct mrt_cells *cells, const int at[3], int face,
         if (!hit.front || fabsf(hit.normal.raw[axis]) < ALIGNED) continue;
         place[hits++] = from.raw[axis] + (face & 1 ? hit.distance : -hit.distance);
     }
+    if (hits == 0) return;
     qsort(place, (size_t)hits, sizeof *place, ascending);
-    if (hits > 0) wall->sum += (float)hits * place[hits / 2];
-    wall->hits += hits;
+    const float relief = RELIEF * size_along(cells, at, axis), median = place[hits / 2];
+    for (int i = 0; i < hits; i++) {
+        if (fabsf(place[i] - median) > relief) continue;
+        wall->sum += place[i];
+        wall->hits++;
+    }
 }
 
 static float snapped(const struct mrt_cells *cells, int axis, int plane)
