@@ -180,18 +180,23 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Surfaces near a closed face of a free cell, as seen from inside. Objects in front of a wall are
-// less than half of what is seen: only what is near the median belongs to it.
+// Surfaces near a closed face of a free cell, as seen from inside. Objects before a wall without
+// openings are less than half of what is seen: only what is near the median belongs to it. Before
+// an arcade nothing tells them from its relief: all counts.
 static void add_wall(const struct mrt_cells *cells, const int at[3], int face,
                      struct wall_distance *wall)
 {
     int axis = face / 2;
     float inside = REACH * size_along(cells, at, axis), place[SAMPLES * SAMPLES];
     int hits = 0;
+    bool closed = true;
     for (int i = 0; i < SAMPLES * SAMPLES; i++) {
         struct raycast_hit hit;
         vec3s from = face_sample(cells, at, face, inside, i);
-        if (!raycast_closest(cells->raycast, from, outward(face), 2.0f * inside, &hit)) continue;
+        if (!raycast_closest(cells->raycast, from, outward(face), 2.0f * inside, &hit)) {
+            closed = false;
+            continue;
+        }
         // Backs are seen from inside a wall.
         if (!hit.front || fabsf(hit.normal.raw[axis]) < ALIGNED) continue;
         place[hits++] = from.raw[axis] + (face & 1 ? hit.distance : -hit.distance);
@@ -200,7 +205,7 @@ static void add_wall(const struct mrt_cells *cells, const int at[3], int face,
     qsort(place, (size_t)hits, sizeof *place, ascending);
     const float relief = RELIEF * size_along(cells, at, axis), median = place[hits / 2];
     for (int i = 0; i < hits; i++) {
-        if (fabsf(place[i] - median) > relief) continue;
+        if (closed && fabsf(place[i] - median) > relief) continue;
         wall->sum += place[i];
         wall->hits++;
     }
