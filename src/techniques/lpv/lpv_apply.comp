@@ -115,13 +115,15 @@ vec3 damped_irradiance(vec3 at, vec3 n)
 const float LPV_TO_VIEWER = 2.0 / float(LPV_PLACES); // cells
 
 // Position of a lookup for a surface, in cells.
-vec3 lookup_of(vec3 surface, vec3 n)
+vec3 lookup_of(vec3 position, vec3 n)
 {
-    vec3 at = lpv_cells_from_world(surface + lpv.offset_m * n);
-    vec3 to_viewer = frame_to_viewer(surface) / lpv.cell_m;
-    vec3 moved = at + to_viewer * min(LPV_TO_VIEWER / length(to_viewer), 1.0);
-    vec3 visible = lpv_visible(moved, lpv_cells());
-    return visible == moved ? at : visible;
+    vec3 surface = lpv_cells_from_world(position),
+         at = lpv_cells_from_world(position + lpv.offset_m * n);
+    vec3 to_viewer = frame_to_viewer(position) / lpv.cell_m;
+    vec3 seen = surface + to_viewer * min(1.0 / length(to_viewer), 1.0);
+    lpv_lookup lookup = lpv_lookup_at(at, surface, n, seen, lpv_cells());
+    lookup.side += clamp(to_viewer, vec3(-LPV_TO_VIEWER), vec3(LPV_TO_VIEWER));
+    return lpv_visible(lookup, lpv_cells());
 }
 
 vec3 surface_irradiance(vec3 at, vec3 n)

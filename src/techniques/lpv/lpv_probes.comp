@@ -30,9 +30,9 @@ void store_walls(ivec3 cell)
 {
     vec4 covered = vec4(0.0), place = vec4(0.0);
     for (int axis = 0; axis < 3; axis++) {
-        vec2 wall = lpv_wall_below(cell, lpv_cells(), axis);
-        covered[axis] = wall.x;
-        place[axis] = wall.y;
+        lpv_wall wall = lpv_wall_below(cell, lpv_cells(), axis);
+        covered[axis] = max(wall.from_below, wall.from_above);
+        place[axis] = wall.place;
     }
     ivec3 slab = cell + ivec3(0, 0, FRAME_PROBE_SLABS * grid.slab);
     imageStore(probes, slab, covered);

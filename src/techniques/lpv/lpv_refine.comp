@@ -29,7 +29,8 @@ void main()
     if (!lpv_inside(cell)) return;
     vec4 slabs[7];
     ivec3 cells = ivec3(push.cells_x, push.cells_y, push.cells_z);
-    vec3 at = lpv_visible(push.first + push.ratio * (vec3(cell) + 0.5), cells);
+    vec3 centre = push.first + push.ratio * (vec3(cell) + 0.5);
+    vec3 at = lpv_visible(lpv_lookup_at(centre, centre, vec3(0.0), centre, cells), cells);
     lpv_sample_slabs(coarser, at, cells, slabs);
     for (int i = 0; i < 7; i++) slabs[i] *= push.ratio * push.ratio;
     lpv_store_slabs(refined, cell, slabs);

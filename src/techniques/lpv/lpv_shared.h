@@ -16,6 +16,7 @@
 #define LPV_SURFACE_LINES 4
 #define LPV_LINES         4
 #define LPV_PLACES        16u     // of a surface between two cells' centres
+#define LPV_MOST_LINES    15u     // of a wall between two centres, in four bits
 #define LPV_SURFACE_UNIT  65536.0 // of reflectance × area, per cells²
 
 #define LPV_MAX_CASCADES     4

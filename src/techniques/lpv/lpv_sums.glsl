@@ -43,9 +43,11 @@ void lpv_add(int cell, vec3 lobe[9])
 // too.
 int lpv_injection_cell(vec3 position, vec3 normal)
 {
-    vec3 at = lpv_cells_from_world(position) + 0.5 * normal;
+    vec3 surface = lpv_cells_from_world(position), at = surface + 0.5 * normal;
     if (!lpv_inside(ivec3(floor(at)))) return LPV_NO_CELL;
-    return lpv_index(lpv_cell_on_side(at, lpv_cells()));
+    if (LPV_GEOMETRY != LPV_GEOMETRY_SCENE) return lpv_index(ivec3(floor(at)));
+    return lpv_index(
+        lpv_cell_on_side(lpv_lookup_at(at, surface, normal, at, lpv_cells()), lpv_cells()));
 }
 
 // Coefficients of 1/π (n·ω)₊, a flux of 1. Those of unused bands are never read.

@@ -177,6 +177,13 @@ TEST_GPU(lpv_bounces_of_cascades_are_near_the_geometric_series)
     bounces_are_near_the_geometric_series(gpu, "holpv:dim=16,cascades=3,steps=5", 0.3);
 }
 
+// Two cells along an edge of the box: each is a corner, whose light leaves by three sides at
+// once and is reflected once.
+TEST_GPU(lpv_bounces_of_a_few_cells_make_no_light)
+{
+    bounces_are_near_the_geometric_series(gpu, "holpv:dim=8,steps=64", 0.6);
+}
+
 TEST_GPU(lpv_bounces_are_linear)
 {
     struct frame_fixture s;

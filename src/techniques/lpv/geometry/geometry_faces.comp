@@ -106,6 +106,15 @@ float occluded(uint from, uint free)
     return from == 0u ? 1.0 : float(bitCount(from & ~free)) / float(bitCount(from));
 }
 
+// Bits of lpv_lookup.glsl. Lines that are not on the side of a centre may pass beside a building:
+// surfaces close the side of a centre where they cross all of its lines.
+uint wall_bits(uint there, uint here, uint crossed, uint places)
+{
+    uint closed = ((there & ~crossed) == 0u ? 1u : 0u) | ((here & ~crossed) == 0u ? 2u : 0u);
+    uint place = uint(findLSB(places) + findMSB(places)) / 2u;
+    return min(uint(bitCount(crossed)), LPV_MOST_LINES) | closed << 4 | place << 6;
+}
+
 void main()
 {
     ivec3 cell = lpv_cell_of_invocation(1);
@@ -120,9 +129,7 @@ void main()
         uint here = LINES & ~cut_off(cell, axis), there = LINES & ~cut_off(below, axis);
         upwards[axis] = occluded(there, here & ~crossed);
         downwards[axis] = occluded(here, there & ~crossed);
-        if (crossed != 0u)
-            word |= (bitCount(crossed) | uint(findLSB(places) + findMSB(places)) << 5)
-                    << (10 * axis);
+        if (crossed != 0u) word |= wall_bits(there, here, crossed, places) << (10 * axis);
     }
     walls[lpv_index(cell)] = word;
     imageStore(geometry, cell, vec4(upwards, 0.0));
