@@ -30,7 +30,7 @@ static int32_t steps_of_coarsest(const struct lpv *finest, const struct lpv_grid
     for (int axis = 0; axis < 3; axis++)
         longest = grid->cells[axis] > longest ? grid->cells[axis] : longest;
     const int32_t steps = finest->options.steps;
-    const int32_t needed = finest->options.neighbours == LPV_SIX ? steps * longest : 2 * longest;
+    const int32_t needed = finest->options.neighbours == LPV_SIX ? steps * longest : 3 * longest;
     return needed < steps ? steps : needed < 16 * steps ? needed : 16 * steps;
 }
 
