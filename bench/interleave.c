@@ -46,8 +46,8 @@ static enum ag_result create_renderer(struct view *view, int variant)
 {
     char gi[BENCH_TEXT];
     const char *options = view->b->options;
-    snprintf(gi, sizeof gi, "vct:cones=25,resolution=%d,%s%s%s", view->resolution,
-             variants[variant], options ? "," : "", options ? options : "");
+    snprintf(gi, sizeof gi, "vct:trace=cones,temporal=false,cones=25,resolution=%d,%s%s%s",
+             view->resolution, variants[variant], options ? "," : "", options ? options : "");
     return bench_create_renderer(&view->b->bench, view->scene, gi, NULL, &view->renderers[variant]);
 }
 

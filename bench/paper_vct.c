@@ -151,7 +151,8 @@ static enum ag_result measure_figure(const struct vct_bench *b, const char *name
                                            .stages = figure->stages,
                                            .stage_count = figure->stage_count };
     for (int k = 0; k < VCT_METHODS; k++) {
-        snprintf(gi[k], sizeof gi[k], "vct:resolution=%d,bounces=1,%s%s%s", resolution,
+        snprintf(gi[k], sizeof gi[k],
+                 "vct:trace=cones,temporal=false,resolution=%d,bounces=1,%s%s%s", resolution,
                  figure->options[k], b->options ? "," : "", b->options ? b->options : "");
         measurement.gi[k] = gi[k];
     }

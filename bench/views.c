@@ -106,7 +106,7 @@ static bool set_defaults(void *user)
 {
     static const char *const specs[] = { "none",   "ambient",
                                          "lpv",    "holpv",
-                                         "vct",    "vct:temporal=true",
+                                         "vct",    "vct:temporal=false",
                                          "lpv+vo", "lpv+vo:temporal=true" };
     struct views_bench *b = user;
     default_texts(specs, sizeof specs / sizeof *specs, b->specs, &b->spec_count);

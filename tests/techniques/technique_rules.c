@@ -47,3 +47,15 @@ bool technique_is_sound(const struct technique *technique)
     if (!aliases_are_sound(&technique->options)) return false;
     return technique->bake_version == 0 || (technique->bake && technique->load);
 }
+
+const char *technique_of_one_frame(const struct technique *technique)
+{
+    return strcmp(technique->name, "vct") == 0 ? "vct:temporal=false" : technique->name;
+}
+
+const char *technique_additive(const struct technique *technique)
+{
+    if (strcmp(technique->name, "lpv") == 0) return "lpv:closure=linear";
+    if (strcmp(technique->name, "holpv") == 0) return "holpv:closure=linear";
+    return technique_of_one_frame(technique);
+}

@@ -24,14 +24,18 @@
 static const struct option_row option_rows[] = {
 #define VCT_OPTION OPTION
 #define VCTAO_OPTION(...)
+#define VCT_DEFAULT(of_vct, of_vctao) (of_vct)
 #include "techniques/vct/vct_options.def"
+#undef VCT_DEFAULT
 #undef VCTAO_OPTION
 #undef VCT_OPTION
 };
 static const struct option_row occlusion_rows[] = {
 #define VCT_OPTION(...)
-#define VCTAO_OPTION OPTION
+#define VCTAO_OPTION                  OPTION
+#define VCT_DEFAULT(of_vct, of_vctao) (of_vctao)
 #include "techniques/vct/vct_options.def"
+#undef VCT_DEFAULT
 #undef VCTAO_OPTION
 #undef VCT_OPTION
 };
@@ -53,8 +57,7 @@ static const struct option_alias occlusion_aliases[] = {
 static const struct technique_preset presets[] = {
     { "low", "resolution=32,half_resolution=true" },
     { "medium", "" },
-    { "high",
-      "resolution=128,temporal=true,trace=rays,interleave=3,half_resolution=true,specular=true" },
+    { "high", "resolution=128,interleave=3,half_resolution=true,specular=true" },
     { NULL, NULL },
 };
 static const struct technique_preset occlusion_presets[] = {

@@ -111,21 +111,13 @@ TEST_GPU(half_the_emission_is_half_the_irradiance)
     }
 }
 
-// The positive closures of lpv and holpv are homogeneous in light, but lights that cross do not add
-// up.
-static const char *additive(const struct technique *technique)
-{
-    if (strcmp(technique->name, "lpv") == 0) return "lpv:closure=linear";
-    return strcmp(technique->name, "holpv") == 0 ? "holpv:closure=linear" : technique->name;
-}
-
 TEST_GPU(emission_and_punctual_light_are_the_sum_of_each_alone)
 {
     size_t at = 0;
     for (const struct technique *t; (t = next_gatherer(&at));) {
-        float *both = irradiance(gpu, additive(t), 1, 1);
-        float *emitter = irradiance(gpu, additive(t), 1, 0),
-              *point = irradiance(gpu, additive(t), 0, 1);
+        float *both = irradiance(gpu, technique_additive(t), 1, 1);
+        float *emitter = irradiance(gpu, technique_additive(t), 1, 0),
+              *point = irradiance(gpu, technique_additive(t), 0, 1);
         const double most = (double)largest(both);
         const bool distant = t == technique_find("prt"); // it has no light of points
         int compared = 0;
@@ -162,7 +154,7 @@ static void move_lamp(struct room *r, float x)
 // Bounces that take several frames are tested by techniques.vct.bounces; this is the first frame.
 static const char *at_once(const struct technique *t)
 {
-    return strcmp(t->name, "vct") == 0 ? "vct:bounces=1" : t->name;
+    return strcmp(t->name, "vct") == 0 ? "vct:bounces=1,temporal=false" : t->name;
 }
 
 TEST_GPU(a_moving_emitter_leaves_no_trail)

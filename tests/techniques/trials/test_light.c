@@ -26,11 +26,12 @@ TEST_GPU(a_closed_room_beside_a_sunlit_one_stays_dark)
         double most;
     } cases[] = { { "lpv", 0.005 },
                   { "holpv", 0.002 },
-                  { "vct:bounces=1", 0.05 },
-                  { "vct", 0.04 },
-                  { "vct:resolution=128", 0.042 },
-                  { "vct:trace=rays", 0.01 },
-                  { "vct:trace=rays,resolution=128", 0.005 },
+                  { "vct:trace=cones,bounces=1", 0.05 },
+                  { "vct:trace=cones", 0.04 },
+                  { "vct:trace=cones,resolution=128", 0.042 },
+                  { "vct:quality=low", 0.005 },
+                  { "vct", 0.005 },
+                  { "vct:quality=high", 0.005 },
                   { RADIOSITY, 0.005 },
                   { ORT, 0.005 },
                   { PRT, 0.005 },
@@ -54,7 +55,7 @@ TEST_GPU(an_open_plane_in_the_sun_gets_nothing_of_its_own_light)
 TEST_GPU(light_crosses_an_empty_room)
 {
     static const struct share_case cases[] = { { "lpv", 0.8 },      { "holpv", 0.9 },
-                                               { "vct", 0.85 },     { "vct:trace=rays", 0.9 },
+                                               { "vct", 0.9 },      { "vct:trace=cones", 0.85 },
                                                { RADIOSITY, 0.95 }, { ORT, 0.89 },
                                                { MRT, 0.95 },       { DRT, 0.95 } };
     share_trial(gpu, trial_empty_room, "across an empty room", 1, cases,

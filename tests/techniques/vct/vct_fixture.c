@@ -25,6 +25,8 @@ void vct_fixture_open(struct vct_fixture *fixture, const char *text)
     fixture_open(s);
     struct vct_options options = { 0 };
     option_defaults(&technique->options, &options);
+    options.trace = VCT_BY_CONES; // of one frame, unless the text says otherwise
+    options.temporal = false;
     CHECK(option_parse(test_host(), &technique->options, technique->name, text, &options));
     const struct technique_create how = { .host = fixture->host ? fixture->host : test_host(),
                                           .gpu = s->gpu,
