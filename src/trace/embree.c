@@ -3,8 +3,10 @@
 
 #if AG_EMBREE == 4
 #include <embree4/rtcore.h>
+#define FLAG_QUERY_FILTER RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS
 #else
 #include <embree3/rtcore.h>
+#define FLAG_QUERY_FILTER RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION
 #endif
 
 #ifdef __SSE2__
@@ -41,8 +43,9 @@ struct embree *embree_create(struct host *host)
         embree_destroy(embree);
         return NULL;
     }
-    // Robust: no ray slips through an edge that two triangles share.
-    rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
+    // Robust: no ray slips through an edge that two triangles share. The other flag lets a query
+    // bring a filter.
+    rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST | FLAG_QUERY_FILTER);
     return embree;
 }
 
@@ -63,6 +66,8 @@ struct query {
     struct RTCIntersectContext context;
 #endif
     const void *view;
+    embree_hit *each; // of embree_all_hits
+    void *user;
 };
 
 // Queries are of one ray each, so hits have the layout of RTCHit.
@@ -175,6 +180,42 @@ bool embree_occluded(const struct embree *embree, const struct ray *ray)
     rtcOccluded1(embree->scene, &query.context, &r);
 #endif
     return r.tfar < 0.0f; // −∞ when occluded
+}
+
+// Hands the hit over and rejects it, so that the ray goes on.
+static void hand_over(const struct RTCFilterFunctionNArguments *arguments)
+{
+    const struct query *query = (const struct query *)arguments->context;
+    const struct RTCHit *h = (const struct RTCHit *)arguments->hit;
+    const float distance = ((const struct RTCRay *)arguments->ray)->tfar;
+    assert(arguments->N == 1);
+    if (!arguments->valid[0]) return;
+    query->each(query->user, &(struct ray_hit){ distance, h->geomID, h->primID, h->u, h->v });
+    arguments->valid[0] = 0;
+}
+
+void embree_all_hits(const struct embree *embree, const struct ray *ray, embree_hit *each,
+                     void *user)
+{
+    if (embree->log) log_ray(embree->log, ray, true);
+    struct query query;
+    query.view = NULL;
+    query.each = each;
+    query.user = user;
+    struct RTCRay r = rtc_ray(ray);
+#if AG_EMBREE == 4
+    rtcInitRayQueryContext(&query.context);
+    struct RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &query.context;
+    arguments.filter = hand_over;
+    arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+    rtcOccluded1(embree->scene, &r, &arguments);
+#else
+    rtcInitIntersectContext(&query.context);
+    query.context.filter = hand_over;
+    rtcOccluded1(embree->scene, &query.context, &r);
+#endif
 }
 
 // ---- the floating-point unit

@@ -57,6 +57,10 @@ void embree_log(struct embree *embree, struct ray_log *log); // NULL: stop
 bool embree_closest(const struct embree *embree, const struct ray *ray, const void *view,
                     bool coherent, struct ray_hit *hit);
 bool embree_occluded(const struct embree *embree, const struct ray *ray);
+// Calls `each` for all hits, in no order: also for those of surfaces that coincide.
+typedef void embree_hit(void *user, const struct ray_hit *hit);
+void embree_all_hits(const struct embree *embree, const struct ray *ray, embree_hit *each,
+                     void *user);
 
 // Flushes denormals to 0 on this thread: they cost a hundred times as much. Returns the argument of
 // embree_restore_denormals.

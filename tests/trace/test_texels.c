@@ -150,3 +150,47 @@ TEST(backs_of_single_sided_surfaces_are_inside)
     CHECK(!is_behind_wall(true));
     CHECK(is_inside(9, 16) && !is_inside(8, 16));
 }
+
+static void add_box(struct trace_fixture *s, vec3s low, vec3s high, int material)
+{
+    for (int face = 0; face < 6; face++) {
+        const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+        vec3s corner[4];
+        for (int i = 0; i < 4; i++) {
+            corner[i].raw[axis] = face % 2 ? high.raw[axis] : low.raw[axis];
+            corner[i].raw[u] = i == 1 || i == 2 ? high.raw[u] : low.raw[u];
+            corner[i].raw[v] = i >= 2 ? high.raw[v] : low.raw[v];
+        }
+        if (face % 2)
+            fixture_quad(s, corner[0], corner[1], corner[2], corner[3], material);
+        else
+            fixture_quad(s, corner[0], corner[3], corner[2], corner[1], material);
+    }
+}
+
+// A wall stands on a floor, which lies on the ground, and carries a ceiling: planes are shared.
+TEST(crossings_count_both_faces_where_solids_touch)
+{
+    struct trace_fixture s;
+    fixture_init(&s);
+    const int material = fixture_diffuse(&s, vec3_of(0.5f, 0.5f, 0.5f), vec3_of(0, 0, 0));
+    add_box(&s, vec3_of(-20, -0.4f, -20), vec3_of(20, -0.2f, 20), material);
+    add_box(&s, vec3_of(-3, -0.2f, -3), vec3_of(3, 0, 3), material);
+    add_box(&s, vec3_of(-3, 0, -3), vec3_of(-2.8f, 2.8f, 3), material);
+    add_box(&s, vec3_of(-2.8f, 0, -3), vec3_of(3, 2.8f, -2.8f), material);
+    add_box(&s, vec3_of(-3, 2.8f, -3), vec3_of(3, 3, 3), material);
+    struct trace_scene *scene = open_trace(&s);
+    const vec3s down = vec3_of(0, -1, 0), height = vec3_of(0, 2.799f, 0);
+    for (int i = 0; i < 100; i++) {
+        const float along = -2.75f + 0.055f * (float)i;
+        const vec3s room = glms_vec3_add(height, vec3_of(-2.79f, 0, along));
+        const vec3s wall = glms_vec3_add(height, vec3_of(-2.81f, 0, along));
+        const vec3s corner = glms_vec3_add(height, vec3_of(along, 0, -2.81f));
+        CHECK(inside_crossings(scene, room, down) == 0 && !inside_solid(scene, room, down));
+        CHECK(inside_crossings(scene, wall, down) == INSIDE_CROSSINGS);
+        CHECK(inside_crossings(scene, corner, down) == INSIDE_CROSSINGS);
+        CHECK(inside_solid(scene, wall, down) && inside_solid(scene, corner, down));
+    }
+    trace_scene_destroy(scene);
+    fixture_finish(&s);
+}

@@ -38,22 +38,30 @@ int inside_backs(const struct trace_scene *scene, vec3s from, vec3s normal, uint
     return backs;
 }
 
+struct crossed {
+    const struct trace_scene *scene;
+    const struct ray *ray;
+    int sum;
+};
+
+static void cross(void *user, const struct ray_hit *hit)
+{
+    struct crossed *crossed = user;
+    crossed->sum += inside_side_of(crossed->scene, crossed->ray, hit);
+}
+
 // Inside of a closed solid each ray meets one back more than outside, whatever else it passes: also
-// where solids overlap, and the nearest surface is the front of another.
+// where solids overlap, and the nearest surface is the front of another. Solids that touch share a
+// plane: the back of one and the front of the other count, which are at one distance.
 int inside_crossings(const struct trace_scene *scene, vec3s from, vec3s normal)
 {
-    enum { MOST_CROSSED = 64 };
-    int sum = 0;
+    struct crossed crossed = { scene, NULL, 0 };
     for (uint32_t k = 0; k < INSIDE_CROSSINGS; k++) {
-        struct ray ray = inside_ray(from, normal, k);
-        struct ray_hit hit;
-        for (int i = 0; i < MOST_CROSSED; i++) {
-            if (!embree_closest(scene->embree, &ray, NULL, false, &hit)) break;
-            sum += inside_side_of(scene, &ray, &hit);
-            ray.near = hit.distance * (1.0f + 0x1p-18f) + 0x1p-18f;
-        }
+        const struct ray ray = inside_ray(from, normal, k);
+        crossed.ray = &ray;
+        embree_all_hits(scene->embree, &ray, cross, &crossed);
     }
-    return sum;
+    return crossed.sum;
 }
 
 bool inside_solid(const struct trace_scene *scene, vec3s from, vec3s normal)
