@@ -95,6 +95,43 @@ AG_API enum ag_result
 ag_bake_run(struct ag_bake *bake,
             bool (*progress)(void *user, const struct ag_bake_progress *progress), void *user);
 
+/// News of ag_bake_team.receive.
+enum ag_bake_news {
+    AG_BAKE_NOTHING, ///< no message has arrived
+    AG_BAKE_MESSAGE, ///< one from *from
+    AG_BAKE_LOST,    ///< *from has ended, and no more messages of it come
+};
+/// Processes that run a bake together: how a program sends messages between them, by MPI, sockets
+/// or pipes. Messages of two ranks arrive in the order in which they were sent.
+struct ag_bake_team {
+    int rank;  ///< of this process, 0…count−1; default 0
+    int count; ///< of processes; default 1
+    /// Sends bytes to a process; they may change once it returns. False: that process has ended.
+    bool (*send)(void *user, int to, const void *data, size_t bytes);
+    /// The next message, without waiting for one; its bytes stay valid until the next call. With
+    /// AG_BAKE_LOST they are why, text without a zero, or none. At most ten seconds of silence at
+    /// the end of a run are waited for, but a rank that ends during the run must be told.
+    enum ag_bake_news (*receive)(void *user, int *from, const void **data, size_t *bytes);
+    void *user;           ///< for both
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
+};
+/// One process. Thread: any.
+AG_API void ag_bake_team_default(struct ag_bake_team *team);
+/// ag_bake_run on several processes or machines: all call it with a bake of the same scene,
+/// options, seed and version. Rank 0 deals out tasks as the others become free, works itself, and
+/// completes its bake: the same bytes as ag_bake_run. The others run what they are given, and
+/// return when rank 0 has ended; their bakes stay incomplete. The callbacks of `team` are called on
+/// this thread.
+///
+/// With a checkpoint, rank 0 writes each result to PATH.tasks beside it as it arrives, which
+/// ag_bake_run resumes, too: a process that is killed costs its running tasks alone. Tasks of a
+/// rank that is lost run on others. If `progress` of any rank returns false, all end, with
+/// AG_ERROR_CANCELLED. AG_ERROR_ARGUMENT on all where ranks bake different things, which the
+/// message names, or with a shard. Thread: the context's.
+AG_API enum ag_result
+ag_bake_run_team(struct ag_bake *bake, const struct ag_bake_team *team,
+                 bool (*progress)(void *user, const struct ag_bake_progress *progress), void *user);
+
 /// Writes the file of a complete bake and removes its checkpoint. record_seconds: add
 /// ag_bake_info.seconds to the file, which differ from run to run, and the name of the scene.
 /// Thread: the context's.

@@ -265,20 +265,69 @@ static bool tell(void *user, const struct bake_progress *p)
     return listener->progress(listener->user, &progress);
 }
 
+static enum ag_result run(struct ag_bake *b, const struct bake_team *team,
+                          bool (*progress)(void *user, const struct ag_bake_progress *progress),
+                          void *user)
+{
+    struct listener listener = { progress, user };
+    struct bake_run_options options = b->options;
+    options.team = team;
+    if (progress) {
+        options.progress = tell;
+        options.user = &listener;
+    }
+    return api_done(b->context, bake_run(b->bake, &options));
+}
+
 enum ag_result ag_bake_run(struct ag_bake *b,
                            bool (*progress)(void *user, const struct ag_bake_progress *progress),
                            void *user)
 {
     struct ag_context *context = context_of(b);
     AG_REQUIRE(context, b, "bake is NULL");
-    struct listener listener = { progress, user };
-    struct bake_run_options options = b->options;
-    if (progress) {
-        options.progress = tell;
-        options.user = &listener;
-    }
-    return api_done(context, bake_run(b->bake, &options));
+    return run(b, NULL, progress, user);
 }
+
+void ag_bake_team_default(struct ag_bake_team *team)
+{
+    if (team) *team = (struct ag_bake_team){ .count = 1 };
+}
+
+static bool send_to(void *user, int to, const void *data, size_t bytes)
+{
+    const struct ag_bake_team *team = user;
+    return team->send(team->user, to, data, bytes);
+}
+
+static enum bake_news receive_from(void *user, int *from, const void **data, size_t *bytes)
+{
+    const struct ag_bake_team *team = user;
+    return (enum bake_news)team->receive(team->user, from, data, bytes);
+}
+
+enum ag_result
+ag_bake_run_team(struct ag_bake *b, const struct ag_bake_team *team,
+                 bool (*progress)(void *user, const struct ag_bake_progress *progress), void *user)
+{
+    struct ag_context *context = context_of(b);
+    AG_REQUIRE(context, b, "bake is NULL");
+    AG_REQUIRE_POINTER(context, team);
+    AG_REQUIRE_KNOWN(__func__, context, team);
+    AG_REQUIRE(context, team->count >= 1 && team->rank >= 0 && team->rank < team->count,
+               "rank %d is not one of %d", team->rank, team->count);
+    AG_REQUIRE(context, team->send && team->receive, "send or receive is NULL");
+    struct ag_bake_team copy = *team;
+    const struct bake_team internal = { .rank = team->rank,
+                                        .count = team->count,
+                                        .send = send_to,
+                                        .receive = receive_from,
+                                        .user = &copy };
+    return run(b, &internal, progress, user);
+}
+
+_Static_assert((int)AG_BAKE_NOTHING == (int)BAKE_NOTHING &&
+                   (int)AG_BAKE_MESSAGE == (int)BAKE_MESSAGE && (int)AG_BAKE_LOST == (int)BAKE_LOST,
+               "news are cast");
 
 // ---- files
 

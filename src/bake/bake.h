@@ -64,10 +64,22 @@ struct bake_run_options {
     // written, and further calls have `stopping` set: a program may end itself in one of them.
     bool (*progress)(void *user, const struct bake_progress *progress);
     void *user;
+    const struct bake_team *team; // NULL: this process alone
 };
+// The processes that run a bake together, as the program reaches them; see ag_bake_team.
+enum bake_news { BAKE_NOTHING, BAKE_MESSAGE, BAKE_LOST };
+struct bake_team {
+    int rank, count;
+    bool (*send)(void *user, int to, const void *data, size_t bytes);
+    enum bake_news (*receive)(void *user, int *from, const void **data, size_t *bytes);
+    void *user;
+};
+
 // Runs the missing tasks. FAIL_CANCELLED: `progress` returned false; finished tasks are kept, also
 // in the checkpoint. A checkpoint of another identity, or a damaged one, is ignored with a warning.
 // It is read once, and removed by bake_save and bake_save_partial.
+// With a team, rank 0 deals out the tasks and completes the bake, others run those that they are
+// given; theirs stays incomplete. README.md has the protocol.
 bool bake_run(struct bake *bake, const struct bake_run_options *options);
 bool bake_is_complete(const struct bake *bake);
 

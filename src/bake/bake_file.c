@@ -18,7 +18,7 @@ bool bake_save(struct bake *bake, const char *path, bool record_run)
     if (record_run && !identity_add_run(bake, 0, &text)) return false;
     const size_t count = bake->file.memory ? tensors->count : bake->saved_count;
     if (!identity_write(bake->host, path, &text, tensors->at, count)) return false;
-    if (bake->checkpoint) remove(bake->checkpoint);
+    bake_forget_checkpoint(bake);
     return true;
 }
 
@@ -34,7 +34,7 @@ bool bake_save_part(struct bake *bake, int part, const char *path, bool record_r
     struct tensor *tensors = part_tensors(bake, part + 1, &count);
     const bool ok = tensors && identity_write(bake->host, path, &text, tensors, count);
     host_free(bake->host, tensors);
-    if (ok && bake->checkpoint) remove(bake->checkpoint);
+    if (ok) bake_forget_checkpoint(bake);
     return ok;
 }
 

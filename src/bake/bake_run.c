@@ -1,5 +1,7 @@
 // A run from the outside: the memory it may take, the checkpoint it resumes, the tasks.
 #include "bake/bake_state.h"
+#include "bake/follow.h"
+#include "bake/lead.h"
 
 #include "core/c_locale.h"
 
@@ -48,15 +50,41 @@ static bool check_shard(const struct bake *bake, const struct bake_run_options *
                      options->shard, options->shard_count, technique);
 }
 
-bool bake_run(struct bake *bake, const struct bake_run_options *options)
+static bool run_led(struct bake *bake, const struct bake_run_options *options)
+{
+    struct lead *lead = lead_create(bake, options);
+    if (!lead) return false;
+    const bool ok = bake_is_complete(bake) ? lead_dismiss(lead) : run_bake_led(bake, options, lead);
+    lead_destroy(lead);
+    return ok;
+}
+
+static bool check_team(const struct bake *bake, const struct bake_run_options *options)
+{
+    return !options->team || options->shard_count <= 0 ||
+           host_fail(bake->host, FAIL_ARGUMENT,
+                     "cannot bake part %d of %d of %s with other ranks: choose one way to split it",
+                     options->shard, options->shard_count, bake->identity.technique);
+}
+
+// Before any task runs.
+static bool begin(struct bake *bake, const struct bake_run_options *options)
 {
     const struct merged *merged = &bake->merged;
-    if (!check_shard(bake, options)) return false;
     if (bake_is_complete(bake)) return true;
     if (merged->missing > 0)
         host_log(bake->host, LOG_WARNING,
                  "a part is missing: %zu of %zu tasks are in none of the merged files and run now",
                  merged->missing, merged->expected);
-    if (!check_memory(bake, options) || !bake_resume(bake, options->checkpoint)) return false;
+    return check_memory(bake, options) && bake_resume(bake, options->checkpoint);
+}
+
+bool bake_run(struct bake *bake, const struct bake_run_options *options)
+{
+    const struct bake_team *team = options->team;
+    if (!check_team(bake, options) || !check_shard(bake, options)) return false;
+    if (team && team->rank > 0) return follow_run(bake, options);
+    if (!begin(bake, options)) return false;
+    if (team) return run_led(bake, options);
     return bake_is_complete(bake) || run_bake(bake, options, false);
 }

@@ -74,6 +74,8 @@ uint64_t output_rows(const struct bake_output *output);
 // The memory that a task writes to, and its size.
 char *output_block(const struct planned_stage *stage, const struct planned_output *output,
                    size_t task, size_t *bytes);
+// The sizes of all blocks of a task, bytes[output_count], and their sum.
+size_t output_block_sizes(const struct planned_stage *stage, size_t task, size_t *bytes);
 // Allocates the outputs of a wave's tasks; keeps those that exist.
 bool results_begin(struct bake *bake, int wave);
 // Adds up sums and frees tensors that no later wave reads.
@@ -95,11 +97,17 @@ const struct tensor *results_find(const struct bake *bake, const char *name);
 
 // probe: only one task of each kind in wave 0.
 bool run_bake(struct bake *bake, const struct bake_run_options *options, bool probe);
+struct lead;
+// As rank 0 of a team: lead.h.
+bool run_bake_led(struct bake *bake, const struct bake_run_options *options, struct lead *lead);
 
-// ---- resume.c
+// ---- checkpoint.c
 
-// Takes the finished tasks of a checkpoint, unless that has been done.
+// Takes the finished tasks of a checkpoint and of its journal, unless that has been done.
 bool bake_resume(struct bake *bake, const char *path);
+// Removes both: their tasks are in another file.
+void bake_forget_checkpoint(struct bake *bake);
+void bake_forget_journal(struct host *host, const char *checkpoint);
 
 // ---- estimate.c
 
@@ -119,9 +127,13 @@ struct prediction {
 // Measures the speed of linear algebra, some milliseconds.
 double prediction_flop_seconds(struct host *host);
 struct prediction prediction_now(const struct bake *bake, double per_flop_s);
-// Wall time of the missing tasks of this run on `threads` threads.
+// Wall time of the missing tasks of this run on `threads` threads, each of its own processor.
 double prediction_left(const struct bake *bake, const struct prediction *prediction,
                        const struct bake_run_options *options, int threads);
+// The same of the missing tasks of a wave.
+double prediction_wave(const struct bake *bake, const struct prediction *prediction, int wave,
+                       const struct bake_run_options *options, int threads);
+
 // ---- split.c: shards
 
 // The wave that shards split; plan.waves: none that is left is worth it.

@@ -70,9 +70,10 @@ bool bake_estimate(struct bake *bake, const struct bake_run_options *options, bo
     if (!bake_is_complete(bake) && !bake_resume(bake, options->checkpoint)) return false;
     if (!bake_is_complete(bake) && !run_bake(bake, &few, true)) return false;
     const struct prediction speed = prediction_now(bake, prediction_flop_seconds(bake->host));
+    const int useful = threads < parallel_threads() ? threads : parallel_threads();
     // The run prepares its job again, as the probe has.
     out->seconds = bake_is_complete(bake)
                        ? 0.0
-                       : bake->prepare_seconds + prediction_left(bake, &speed, options, threads);
+                       : bake->prepare_seconds + prediction_left(bake, &speed, options, useful);
     return true;
 }

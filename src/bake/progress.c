@@ -3,7 +3,6 @@
 #include "bake/bake_state.h"
 
 #include "core/linalg.h"
-#include "core/parallel.h"
 
 #include <math.h>
 #include <time.h>
@@ -66,8 +65,8 @@ static size_t missing_tasks(const struct bake *bake, const struct planned_stage 
 }
 
 // A wave takes its work over all threads, but no less than its longest task.
-static double wave_left(const struct bake *bake, const struct prediction *p, int wave,
-                        const struct bake_run_options *options, int threads)
+double prediction_wave(const struct bake *bake, const struct prediction *p, int wave,
+                       const struct bake_run_options *options, int threads)
 {
     double work = 0.0, longest = 0.0;
     for (int s = 0; s < bake->plan.stage_count; s++) {
@@ -85,8 +84,7 @@ double prediction_left(const struct bake *bake, const struct prediction *predict
                        const struct bake_run_options *options, int threads)
 {
     double left = 0.0;
-    if (threads > parallel_threads()) threads = parallel_threads(); // more are no faster
     for (int wave = bake->plan.waves_done; wave < bake->plan.waves; wave++)
-        left += wave_left(bake, prediction, wave, options, threads);
+        left += prediction_wave(bake, prediction, wave, options, threads);
     return left;
 }

@@ -24,6 +24,16 @@ char *output_block(const struct planned_stage *stage, const struct planned_outpu
     return output->data ? output->data + (size_t)first * row_bytes : NULL;
 }
 
+size_t output_block_sizes(const struct planned_stage *stage, size_t task, size_t *bytes)
+{
+    size_t sum = 0;
+    for (int i = 0; i < stage->what.output_count; i++) {
+        output_block(stage, &stage->outputs[i], task, &bytes[i]);
+        sum += bytes[i];
+    }
+    return sum;
+}
+
 static bool begin_output(struct bake *bake, const struct planned_stage *stage,
                          struct planned_output *output)
 {

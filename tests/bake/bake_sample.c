@@ -156,12 +156,12 @@ static bool add_other_waves(struct bake_plan *plan, const struct bake_sample *sa
                                                      .run = round_modes,
                                                      .outputs = &rounded,
                                                      .output_count = 1,
-                                                     .flops = 1e6 });
+                                                     .flops = sample->last_flops });
 }
 
 struct bake_sample bake_sample_default(void)
 {
-    return (struct bake_sample){ .rows = 23, .failing_task = -1 };
+    return (struct bake_sample){ .rows = 23, .last_flops = 1e6, .failing_task = -1 };
 }
 
 struct bake_identity bake_sample_identity(void)
@@ -177,18 +177,25 @@ struct bake_identity bake_sample_identity(void)
 
 struct bake *bake_sample_create(struct bake_sample *sample, const struct bake_identity *identity)
 {
-    const struct bake_identity fallback = bake_sample_identity();
-    struct bake *bake = bake_create(test_host(), identity ? identity : &fallback);
+    struct bake *bake = bake_sample_create_for(test_host(), sample, identity);
     CHECK(bake != NULL);
+    return bake;
+}
+
+struct bake *bake_sample_create_for(struct host *host, struct bake_sample *sample,
+                                    const struct bake_identity *identity)
+{
+    const struct bake_identity fallback = bake_sample_identity();
+    struct bake *bake = bake_create(host, identity ? identity : &fallback);
+    if (!bake) return NULL;
     struct bake_plan *plan = bake_plan_of(bake);
     struct bake_sample **job = bake_plan_alloc(plan, 1, sizeof *job);
-    CHECK(job != NULL);
+    if (!job) return NULL;
     *job = sample;
     bake_plan_set_job(plan, &(struct bake_job){
                                 .job = job, .prepare = prepare, .finish = finish, .bytes = 10000 });
     bake_plan_depends(plan, hash128_add_text((struct hash128){ 0 }, "scene"));
-    CHECK(add_first_wave(plan, sample) && add_other_waves(plan, sample));
-    return bake;
+    return add_first_wave(plan, sample) && add_other_waves(plan, sample) ? bake : NULL;
 }
 
 struct file_bytes bake_sample_bytes(const char *path)

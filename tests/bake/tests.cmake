@@ -1,6 +1,6 @@
-add_library(ag_test_bake STATIC bake/bake_sample.c)
+add_library(ag_test_bake STATIC bake/bake_sample.c bake/sample_team.c)
 target_link_libraries(ag_test_bake PUBLIC ag_test_framework ag_bake PRIVATE afterglow_flags m)
-foreach(name bake_file bake_run differences report safetensors scene_key)
+foreach(name bake_file bake_run differences report safetensors scene_key team)
   ag_test(bake/${name} USES bake LIBRARIES ag_test_bake)
 endforeach()
 add_test(NAME bake.safetensors_python COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/bake/safetensors_python.sh $<TARGET_FILE:test_bake>)

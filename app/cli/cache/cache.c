@@ -93,7 +93,7 @@ long long cache_limit(void)
 // ---- files
 
 // A reference is named "reference-1-0123456789abcdef.exr", a bake by 32 digits; an interrupted one
-// has a checkpoint beside it.
+// has a checkpoint beside it, and the tasks after that.
 static bool is_ours(enum cache_kind kind, const char *name)
 {
     char hash[33], rest[32] = "";
@@ -101,7 +101,8 @@ static bool is_ours(enum cache_kind kind, const char *name)
         return sscanf(name, "reference-%*d-%16[0-9a-f]%31s", hash, rest) == 2 &&
                strlen(hash) == 16 && strcmp(rest, ".exr") == 0;
     return sscanf(name, "%32[0-9a-f]%31s", hash, rest) == 2 && strlen(hash) == 32 &&
-           (strcmp(rest, ".safetensors") == 0 || strcmp(rest, ".safetensors.checkpoint") == 0);
+           (strcmp(rest, ".safetensors") == 0 || strcmp(rest, ".safetensors.checkpoint") == 0 ||
+            strcmp(rest, ".safetensors.checkpoint.tasks") == 0);
 }
 
 struct list {

@@ -91,6 +91,22 @@ enum ag_result ag_bake_run(struct ag_bake *bake,
     return absent(NULL, __func__);
 }
 
+void ag_bake_team_default(struct ag_bake_team *team)
+{
+    if (team) *team = (struct ag_bake_team){ .count = 1 };
+}
+
+enum ag_result
+ag_bake_run_team(struct ag_bake *bake, const struct ag_bake_team *team,
+                 bool (*progress)(void *user, const struct ag_bake_progress *progress), void *user)
+{
+    (void)bake;
+    (void)team;
+    (void)progress;
+    (void)user;
+    return absent(NULL, __func__);
+}
+
 enum ag_result ag_bake_save(struct ag_bake *bake, const char *path, bool record_seconds)
 {
     (void)bake;
