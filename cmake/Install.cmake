@@ -25,6 +25,10 @@ if(TARGET afterglow)
   install(FILES app/completions/afterglow.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
 
+if(TARGET afterglow_mpi)
+  install(TARGETS afterglow_mpi)
+endif()
+
 # Two exports, since only users of the static library need the third-party libraries.
 foreach(kind shared static)
   install(TARGETS afterglow_${kind} EXPORT afterglow_${kind})

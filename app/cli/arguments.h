@@ -1,6 +1,7 @@
 // The parsed command line.
 #pragma once
 
+#include "cli/bake/team.h"
 #include "cli/terminal/messages.h"
 #include "environment.h"
 #include "values.h"
@@ -32,6 +33,7 @@ struct arguments {
     bool help, json, quiet, verbose;
     char *const *words; // after the command
     int word_count;
+    const struct team *team; // not of the command line: processes that run it together, or NULL
     // image
     const char *gi, *frame_options;
     bool has_gi, follow_links, has_scene_scale;

@@ -40,8 +40,10 @@ static enum status check_cache(const struct arguments *a)
                 a->positional[0], why);
 }
 
+// Only the process that keeps the results writes files.
 static enum status check_outputs(const struct arguments *a)
 {
+    if (baking_is_followed(a)) return DONE;
     enum status status = a->output ? whole_file_check(a->output) : check_cache(a);
     return status == DONE && a->report ? whole_file_check(a->report) : status;
 }
@@ -63,6 +65,7 @@ static enum status find_origin(struct job *job)
 static enum status begin_export(struct job *job)
 {
     const struct arguments *a = job->arguments;
+    if (baking_is_followed(a)) return DONE;
     return bake_export_begin(&job->exported, &job->session, a->exported,
                              a->merge ? job->origin.gi : a->gi);
 }
@@ -97,7 +100,7 @@ static enum status use_baked(struct job *job)
     struct baking *b = &job->baking;
     const char *output = job->arguments->output;
     const bool copied = b->from_cache && output;
-    const enum status status = output ? baking_run(b, false) : DONE;
+    const enum status status = output ? baking_run(b, false) : baking_settle(b);
     if (status != DONE) return status;
     note(copied ? "%s is already baked, in the cache; written: %s (--force bakes again)"
                 : "%s is already baked: %s (--force bakes again)",
@@ -108,6 +111,7 @@ static enum status use_baked(struct job *job)
 static enum status bake_it(struct job *job)
 {
     const struct arguments *a = job->arguments;
+    if (baking_is_followed(a)) return baking_follow(&job->baking);
     if (may_load(a) && baking_load(&job->baking)) return use_baked(job);
     const enum status status = a->merge ? baking_merge(&job->baking) : DONE;
     return status == DONE ? baking_run(&job->baking, a->shard_count > 0) : status;
@@ -201,8 +205,9 @@ static enum status bake(const struct arguments *arguments)
                               arguments->merge ? job->origin.scene_scale : arguments->scene_scale);
     if (status == DONE) status = begin(job);
     if (status == DONE) status = bake_it(job);
-    if (status == DONE) status = bake_export_write(&job->exported, &job->baking);
-    if (status == DONE) status = report(job);
+    const bool has_results = status == DONE && !baking_is_followed(arguments);
+    if (has_results) status = bake_export_write(&job->exported, &job->baking);
+    if (has_results && status == DONE) status = report(job);
     bake_export_end(&job->exported);
     baking_end(&job->baking);
     session_end(&job->session);
@@ -228,6 +233,8 @@ const struct command command_bake = {
         "With --lightmap, writes a light map for other engines instead: see docs/lightmaps.md.\n"
         "With --export, writes the transfer maps of ort as images too: see\n"
         "docs/techniques/ort.md.\n"
+        "mpirun -n N afterglow-mpi bake … takes the same options and runs on N processes, also\n"
+        "of several machines, with the same result: see docs/clusters.md.\n"
         "\n"
         "The file is in the safetensors format: in Python,\n"
         "safetensors.numpy.load_file('maze.safetensors') returns its arrays by name.\n",

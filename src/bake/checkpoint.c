@@ -45,6 +45,18 @@ static void warn_ignored(struct bake *bake, const struct relay_host *quiet)
     host_log(bake->host, LOG_WARNING, "the checkpoint is ignored: %s", quiet->error);
 }
 
+static void describe_finished(const struct bake *bake)
+{
+    size_t done = 0, all = 0;
+    for (int s = 0; s < bake->plan.stage_count; s++) {
+        done += bake->plan.stages[s].done_count;
+        all += bake->plan.stages[s].what.task_count;
+    }
+    if (done > 0)
+        host_log(bake->host, LOG_INFO, "%s: %zu of %zu tasks are finished", bake->checkpoint, done,
+                 all);
+}
+
 static void read_checkpoint(struct bake *bake)
 {
     struct relay_host quiet;
@@ -63,6 +75,7 @@ bool bake_resume(struct bake *bake, const char *path)
     bake->checkpoint = host_strdup(bake->host, path);
     if (!bake->checkpoint) return false;
     read_checkpoint(bake);
+    describe_finished(bake);
     return true;
 }
 

@@ -37,7 +37,7 @@ struct follow {
     struct parcel *first, **last; // finished results, in their order
     struct fetch *fetches;        // of all outputs of the plan
     bool wants;                   // one of them has not been asked for
-    // Of the calling thread.
+    // For the calling thread alone.
     bool started, ended, quits, told_failure;
     enum stop why;
     char text[RELAY_MESSAGE]; // why

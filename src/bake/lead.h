@@ -10,7 +10,7 @@ void lead_destroy(struct lead *lead);
 // With a bake that is complete without a run: the others end.
 bool lead_dismiss(struct lead *lead);
 
-// Of a run: the journal is begun, then waves are dealt, then the others end. ok: it was not
+// A run: the journal is begun, then waves are dealt, then the others end. ok: it was not
 // cancelled and did not fail.
 bool lead_begin(struct bake_run *run);
 void lead_begin_wave(struct bake_run *run);
@@ -19,5 +19,5 @@ void lead_end(struct bake_run *run, bool ok);
 bool lead_poll(struct bake_run *run);
 // Running tasks of the others are cancelled.
 void lead_stop(struct bake_run *run);
-// Of the other ranks that take part, together.
+// The threads of the other ranks that take part, together.
 int lead_threads(const struct lead *lead);

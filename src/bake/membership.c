@@ -41,7 +41,7 @@ char *membership_print(struct host *host, const struct bake *bake, size_t *size)
     return text;
 }
 
-// What the user knows it as.
+// The name by which users know it.
 static const char *name_of(const char *key, bool of_light)
 {
     static const char *const names[][2] = {

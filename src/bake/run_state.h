@@ -16,7 +16,7 @@ struct queued_task {
     size_t index;
 };
 
-// What a rank of a team does with its tasks. Each may be NULL.
+// How a rank of a team treats its tasks. Each may be NULL.
 struct run_calls {
     // Keeps the results of a task. On its thread.
     void (*keep)(struct bake_run *run, const struct queued_task *task, void *const *out,

@@ -6,14 +6,14 @@
 
 enum { TEAM_MOST = 5, TEAM_TEXT = 1024 };
 
-// What happens in a run, set before it.
+// The events of a run, set before it.
 struct team_plan {
     int ranks;
     struct bake_sample sample;     // of each rank
     const char *checkpoint, *path; // of rank 0; path NULL: not saved
     int threads;                   // of each rank; 0: 1
     uint64_t other_seed_of;        // this rank has another seed; 0: none
-    int lost_rank, lost_after;     // the rank is lost after so many of its results; rank 0: none
+    int lost_rank, lost_after;     // the rank is lost after this number of results; rank 0: none
     int quitting_rank;             // is asked to stop after its first task; -1: none
     int failing_rank;              // its first task fails; -1: none
 };

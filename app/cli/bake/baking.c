@@ -65,6 +65,40 @@ void baking_end(struct baking *b)
     *b = (struct baking){ 0 };
 }
 
+// ---- the other ranks of a team
+
+bool baking_is_followed(const struct arguments *arguments)
+{
+    return arguments->team && arguments->team->ranks.rank > 0;
+}
+
+static bool is_asked_to_go_on(void *user, const struct ag_bake_progress *progress)
+{
+    (void)user;
+    (void)progress;
+    return !interrupt_caught();
+}
+
+enum status baking_follow(struct baking *b)
+{
+    interrupt_catch();
+    const enum ag_result result =
+        ag_bake_run_team(b->bake, &b->session->arguments->team->ranks, is_asked_to_go_on, NULL);
+    interrupt_let_go();
+    return result == AG_OK ? DONE : fail_bake(b, result);
+}
+
+enum status baking_settle(struct baking *b)
+{
+    const struct team *team = b->session->arguments->team;
+    if (!team || b->settled) return DONE;
+    b->settled = true;
+    const enum ag_result result = ag_bake_run_team(b->bake, &team->ranks, NULL, NULL);
+    return result == AG_OK ? DONE : fail_bake(b, result);
+}
+
+// ---- files
+
 static bool load_from(struct baking *b, const char *path)
 {
     if (!path[0] || access(path, F_OK) != 0) return false;
@@ -112,6 +146,9 @@ bool baking_load(struct baking *b)
 enum status baking_check_parts(const struct arguments *a, bool file)
 {
     const bool shard = a->shard_count > 0;
+    if (shard && a->team)
+        return wrong_usage("cannot use --shard with afterglow-mpi: its ranks share the bake "
+                           "already; choose one");
     if (shard && a->merge && !file)
         return wrong_usage("cannot use --shard with --merge for a light map: choose one");
     if (!a->output && (shard || (a->merge && file)))
@@ -181,7 +218,8 @@ static enum status check_disk(const struct baking *b, uint64_t needed)
 // shard: the file has intermediate results, whose bytes are not known.
 static enum status estimate(struct baking *b, bool shard)
 {
-    const long long mib = b->session->arguments->max_memory_mib;
+    const struct arguments *a = b->session->arguments;
+    const long long mib = a->max_memory_mib;
     struct ag_bake_estimate needs;
     char texels[32], rays[32];
     enum ag_result result = ag_bake_estimate_cost(b->bake, false, &needs);
@@ -191,11 +229,11 @@ static enum status estimate(struct baking *b, bool shard)
     if (result == AG_OK && !shard && check_disk(b, needs.file_bytes) != DONE) return FAILED;
     if (result == AG_OK) result = ag_bake_estimate_cost(b->bake, true, &needs);
     if (result != AG_OK) return fail_bake(b, result);
-    b->estimate_seconds = needs.seconds;
+    b->estimate_seconds = needs.seconds / (a->team ? a->team->ranks.count : 1);
     print_count(needs.texels, texels);
     print_count(needs.rays, rays);
     note("baking %s: %s texels, %s rays, about %.*f s, %.0f MB of memory, %.1f MB on disk",
-         b->technique, texels, rays, needs.seconds < 10.0 ? 1 : 0, needs.seconds,
+         b->technique, texels, rays, b->estimate_seconds < 10.0 ? 1 : 0, b->estimate_seconds,
          (double)needs.peak_memory_bytes * 1e-6, (double)needs.file_bytes * 1e-6);
     return DONE;
 }
@@ -236,7 +274,9 @@ static enum status run(struct baking *b)
 {
     struct watch watch = { .baking = b };
     interrupt_catch();
-    const enum ag_result result = ag_bake_run(b->bake, show, &watch);
+    const struct team *team = b->session->arguments->team;
+    const enum ag_result result = team ? ag_bake_run_team(b->bake, &team->ranks, show, &watch)
+                                       : ag_bake_run(b->bake, show, &watch);
     progress_end();
     interrupt_let_go();
     if (result == AG_ERROR_CANCELLED) return interrupted(b);
@@ -285,6 +325,7 @@ enum status baking_run(struct baking *b, bool shard)
              b->technique, b->no_cache);
     enum status status = info.complete ? DONE : estimate(b, shard);
     if (status == DONE && run_it) status = run(b);
+    if (status == DONE && !run_it) status = baking_settle(b);
     return status == DONE ? write_file(b, shard) : status;
 }
 
@@ -375,13 +416,14 @@ static enum status prepare_one(struct baking *b, struct session *session, const 
     enum status status = baking_begin(b, session, gi, &desc, NULL);
     if (status == DONE) status = find_given(session, b->technique, &given);
     if (status != DONE) return status;
+    if (baking_is_followed(a)) return baking_follow(b);
     if (given) {
         enum ag_result result = ag_bake_load(b->bake, given);
         b->loaded = result == AG_OK;
         if (result != AG_OK) fail_bake(b, result);
-        return result == AG_OK ? DONE : FAILED;
+        return result == AG_OK ? baking_settle(b) : FAILED;
     }
-    if (baking_load(b)) return DONE;
+    if (baking_load(b)) return baking_settle(b);
     if (a->no_bake)
         return fail("cannot use %s: there is no bake for these options and this scene, and "
                     "--no-bake; see afterglow bake --help",

@@ -16,6 +16,7 @@ struct baking {
     bool must_keep;                // fail where the cache has no room for it
     char no_cache[CACHE_WHY_SIZE]; // why the path is ""
     bool loaded;                   // from a file, not run
+    bool settled;                  // the other ranks of the team know that it is complete
     bool from_cache;               // that file is in the cache
     double estimate_seconds;       // of the whole run, before it; NaN: nothing was estimated
 };
@@ -35,6 +36,13 @@ bool baking_load(struct baking *b);
 // Says what it needs, runs with a progress bar and writes the file. After Ctrl-C it fails; what was
 // finished is kept in a checkpoint. shard: write a partial file.
 enum status baking_run(struct baking *b, bool shard);
+
+// Whether another process of the team has the results: this one only runs tasks for it.
+bool baking_is_followed(const struct arguments *arguments);
+// Runs the tasks that rank 0 deals out, until it has ended.
+enum status baking_follow(struct baking *b);
+// Tells the others that a bake is complete without a run, so that they go on.
+enum status baking_settle(struct baking *b);
 
 // The bakes that the techniques of a GI spec need, for a renderer.
 struct bakes {

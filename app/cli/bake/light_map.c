@@ -45,6 +45,11 @@ static bool is_part(const struct arguments *a)
     return a->shard_count > 0;
 }
 
+static bool has_results(const struct arguments *a)
+{
+    return !is_part(a) && !baking_is_followed(a);
+}
+
 enum status light_map_check_others(const struct arguments *a)
 {
     const char *option = a->has_spp           ? "--spp"
@@ -153,16 +158,17 @@ static enum status gather_paths(struct job *job)
     enum status status = begin_paths(job);
     if (status != DONE) return status;
     session_say(&job->session);
+    if (baking_is_followed(a)) return baking_follow(&job->baking);
     if (a->merge) status = baking_merge(&job->baking);
     if (status != DONE) return status;
-    if (!a->merge && !is_part(a) && !a->force && baking_load(&job->baking)) return DONE;
-    return baking_run(&job->baking, is_part(a));
+    if (!a->merge && !is_part(a) && !a->force) baking_load(&job->baking);
+    return job->baking.loaded ? baking_settle(&job->baking) : baking_run(&job->baking, is_part(a));
 }
 
 static enum status take_paths(struct job *job, const struct ag_lightmap_desc *desc)
 {
     enum status status = gather_paths(job);
-    if (status != DONE || is_part(job->arguments)) return status;
+    if (status != DONE || !has_results(job->arguments)) return status;
     const enum ag_result result = ag_lightmap_from_bake(job->baking.bake, desc, &job->lightmap);
     return result == AG_OK ? DONE : fail_call(job, result);
 }
@@ -203,7 +209,7 @@ static enum status take_technique(struct job *job, const struct ag_lightmap_desc
     if (status != DONE) return status;
     session_say(&job->session);
     status = bakes_prepare(&job->bakes, &job->session, gi_of(job));
-    if (status != DONE) return status;
+    if (status != DONE || !has_results(job->arguments)) return status;
     enum ag_result result = create_renderer(job);
     if (result == AG_OK) result = render(job, &camera);
     if (result == AG_OK) result = ag_lightmap_from_renderer(job->renderer, desc, &job->lightmap);
@@ -248,7 +254,7 @@ static enum status prepare(struct job *job)
     if (status == DONE) status = session_begin(&job->session, a);
     if (status == DONE) status = find_origin(job);
     if (status == DONE) status = check_technique(job);
-    if (status == DONE)
+    if (status == DONE && !baking_is_followed(a))
         status = is_part(a) ? whole_file_check(a->output)
                             : folder_plan(&job->folder, a->lightmap, MARK, is_ours);
     if (status == DONE)
@@ -268,7 +274,7 @@ static enum status run(struct job *job)
     enum status status = prepare(job);
     if (status == DONE)
         status = a->has_spp || a->merge ? take_paths(job, &desc) : take_technique(job, &desc);
-    if (status != DONE || is_part(a)) return status;
+    if (status != DONE || !has_results(a)) return status;
     status = write_folder(job);
     return status == DONE ? report(job) : status;
 }

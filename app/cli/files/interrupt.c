@@ -10,7 +10,7 @@
 #include <stddef.h>
 
 static pthread_mutex_t writing = PTHREAD_MUTEX_INITIALIZER;
-static sigset_t ending;
+static sigset_t ending, recorded; // recorded: the first one only, while `catching`
 static atomic_bool catching, caught;
 static void (*clean_up)(void *user); // under the mutex, as is the next
 static void *clean_user;
@@ -20,7 +20,7 @@ static void *wait_for_the_end(void *unused)
 {
     int number = 0;
     if (sigwait(&ending, &number) != 0) return unused;
-    if (number == SIGINT && atomic_exchange(&catching, false)) {
+    if (sigismember(&recorded, number) == 1 && atomic_exchange(&catching, false)) {
         atomic_store(&caught, true);
         if (sigwait(&ending, &number) != 0) return unused;
     }
@@ -50,9 +50,14 @@ static void add_unless_ignored(int number)
         sigaddset(&ending, number);
 }
 
-void interrupt_begin(void)
+void interrupt_begin(bool term_is_recorded)
 {
     sigemptyset(&ending);
+    sigemptyset(&recorded);
+    sigaddset(&recorded, SIGINT);
+    sigaddset(&recorded, SIGUSR1);
+    if (term_is_recorded) sigaddset(&recorded, SIGTERM);
+    add_unless_ignored(SIGUSR1);
     add_unless_ignored(SIGINT);
     add_unless_ignored(SIGTERM);
     add_unless_ignored(SIGHUP);
