@@ -40,13 +40,15 @@ static void allow_all(void)
 
 int placement_share(void)
 {
-    const int bound = allowed_cores();
+    cpu_set_t bound;
+    CPU_ZERO(&bound);
+    sched_getaffinity(0, sizeof bound, &bound);
     allow_all();
-    const int cores = allowed_cores(), ranks = ranks_of_node();
-    int share = cores / ranks > 0 ? cores / ranks : 1;
-    const int wanted = positive("OMP_NUM_THREADS");
+    const int cores = allowed_cores(), wanted = positive("OMP_NUM_THREADS");
+    int share = cores / ranks_of_node();
+    if (share < 1) share = 1;
+    if (CPU_COUNT(&bound) == share) sched_setaffinity(0, sizeof bound, &bound); // as mpirun chose
     if (wanted > 0 && wanted < share) share = wanted;
-    (void)bound;
     omp_set_num_threads(share);
     return share;
 }

@@ -29,7 +29,8 @@ struct process {
 struct peer {
     char *data; // pieces of the message that is arriving
     size_t size;
-    bool ended;
+    bool ended; // it has said so, or it is dead
+    bool dead;
     long pid; // 0: of another node
 };
 
@@ -151,7 +152,7 @@ static enum ag_bake_news receive_message(void *user, int *from, const void **dat
     }
     const int dead = find_dead();
     if (dead < 0) return AG_BAKE_NOTHING;
-    state.peers[dead].ended = true;
+    state.peers[dead].ended = state.peers[dead].dead = true;
     *from = dead;
     *bytes = 0;
     return AG_BAKE_LOST;
@@ -194,11 +195,18 @@ static bool all_have_ended(void)
     return true;
 }
 
-static bool was_lost(void)
+static bool some_are_dead(void)
 {
     for (int rank = 0; rank < state.count; rank++)
-        if (state.peers[rank].pid > 0 && kill((pid_t)state.peers[rank].pid, 0) != 0) return true;
+        if (state.peers[rank].dead) return true;
     return false;
+}
+
+static void say_end(const char *why)
+{
+    if (state.rank > 0) send_piece(0, TAG_END, why, strlen(why));
+    for (int rank = 1; state.rank == 0 && rank < state.count; rank++)
+        if (!state.peers[rank].dead) send_piece(rank, TAG_END, "", 0);
 }
 
 static void free_all(void)
@@ -213,9 +221,7 @@ static void free_all(void)
 bool transport_end(const char *why)
 {
     const double begun = now_s();
-    if (state.rank > 0) send_piece(0, TAG_END, why, strlen(why));
-    for (int rank = 1; state.rank == 0 && rank < state.count; rank++)
-        if (!was_lost() || !state.peers[rank].ended) send_piece(rank, TAG_END, "", 0);
+    say_end(why);
     while ((!all_have_ended() || state.sending) && now_s() - begun < END_S) {
         int from;
         const void *data;
@@ -223,7 +229,7 @@ bool transport_end(const char *why)
         while (receive_message(NULL, &from, &data, &bytes) != AG_BAKE_NOTHING) continue;
         nanosleep(&(struct timespec){ .tv_nsec = 2000000 }, NULL);
     }
-    const bool ok = all_have_ended() && !state.sending && !was_lost();
+    const bool ok = all_have_ended() && !state.sending && !some_are_dead();
     if (ok) free_all();
     return ok;
 }

@@ -503,6 +503,15 @@ static void report_options(struct report *report, const struct technique *techni
     report_end(report);
 }
 
+// null: of a task that was not run here.
+static void report_task_seconds(struct report *report, const struct bake_stage_info *info)
+{
+    report_begin_list(report, "task_seconds");
+    for (size_t i = 0; i < info->tasks; i++)
+        report_number(report, NULL, (double)info->task_seconds[i]);
+    report_end(report);
+}
+
 static void report_stages(struct report *report, const struct bake *bake)
 {
     report_begin_list(report, "stages");
@@ -512,6 +521,10 @@ static void report_stages(struct report *report, const struct bake *bake)
         report_text_value(report, "name", info.name);
         report_number(report, "seconds", info.seconds);
         report_number(report, "tasks", (double)info.tasks);
+        report_number(report, "wave", info.wave);
+        report_number(report, "result_bytes", (double)info.result_bytes);
+        report_number(report, "input_bytes", (double)info.input_bytes);
+        report_task_seconds(report, &info);
         report_end(report);
     }
     report_end(report);
@@ -531,6 +544,7 @@ static bool write_report(struct ag_bake *b)
     report_options(b->report, technique, b->spec.options[b->term]);
     report_stages(b->report, b->bake);
     report_number(b->report, "seconds", bake_seconds(b->bake));
+    report_number(b->report, "prepare_seconds", bake_prepare_seconds(b->bake));
     report_number(b->report, "peak_memory_bytes", peak_memory_bytes());
     report_number(b->report, "bytes", (double)bake_bytes(b->bake));
     return b->lightmap_samples > 0 || !technique->bake_report ||

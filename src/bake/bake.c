@@ -74,14 +74,28 @@ int bake_stage_count(const struct bake *bake)
 struct bake_stage_info bake_stage_info(const struct bake *bake, int stage)
 {
     const struct planned_stage *planned = &bake->plan.stages[stage];
-    return (struct bake_stage_info){ .name = planned->what.name,
-                                     .seconds = planned->seconds,
-                                     .tasks = planned->what.task_count };
+    struct bake_stage_info info = { .name = planned->what.name,
+                                    .seconds = planned->seconds,
+                                    .tasks = planned->what.task_count,
+                                    .wave = planned->what.wave,
+                                    .task_seconds = planned->task_seconds,
+                                    .input_bytes = planned->input_bytes };
+    for (int i = 0; i < planned->what.output_count; i++) {
+        const struct planned_output *output = &planned->outputs[i];
+        const bool sum = output->what.reduction == BAKE_SUM;
+        info.result_bytes += (uint64_t)output->bytes * (sum ? info.tasks : 1);
+    }
+    return info;
 }
 
 double bake_seconds(const struct bake *bake)
 {
     return bake->seconds;
+}
+
+double bake_prepare_seconds(const struct bake *bake)
+{
+    return bake->prepare_seconds;
 }
 
 uint64_t bake_bytes(const struct bake *bake)

@@ -134,10 +134,15 @@ struct bake_stage_info {
     const char *name;
     double seconds; // sum over its tasks, of all runs; NaN after bake_load of a file without them
     size_t tasks;
+    int wave;
+    const float *task_seconds; // [tasks]; NaN: of a task that this object has not run
+    uint64_t result_bytes;     // of its tasks
+    uint64_t input_bytes;      // first of its wave: what the wave has read of earlier ones
 };
 int bake_stage_count(const struct bake *bake);
 struct bake_stage_info bake_stage_info(const struct bake *bake, int stage);
 // Wall time of all runs; that of the run that made it after bake_load, NaN if the file has none.
 double bake_seconds(const struct bake *bake);
-uint64_t bake_bytes(const struct bake *bake); // of the file's tensors
+double bake_prepare_seconds(const struct bake *bake); // of the newest run, before its tasks
+uint64_t bake_bytes(const struct bake *bake);         // of the file's tensors
 const char *bake_options_text(const struct bake *bake);

@@ -13,6 +13,7 @@ struct planned_output {
     struct tensor view; // of the complete tensor; data NULL: not complete, or no longer kept
     char *data;         // the tensor; NULL before its wave and after `keep`
     char *parts;        // BAKE_SUM: the tensor of each task, until they are added up
+    int read_by_wave;   // the newest whose tasks have read it; under the mutex
 };
 
 // A part that other scenes may have, too (plan.h).
@@ -28,7 +29,10 @@ struct planned_stage {
     // Under the mutex while tasks run.
     bool *done; // [task_count]
     size_t done_count;
-    double seconds; // sum over finished tasks
+    double seconds;      // sum over finished tasks
+    float *task_seconds; // [task_count]; NaN: not run by this process or its team
+    // First stage of a wave: of tensors of earlier waves that its tasks have read, each once.
+    uint64_t input_bytes;
 };
 
 struct bake_plan {

@@ -4,7 +4,6 @@
 #include "bake/membership.h"
 #include "bake/message.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,8 +12,9 @@
 static const double TICK_S = 0.1, POLL_S = 2e-3;
 // A rank holds tasks of this time beyond those that it runs, so that no thread waits for a message.
 static const double AHEAD_S = 0.02;
-// A later wave that is shorter runs here alone: the others would wait for its inputs.
-static const double SHORT_WAVE_S = 0.02;
+// To send the inputs of a later wave to one rank: bytes per second of a network of 10 Gbit/s, and
+// the time of the messages.
+static const double BYTES_PER_S = 1.25e9, FETCH_S = 0.02;
 // How long ranks have for their end, which their running tasks delay.
 static const double END_S = 10.0;
 
@@ -38,7 +38,7 @@ struct lead {
     const struct bake_run_options *options;
     const struct bake_team *team;
     struct member *members; // [team->count]; that of rank 0 has ended
-    bool deals;             // the wave's tasks are worth it
+    int most_ranks;         // that run the wave, besides rank 0
     bool quits;             // a rank was asked to stop
     bool stopped;           // all were told to end
     double reported_s;      // while it waits for the others
@@ -52,7 +52,7 @@ static int count_in(const struct lead *lead, enum member_state state)
     return count;
 }
 
-static bool some_take_part(const struct lead *lead)
+bool lead_has_others(const struct lead *lead)
 {
     return count_in(lead, MEMBER_PREPARES) + count_in(lead, MEMBER_READY) > 0;
 }
@@ -286,30 +286,53 @@ static size_t held_at_most(struct bake_run *run, const struct member *member, si
     return (size_t)member->threads + (left > 2 * all_threads * ahead ? ahead : 0);
 }
 
+// The ranks that run the wave are the first ones.
 static void deal(struct bake_run *run)
 {
     struct lead *lead = run->lead;
     const size_t all_threads = (size_t)(run->threads + lead_threads(lead));
-    bool some = lead->deals;
+    bool some = lead->most_ranks > 0;
     while (some) {
+        int ranks = 0;
         some = false;
-        for (int rank = 1; rank < lead->team->count; rank++) {
+        for (int rank = 1; rank < lead->team->count && ranks < lead->most_ranks; rank++) {
             struct member *member = &lead->members[rank];
-            if (member->state == MEMBER_READY &&
-                member->held_count < held_at_most(run, member, all_threads))
+            if (member->state != MEMBER_READY) continue;
+            ranks++;
+            if (member->held_count < held_at_most(run, member, all_threads))
                 some = deal_one(run, rank) || some;
         }
     }
+}
+
+// All tensors of earlier waves that are kept: which of them the wave reads is not known.
+static double input_bytes(const struct bake_plan *plan)
+{
+    double bytes = 0.0;
+    for (int s = 0; s < plan->stage_count; s++)
+        for (int i = 0; i < plan->stages[s].what.output_count; i++)
+            if (plan->stages[s].outputs[i].view.data)
+                bytes += (double)plan->stages[s].outputs[i].bytes;
+    return bytes;
+}
+
+// Rank 0 sends inputs to n ranks one after the other, which then share the work: n · send + work /
+// n is least where n = √(work / send).
+static int ranks_worth(const struct bake_run *run, int wave)
+{
+    const struct prediction speed = prediction_now(run->bake, run->per_flop_s);
+    const double work = prediction_wave(run->bake, &speed, wave, run->options, run->threads);
+    const double send = FETCH_S + input_bytes(&run->bake->plan) / BYTES_PER_S;
+    return (int)fmin(sqrt(work / send), (double)run->lead->team->count);
 }
 
 // A wave of one task may use all threads here; its inputs are here, too.
 void lead_begin_wave(struct bake_run *run)
 {
     const int wave = run->bake->plan.waves_done;
-    const struct prediction speed = prediction_now(run->bake, run->per_flop_s);
-    run->lead->deals =
-        run->queue_count > 1 && (wave == 0 || prediction_wave(run->bake, &speed, wave, run->options,
-                                                              run->threads) > SHORT_WAVE_S);
+    run->lead->most_ranks = run->queue_count < 2 ? 0
+                            : wave == 0          ? run->lead->team->count
+                                                 : ranks_worth(run, wave);
 }
 
 // ---- messages of a run
@@ -474,8 +497,8 @@ static void await_ends(struct bake_run *run)
 {
     struct lead *lead = run->lead;
     const double begun = run_now_s();
-    lead->deals = false;
-    while (some_take_part(lead) && run_now_s() - begun < END_S) {
+    lead->most_ranks = 0;
+    while (lead_has_others(lead) && run_now_s() - begun < END_S) {
         lead_poll(run);
         report_waiting(lead, "waiting for ranks", run->cancelled);
         nap();

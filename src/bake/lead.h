@@ -19,5 +19,7 @@ void lead_end(struct bake_run *run, bool ok);
 bool lead_poll(struct bake_run *run);
 // Running tasks of the others are cancelled.
 void lead_stop(struct bake_run *run);
+// Whether some other rank takes part.
+bool lead_has_others(const struct lead *lead);
 // The threads of the other ranks that take part, together.
 int lead_threads(const struct lead *lead);

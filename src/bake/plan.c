@@ -1,6 +1,7 @@
 // Plans: the list of stages that a technique makes.
 #include "bake/bake_state.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -89,6 +90,13 @@ static bool grow(struct bake_plan *plan)
     return true;
 }
 
+static float *alloc_unknown(struct bake_plan *plan, size_t count)
+{
+    float *seconds = arena_alloc(&plan->arena, count, sizeof *seconds);
+    for (size_t i = 0; seconds && i < count; i++) seconds[i] = NAN;
+    return seconds;
+}
+
 bool bake_plan_add(struct bake_plan *plan, const struct bake_stage *stage)
 {
     if (!stage->name || !stage->name[0])
@@ -98,7 +106,10 @@ bool bake_plan_add(struct bake_plan *plan, const struct bake_stage *stage)
     planned.what.outputs = NULL;
     planned.what.name = arena_strdup(&plan->arena, stage->name);
     planned.done = arena_alloc(&plan->arena, stage->task_count, sizeof *planned.done);
-    if (!planned.what.name || !planned.done || !copy_outputs(plan, stage, &planned)) return false;
+    planned.task_seconds = alloc_unknown(plan, stage->task_count);
+    if (!planned.what.name || !planned.done || !planned.task_seconds ||
+        !copy_outputs(plan, stage, &planned))
+        return false;
     plan->stages[plan->stage_count++] = planned;
     if (stage->wave >= plan->waves) plan->waves = stage->wave + 1;
     return true;

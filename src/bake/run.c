@@ -113,7 +113,7 @@ static bool drive_queue(struct bake_run *run)
         pthread_mutex_lock(&run->bake->memory); // while it uses the program's host
         tick(run);
         pthread_mutex_unlock(&run->bake->memory);
-    } while (!run_wait(run, run->lead ? TEAM_TICK_S : TICK_S));
+    } while (!run_wait(run, run->lead && lead_has_others(run->lead) ? TEAM_TICK_S : TICK_S));
     pthread_join(driver, NULL);
     pass_on_messages(run);
     if (run->failed) return host_fail(run->bake->host, run->failure, "%s", run->failure_text);

@@ -128,6 +128,7 @@ void run_mark_done(struct planned_stage *stage, size_t index, double seconds)
     stage->done[index] = true;
     stage->done_count++;
     stage->seconds += seconds;
+    stage->task_seconds[index] = (float)seconds;
 }
 
 static void keep_results(struct bake_run *run, const struct queued_task *at,
@@ -219,11 +220,31 @@ bool bake_task_cancelled(const struct bake_task *task)
     return atomic_load(&task->run->stop);
 }
 
+// The bytes that each other rank of a team would fetch in this wave.
+static void count_input(struct bake_run *run, const char *name)
+{
+    struct bake_plan *plan = &run->bake->plan;
+    struct planned_stage *of_wave = NULL;
+    pthread_mutex_lock(&run->bake->mutex);
+    for (int s = 0; s < plan->stage_count && !of_wave; s++)
+        if (plan->stages[s].what.wave == plan->waves_done) of_wave = &plan->stages[s];
+    for (int s = 0; of_wave && s < plan->stage_count; s++)
+        for (int i = 0; i < plan->stages[s].what.output_count; i++) {
+            struct planned_output *output = &plan->stages[s].outputs[i];
+            if (output->read_by_wave == plan->waves_done || strcmp(output->what.name, name) != 0)
+                continue;
+            output->read_by_wave = plan->waves_done;
+            of_wave->input_bytes += output->bytes;
+        }
+    pthread_mutex_unlock(&run->bake->mutex);
+}
+
 const struct tensor *bake_task_input(const struct bake_task *task, const char *name)
 {
     struct bake_run *run = task->run;
     const struct tensor *tensor =
         run->calls.input ? run->calls.input(run, name) : results_find(run->bake, name);
+    if (tensor && !run->calls.input) count_input(run, name);
     if (!tensor && !atomic_load(&run->stop))
         host_fail(task->host, FAIL_ARGUMENT,
                   "cannot bake: no earlier wave has made the tensor %s, or it is not kept", name);

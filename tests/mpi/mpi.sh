@@ -41,7 +41,7 @@ alone() {
     "$program" bake $long --force
     mv long.safetensors wanted.safetensors
 }
-# Waits until the journal has at least so many bytes, at most a minute.
+# Waits until the journal has $1 bytes, a minute at most.
 wait_for_results() {
     i=0
     while [ $i -lt 600 ]; do
