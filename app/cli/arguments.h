@@ -24,6 +24,8 @@ enum command_bit {
 #define METRIC_NAMES "mae mse relmse ssim flip flip_hdr"
 // In the order of ag_tonemap.
 #define TONEMAP_NAMES "neutral agx linear"
+// In the order of the bits of enum ag_lightmap_format.
+#define LIGHTMAP_FORMAT_NAMES "exr ktx2 png"
 enum { COMMAND_SIZE = 16384, FRAME_OPTIONS_SIZE = 2048 };
 enum { MAX_LIGHTS = 64, MAX_POSITIONAL = 64, MAX_METHODS = 16, MAX_BAKE_FILES = 8 };
 
@@ -70,12 +72,13 @@ struct arguments {
     const char *bake_files[MAX_BAKE_FILES]; // each a --bake
     int bake_file_count;
     bool no_bake, force, merge, report_full, all_objects;
-    int threads;              // 0: all cores
-    int shard, shard_count;   // count 0: everything
-    long long max_memory_mib; // 0: no limit
-    const char *report;       // NULL: none
-    const char *lightmap;     // a folder; NULL: none
-    const char *exported;     // likewise
+    int threads;               // 0: all cores
+    int shard, shard_count;    // count 0: everything
+    long long max_memory_mib;  // 0: no limit
+    const char *report;        // NULL: none
+    const char *lightmap;      // a folder; NULL: none
+    unsigned lightmap_formats; // enum ag_lightmap_format; 0: all
+    const char *exported;      // likewise
     bool denoise;
     bool clear;         // cache
     const char *blocks; // info: a file; NULL: none

@@ -259,6 +259,8 @@ const struct command command_bake = {
         "      into the cache, and its maps for other programs: bins/index.json\n"
         "  afterglow bake house.glb --lightmap maps\n"
         "      light map of radiosity: maps/irradiance.exr and maps/scene.glb\n"
+        "  afterglow bake house.glb --lightmap maps --lightmap-format ktx2,png\n"
+        "      for the web: irradiance.ktx2, and scene.glb, which opens lit\n"
         "  afterglow bake house.glb --lightmap maps --spp 256\n"
         "      the same by path tracing, which Ctrl-C interrupts and the next run continues\n"
         "  afterglow bake house.glb --lightmap maps --spp 256 --shard 0/2 -o p0.safetensors\n"

@@ -287,6 +287,24 @@ static bool set_lightmap(struct arguments *a, const char *value, const char **wh
     return value[0] != 0;
 }
 
+// "exr,png": bits in the order of the list.
+static bool set_lightmap_format(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be a list of these: " LIGHTMAP_FORMAT_NAMES;
+    a->lightmap_formats = 0;
+    for (const char *at = value;; at++) {
+        char name[8];
+        const size_t length = strcspn(at, ",");
+        if (length >= sizeof name) return false;
+        snprintf(name, sizeof name, "%.*s", (int)length, at);
+        const int format = value_index(LIGHTMAP_FORMAT_NAMES, name);
+        if (format < 0) return false;
+        a->lightmap_formats |= 1u << format;
+        at += length;
+        if (!*at) return true;
+    }
+}
+
 static bool set_export(struct arguments *a, const char *value, const char **why)
 {
     *why = "it must be the name of a folder";

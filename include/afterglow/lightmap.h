@@ -65,10 +65,21 @@ AG_API enum ag_result ag_lightmap_read(const struct ag_lightmap *lightmap, bool 
 /// have one position; only texels with a back have one there. Thread: the context's.
 AG_API enum ag_result ag_lightmap_positions(const struct ag_lightmap *lightmap, bool back,
                                             struct ag_image **out);
-/// Writes the maps, irradiance.exr and irradiance_back.exr, and scene.glb, a copy of the scene with
-/// coordinates of the maps, into an existing folder; docs/lightmaps.md describes them. Each file is
-/// written completely or not at all. Thread: the context's.
+/// Formats of the maps, to be added up.
+enum ag_lightmap_format {
+    AG_LIGHTMAP_EXR = 1, ///< irradiance.exr: 32-bit floats, lux
+    AG_LIGHTMAP_KTX2 =
+        2, ///< irradiance.ktx2: VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, lux over a power of two
+    AG_LIGHTMAP_PNG = 4 ///< irradiance.png: 8 bits, linear; also the texture of MOZ_lightmap
+};
+/// Writes the maps in all formats, those of backs with the name irradiance_back, and scene.glb, a
+/// copy of the scene with coordinates of the maps, into an existing folder; docs/lightmaps.md
+/// describes them. Each file is written completely or not at all. Thread: the context's.
 AG_API enum ag_result ag_lightmap_write(const struct ag_lightmap *lightmap, const char *folder);
+/// The same in some formats: a sum of enum ag_lightmap_format. Without AG_LIGHTMAP_PNG the copy has
+/// no MOZ_lightmap. Thread: the context's.
+AG_API enum ag_result ag_lightmap_write_as(const struct ag_lightmap *lightmap, const char *folder,
+                                           uint32_t formats);
 
 /// Painted light: first-order irradiance that a program gives the texels of a renderer's light map,
 /// in addition to that of lights, the sky and emissive surfaces.

@@ -237,11 +237,29 @@ enum ag_result ag_lightmap_positions(const struct ag_lightmap *l, bool back, str
     return api_give_image(context, ok, &positions, out);
 }
 
-enum ag_result ag_lightmap_write(const struct ag_lightmap *l, const char *folder)
+_Static_assert((int)AG_LIGHTMAP_EXR == LIGHTMAP_EXR && (int)AG_LIGHTMAP_KTX2 == LIGHTMAP_KTX2 &&
+                   (int)AG_LIGHTMAP_PNG == LIGHTMAP_PNG,
+               "formats are passed on");
+
+static enum ag_result write_files(const char *function, const struct ag_lightmap *l,
+                                  const char *folder, uint32_t formats)
 {
     struct ag_context *context = context_of(l);
-    AG_REQUIRE(context, l, "lightmap is NULL");
-    AG_REQUIRE(context, folder && folder[0], "folder is empty");
-    REQUIRE_LIGHT(context, l);
-    return api_done(context, lightmap_write(&l->map, l->scene->scene, &l->facts, folder));
+    AG_REQUIRE_FOR(function, context, l, "lightmap is NULL");
+    AG_REQUIRE_FOR(function, context, folder && folder[0], "folder is empty");
+    AG_REQUIRE_FOR(function, context, formats > 0 && formats <= LIGHTMAP_FORMATS,
+                   "formats is no sum of AG_LIGHTMAP_EXR, _KTX2 and _PNG");
+    AG_REQUIRE_FOR(function, context, !l->no_light, "the light map was created with no_light");
+    return api_done(context, lightmap_write(&l->map, l->scene->scene, &l->facts, formats, folder));
+}
+
+enum ag_result ag_lightmap_write(const struct ag_lightmap *l, const char *folder)
+{
+    return write_files(__func__, l, folder, LIGHTMAP_FORMATS);
+}
+
+enum ag_result ag_lightmap_write_as(const struct ag_lightmap *l, const char *folder,
+                                    uint32_t formats)
+{
+    return write_files(__func__, l, folder, formats);
 }

@@ -4,8 +4,16 @@
 #include "lightmap/lightmap.h"
 
 #define LIGHTMAP_SCENE_FILE "scene.glb"
-#define LIGHTMAP_FRONT_FILE "irradiance.exr"
-#define LIGHTMAP_BACK_FILE  "irradiance_back.exr"
+#define LIGHTMAP_FRONT_FILE "irradiance" // and the format's ending
+#define LIGHTMAP_BACK_FILE  "irradiance_back"
+
+// Formats of the maps, to be or'ed.
+enum lightmap_format {
+    LIGHTMAP_EXR = 1,  // lux
+    LIGHTMAP_KTX2 = 2, // RGB9E5, lux over a power of two
+    LIGHTMAP_PNG = 4,  // 8 bits, linear; also the texture of the materials in the scene's copy
+    LIGHTMAP_FORMATS = 7
+};
 
 // Facts about the maps: in the extras of the scene's copy, and in attributes of the maps.
 struct lightmap_facts {
@@ -13,6 +21,6 @@ struct lightmap_facts {
     bool punctual;
     const char *gi;
 };
-// Into an existing folder.
+// Into an existing folder. formats: at least one of enum lightmap_format.
 bool lightmap_write(const struct lightmap *map, const struct scene *scene,
-                    const struct lightmap_facts *facts, const char *folder);
+                    const struct lightmap_facts *facts, unsigned formats, const char *folder);

@@ -20,11 +20,11 @@ TEST(light_map_is_the_same_for_any_threads_and_replaces_an_earlier_one)
     const char *a = path_of("maps-a"), *b = path_of("maps-b");
     run_expect(0, BAKE " --threads 1 --force --lightmap", a, NULL);
     run_expect(0, BAKE " --threads 3 --force --lightmap", b, NULL);
-    assert_int_equal(count_files(a), 2);
+    assert_int_equal(count_files(a), 4);
     CHECK(files_are_equal(path_of("maps-a/irradiance.exr"), path_of("maps-b/irradiance.exr")));
     CHECK(files_are_equal(path_of("maps-a/scene.glb"), path_of("maps-b/scene.glb")));
     run_expect(0, BAKE " --seed 5 --lightmap", a, NULL);
-    assert_int_equal(count_files(a), 2);
+    assert_int_equal(count_files(a), 4);
     CHECK(!files_are_equal(path_of("maps-a/irradiance.exr"), path_of("maps-b/irradiance.exr")));
 }
 
@@ -85,6 +85,59 @@ TEST(light_maps_that_cannot_be_are_refused_in_one_line)
     CHECK(!file_exists(maps));
 }
 
+// ---- formats
+
+static bool scene_has(const char *folder, const char *text)
+{
+    static char glb[1 << 22];
+    FILE *file = fopen(path_of(folder), "rb");
+    assert_non_null(file);
+    const size_t size = fread(glb, 1, sizeof glb, file);
+    fclose(file);
+    return memmem(glb, size, text, strlen(text)) != NULL;
+}
+
+TEST(formats_are_those_of_the_list_and_replace_those_of_an_earlier_run)
+{
+    use_cache("lightmap-formats");
+    const char *maps = path_of("maps-f");
+    run_expect(0, BAKE " --lightmap-format ktx2 --lightmap", maps, NULL);
+    assert_int_equal(count_files(maps), 2);
+    CHECK(file_exists(path_of("maps-f/irradiance.ktx2")));
+    CHECK(!scene_has("maps-f/scene.glb", "MOZ_lightmap"));
+    const struct run *r =
+        run_expect(0, BAKE " --lightmap-format png,exr --json --lightmap", maps, NULL);
+    json_t *report = run_json(r), *formats = json_object_get(report, "formats");
+    assert_int_equal(json_array_size(formats), 2);
+    CHECK_STRING(json_string_value(json_array_get(formats, 0)), "exr");
+    json_decref(report);
+    assert_int_equal(count_files(maps), 3);
+    CHECK(file_exists(path_of("maps-f/irradiance.png")));
+    CHECK(scene_has("maps-f/scene.glb", "MOZ_lightmap"));
+    // A copy's copy has the map once more, not twice.
+    run_expect(0,
+               "bake --gi radiosity:texels=2048 --spp 1 --quiet --lightmap-format exr --lightmap",
+               path_of("maps-g"), path_of("maps-f/scene.glb"), NULL);
+    CHECK(!scene_has("maps-g/scene.glb", "MOZ_lightmap"));
+}
+
+TEST(formats_that_are_none_are_refused_and_the_known_ones_named)
+{
+    use_cache("lightmap-no-formats");
+    const char *maps = path_of("maps-n");
+    static const char *const wrong[] = { "tga", "exr,", "exr,hdr", "exr ktx2" };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        const struct run *r =
+            run_expect(2, BAKE " --lightmap", maps, "--lightmap-format", wrong[i], NULL);
+        check_one_error_line(r);
+        CHECK(strstr(r->err, "exr ktx2 png"));
+    }
+    check_one_error_line(run_expect(2, "bake @cornell --gi radiosity --lightmap-format png", NULL));
+    check_one_error_line(run_expect(2, BAKE " --lightmap-format png --shard 0/2 -o",
+                                    path_of("p.safetensors"), "--lightmap", maps, NULL));
+    CHECK(!file_exists(maps));
+}
+
 // ---- parts
 
 #define LIGHT " --light point:0,3,1:90,80,70 --sky 1,2,3"
@@ -116,8 +169,13 @@ static void check_merged(const char *scene, const char *more)
     CHECK(files_are_equal(path_of("parts-merged/irradiance.exr"),
                           path_of("parts-whole/irradiance.exr")));
     CHECK(files_are_equal(path_of("parts-merged/scene.glb"), path_of("parts-whole/scene.glb")));
-    unlink(path_of("parts-merged/irradiance.exr"));
-    unlink(path_of("parts-merged/scene.glb"));
+    static const char *const files[] = { "irradiance.exr", "irradiance.ktx2", "irradiance.png",
+                                         "scene.glb" };
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "parts-merged/%s", files[i]);
+        unlink(path_of(name));
+    }
     CHECK(rmdir(merged) == 0);
 }
 

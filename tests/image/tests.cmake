@@ -8,6 +8,7 @@ ag_test(image/metrics USES image)
 ag_test(image/ssim USES image)
 ag_test(image/flip USES image LIBRARIES OpenMP::OpenMP_C)
 ag_test(image/hdr USES image)
+ag_test(image/ktx2 USES image)
 ag_test(image/damaged USES image)
 ag_test(image/scarce USES image)
 

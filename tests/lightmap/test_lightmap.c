@@ -160,7 +160,7 @@ static struct files write_files(const struct baked *b, const char *name)
     snprintf(folder, sizeof folder, "%s", test_path(name));
     CHECK(mkdir(folder, 0700) == 0);
     const struct lightmap_facts facts = { .samples = SAMPLES, .punctual = true, .gi = "test" };
-    CHECK(lightmap_write(&b->map, b->scene, &facts, folder));
+    CHECK(lightmap_write(&b->map, b->scene, &facts, LIGHTMAP_EXR, folder));
     snprintf(path, sizeof path, "%s/scene.glb", folder);
     f.scene = scene_load(test_host(), path);
     assert_non_null(f.scene);

@@ -9,8 +9,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-static const char MARK[] = "irradiance.exr";
+// A folder with one of them is of an earlier run; the first is named in messages.
+static const char *const MARKS[] = { "irradiance.exr", "irradiance.ktx2", "irradiance.png" };
 static const char DEFAULT_GI[] = "radiosity";
 enum { FRAME_SIDE = 16, FRAMES = 2 };
 
@@ -30,8 +32,24 @@ struct job {
 
 static bool is_ours(const char *name)
 {
-    return strcmp(name, MARK) == 0 || strcmp(name, "irradiance_back.exr") == 0 ||
-           strcmp(name, "scene.glb") == 0;
+    static const char *const others[] = { "irradiance_back.exr", "irradiance_back.ktx2",
+                                          "irradiance_back.png", "scene.glb" };
+    for (size_t i = 0; i < sizeof MARKS / sizeof *MARKS; i++)
+        if (strcmp(name, MARKS[i]) == 0) return true;
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (strcmp(name, others[i]) == 0) return true;
+    return false;
+}
+
+// The map that the folder has, of the formats of the run that wrote it.
+static const char *mark_in(const char *folder)
+{
+    char path[PATH_SIZE];
+    for (size_t i = 0; i < sizeof MARKS / sizeof *MARKS; i++) {
+        const int wrote = snprintf(path, sizeof path, "%s/%s", folder, MARKS[i]);
+        if (wrote < PATH_SIZE && access(path, F_OK) == 0) return MARKS[i];
+    }
+    return MARKS[0];
 }
 
 static const char *gi_of(const struct job *job)
@@ -52,15 +70,16 @@ static bool has_results(const struct arguments *a)
 
 enum status light_map_check_others(const struct arguments *a)
 {
-    const char *option = a->has_spp           ? "--spp"
-                         : a->indirect_only   ? "--indirect-only"
-                         : a->denoise         ? "--denoise"
-                         : a->light_count > 0 ? "--light"
-                         : a->has_sky         ? "--sky"
-                         : a->environment     ? "--environment"
-                         : a->no_scene_lights ? "--no-scene-lights"
-                         : a->device          ? "--device"
-                                              : NULL;
+    const char *option = a->lightmap_formats > 0 ? "--lightmap-format"
+                         : a->has_spp            ? "--spp"
+                         : a->indirect_only      ? "--indirect-only"
+                         : a->denoise            ? "--denoise"
+                         : a->light_count > 0    ? "--light"
+                         : a->has_sky            ? "--sky"
+                         : a->environment        ? "--environment"
+                         : a->no_scene_lights    ? "--no-scene-lights"
+                         : a->device             ? "--device"
+                                                 : NULL;
     if (!option) return DONE;
     return wrong_usage("cannot use %s: it requires --lightmap DIR", option);
 }
@@ -79,7 +98,10 @@ static enum status check_usage(const struct arguments *a)
 
 static enum status check_part(const struct arguments *a)
 {
-    const char *option = a->denoise ? "--denoise" : a->indirect_only ? "--indirect-only" : NULL;
+    const char *option = a->denoise                ? "--denoise"
+                         : a->indirect_only        ? "--indirect-only"
+                         : a->lightmap_formats > 0 ? "--lightmap-format"
+                                                   : NULL;
     if (is_part(a) && !a->has_spp)
         return wrong_usage("cannot use --shard with --lightmap: only a light map by paths has "
                            "parts; add --spp N");
@@ -218,14 +240,31 @@ static enum status take_technique(struct job *job, const struct ag_lightmap_desc
 
 // ---- results
 
+static unsigned formats_of(const struct arguments *a)
+{
+    return a->lightmap_formats > 0 ? a->lightmap_formats
+                                   : AG_LIGHTMAP_EXR | AG_LIGHTMAP_KTX2 | AG_LIGHTMAP_PNG;
+}
+
+static json_t *formats_json(unsigned formats)
+{
+    json_t *out = json_array();
+    if (formats & AG_LIGHTMAP_EXR) json_array_append_new(out, json_string("exr"));
+    if (formats & AG_LIGHTMAP_KTX2) json_array_append_new(out, json_string("ktx2"));
+    if (formats & AG_LIGHTMAP_PNG) json_array_append_new(out, json_string("png"));
+    return out;
+}
+
 static enum status write_folder(struct job *job)
 {
     enum status status = folder_begin(&job->folder);
     if (status != DONE) return status;
     interrupt_hold();
-    const enum ag_result result = ag_lightmap_write(job->lightmap, job->folder.beside.path);
+    const enum ag_result result =
+        ag_lightmap_write_as(job->lightmap, job->folder.beside.path, formats_of(job->arguments));
     interrupt_release();
-    return result == AG_OK ? folder_commit(&job->folder, MARK) : fail_call(job, result);
+    return result == AG_OK ? folder_commit(&job->folder, mark_in(job->folder.path))
+                           : fail_call(job, result);
 }
 
 static enum status report(const struct job *job)
@@ -238,11 +277,12 @@ static enum status report(const struct job *job)
          info.width, info.height, info.texels, info.charts, 100.0 * utilisation,
          (double)info.texels_per_m, job->folder.shown);
     if (!job->arguments->json) return DONE;
-    return json_print(json_pack("{s:o, s:[i, i], s:i, s:i, s:o, s:o, s:b}", "output",
+    return json_print(json_pack("{s:o, s:[i, i], s:i, s:i, s:o, s:o, s:b, s:o}", "output",
                                 json_text(job->folder.shown), "size", info.width, info.height,
                                 "texels", info.texels, "charts", info.charts, "texels_per_m",
                                 json_double((double)info.texels_per_m), "utilisation",
-                                json_double(utilisation), "back", info.has_back));
+                                json_double(utilisation), "back", info.has_back, "formats",
+                                formats_json(formats_of(job->arguments))));
 }
 
 // Everything that can fail before the work.
@@ -256,7 +296,7 @@ static enum status prepare(struct job *job)
     if (status == DONE) status = check_technique(job);
     if (status == DONE && !baking_is_followed(a))
         status = is_part(a) ? whole_file_check(a->output)
-                            : folder_plan(&job->folder, a->lightmap, MARK, is_ours);
+                            : folder_plan(&job->folder, a->lightmap, mark_in(a->lightmap), is_ours);
     if (status == DONE)
         status = session_load(&job->session, a->merge ? job->origin.scene_name : a->positional[0],
                               a->merge ? job->origin.scene_scale : a->scene_scale);

@@ -56,6 +56,17 @@ static void offer_curves(const struct value *v)
     offer_list(v, TONEMAP_NAMES);
 }
 
+static const char *lightmap_format(int index)
+{
+    static const char *const names[] = { "exr", "ktx2", "png" };
+    return index < (int)(sizeof names / sizeof *names) ? names[index] : NULL;
+}
+
+static void offer_lightmap_formats(const struct value *v)
+{
+    candidates_layers(v->typed, lightmap_format);
+}
+
 static void offer_lights(const struct value *v)
 {
     offer_list(v, "sun: point: spot: area:");
@@ -83,6 +94,7 @@ static const struct {
               { "--debug-view", offer_debug_views },
               { "--metric", offer_metrics },
               { "--tonemap", offer_curves },
+              { "--lightmap-format", offer_lightmap_formats },
               { "--light", offer_lights },
               { "--environment", offer_environments },
               { "--animation", offer_animations } };

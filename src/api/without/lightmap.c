@@ -71,3 +71,10 @@ enum ag_result ag_lightmap_write(const struct ag_lightmap *lightmap, const char 
     (void)folder;
     return absent(NULL, __func__);
 }
+
+enum ag_result ag_lightmap_write_as(const struct ag_lightmap *lightmap, const char *folder,
+                                    uint32_t formats)
+{
+    (void)formats;
+    return ag_lightmap_write(lightmap, folder);
+}

@@ -1,0 +1,17 @@
+// The light map as a texture of a glTF document's materials: the extension MOZ_lightmap.
+#pragma once
+
+#include "scene/export/gltf_doc.h"
+
+// Removes the light map of an earlier copy from materials and primitives; its texture stays.
+void lightmap_forget(struct gltf_doc *doc);
+
+struct lightmap_image {
+    const uint8_t *png;
+    size_t size;
+    float range; // lux of the value 1
+};
+// Gives it to the materials of all primitives with coordinates of the map, whose extras state them.
+// A material that others use without the map, or with another set of coordinates, is copied for
+// them. Unlit materials stay as they are.
+bool lightmap_materials(struct gltf_doc *doc, const struct lightmap_image *image);

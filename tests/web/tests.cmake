@@ -1,0 +1,5 @@
+# Files that others write readers for, read by these: node with npm packages of pinned versions, which are installed into the build
+# tree. Skipped where node or the packages are not there.
+set(web ${CMAKE_BINARY_DIR}/tests/web)
+add_test(NAME web.lightmap COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/lit.sh ${web} $<TARGET_FILE:afterglow>)
+set_tests_properties(web.lightmap PROPERTIES LABELS web TIMEOUT 300 SKIP_RETURN_CODE 77 RESOURCE_LOCK web_packages)
