@@ -78,6 +78,7 @@ struct arguments {
     const char *report;        // NULL: none
     const char *lightmap;      // a folder; NULL: none
     unsigned lightmap_formats; // enum ag_lightmap_format; 0: all
+    const char *probes;        // likewise
     const char *exported;      // likewise
     bool denoise;
     bool clear;         // cache

@@ -3,6 +3,7 @@
 #include "cli/bake/baking.h"
 #include "commands.h"
 #include "cli/bake/light_map.h"
+#include "cli/bake/probes.h"
 #include "cli/files/json.h"
 
 #include <stdio.h>
@@ -191,6 +192,7 @@ static enum status report(struct job *job)
 static enum status bake(const struct arguments *arguments)
 {
     if (arguments->lightmap) return light_map_bake(arguments);
+    if (arguments->probes) return probes_bake(arguments);
     struct job *job = calloc(1, sizeof *job);
     if (!job) return fail("cannot bake %s: out of memory", arguments->positional[0]);
     job->arguments = arguments;
@@ -231,6 +233,7 @@ const struct command command_bake = {
         "With --report, writes the seconds, memory and bytes that each stage took, as JSON.\n"
         "\n"
         "With --lightmap, writes a light map for other engines instead: see docs/lightmaps.md.\n"
+        "With --probes, writes irradiance probes: see docs/probes.md.\n"
         "With --export, writes the transfer maps of ort as images too: see\n"
         "docs/techniques/ort.md.\n"
         "mpirun -n N afterglow-mpi bake … takes the same options and runs on N processes, also\n"
@@ -263,6 +266,8 @@ const struct command command_bake = {
         "      for the web: irradiance.ktx2, and scene.glb, which opens lit\n"
         "  afterglow bake house.glb --lightmap maps --spp 256\n"
         "      the same by path tracing, which Ctrl-C interrupts and the next run continues\n"
+        "  afterglow bake house.glb --probes probes\n"
+        "      irradiance probes for objects that move: probes/probes.json\n"
         "  afterglow bake house.glb --lightmap maps --spp 256 --shard 0/2 -o p0.safetensors\n"
         "  afterglow bake house.glb --lightmap maps --spp 256 --shard 1/2 -o p1.safetensors\n"
         "  afterglow bake --merge p0.safetensors p1.safetensors --lightmap maps\n"

@@ -305,6 +305,13 @@ static bool set_lightmap_format(struct arguments *a, const char *value, const ch
     }
 }
 
+static bool set_probes(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be the name of a folder";
+    a->probes = value;
+    return value[0] != 0;
+}
+
 static bool set_export(struct arguments *a, const char *value, const char **why)
 {
     *why = "it must be the name of a folder";

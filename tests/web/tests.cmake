@@ -3,3 +3,5 @@
 set(web ${CMAKE_BINARY_DIR}/tests/web)
 add_test(NAME web.lightmap COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/lit.sh ${web} $<TARGET_FILE:afterglow>)
 set_tests_properties(web.lightmap PROPERTIES LABELS web TIMEOUT 300 SKIP_RETURN_CODE 77 RESOURCE_LOCK web_packages)
+add_test(NAME web.probes COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/probes.sh ${web} $<TARGET_FILE:afterglow> ${CMAKE_SOURCE_DIR}/docs/probes.schema.json)
+set_tests_properties(web.probes PROPERTIES LABELS web TIMEOUT 300 SKIP_RETURN_CODE 77 RESOURCE_LOCK web_packages)

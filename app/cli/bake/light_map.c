@@ -1,6 +1,7 @@
 // Light maps as files: by the path tracer, through a bake, or by a renderer of a technique.
 #include "light_map.h"
 #include "baking.h"
+#include "light_renderer.h"
 #include "cli/technique_names.h"
 #include "cli/files/folder.h"
 #include "cli/files/interrupt.h"
@@ -14,7 +15,6 @@
 // A folder with one of them is of an earlier run; the first is named in messages.
 static const char *const MARKS[] = { "irradiance.exr", "irradiance.ktx2", "irradiance.png" };
 static const char DEFAULT_GI[] = "radiosity";
-enum { FRAME_SIDE = 16, FRAMES = 2 };
 
 struct job {
     const struct arguments *arguments;
@@ -22,9 +22,7 @@ struct job {
     struct folder folder;
     struct ag_bake_origin origin; // of the parts, with --merge
     struct baking baking;         // by paths
-    struct bakes bakes;           // of the technique
-    struct ag_device *device;
-    struct ag_renderer *renderer;
+    struct light_renderer light;  // of the technique
     struct ag_lightmap *lightmap;
 };
 
@@ -74,14 +72,16 @@ enum status light_map_check_others(const struct arguments *a)
                          : a->has_spp            ? "--spp"
                          : a->indirect_only      ? "--indirect-only"
                          : a->denoise            ? "--denoise"
-                         : a->light_count > 0    ? "--light"
-                         : a->has_sky            ? "--sky"
-                         : a->environment        ? "--environment"
-                         : a->no_scene_lights    ? "--no-scene-lights"
-                         : a->device             ? "--device"
                                                  : NULL;
-    if (!option) return DONE;
-    return wrong_usage("cannot use %s: it requires --lightmap DIR", option);
+    if (option) return wrong_usage("cannot use %s: it requires --lightmap DIR", option);
+    option = a->light_count > 0   ? "--light"
+             : a->has_sky         ? "--sky"
+             : a->environment     ? "--environment"
+             : a->no_scene_lights ? "--no-scene-lights"
+             : a->device          ? "--device"
+                                  : NULL;
+    if (!option || a->probes) return DONE;
+    return wrong_usage("cannot use %s: it requires --lightmap DIR or --probes DIR", option);
 }
 
 static enum status check_usage(const struct arguments *a)
@@ -90,6 +90,7 @@ static enum status check_usage(const struct arguments *a)
                          : a->report_full           ? "--report-full"
                          : a->all_objects           ? "--all-objects"
                          : a->exported              ? "--export"
+                         : a->probes                ? "--probes"
                          : a->output && !is_part(a) ? "-o"
                                                     : NULL;
     if (option) return wrong_usage("cannot use %s with --lightmap: choose one", option);
@@ -197,44 +198,12 @@ static enum status take_paths(struct job *job, const struct ag_lightmap_desc *de
 
 // ---- by a technique
 
-static enum ag_result create_renderer(struct job *job)
-{
-    struct ag_device_desc device;
-    struct ag_renderer_desc desc;
-    ag_device_desc_default(&device);
-    device.device = job->arguments->device;
-    const enum ag_result result = ag_device_create(job->session.context, &device, &job->device);
-    if (result != AG_OK) return result;
-    ag_renderer_desc_default(&desc);
-    desc.width = desc.height = FRAME_SIDE;
-    desc.gi = gi_of(job);
-    desc.bakes = job->bakes.bakes;
-    desc.bake_count = job->bakes.count;
-    return ag_renderer_create(job->device, job->session.scene, &desc, &job->renderer);
-}
-
-static enum ag_result render(struct job *job, const struct ag_camera *camera)
-{
-    enum ag_result result = AG_OK;
-    struct ag_frame_desc frame;
-    ag_frame_desc_default(&frame);
-    frame.camera = *camera;
-    for (int i = 0; i < FRAMES && result == AG_OK; i++)
-        result = ag_renderer_render(job->renderer, &frame);
-    return result;
-}
-
 static enum status take_technique(struct job *job, const struct ag_lightmap_desc *desc)
 {
-    struct ag_camera camera;
-    enum status status = session_camera(&job->session, 0.0, &camera);
-    if (status != DONE) return status;
-    session_say(&job->session);
-    status = bakes_prepare(&job->bakes, &job->session, gi_of(job));
+    const enum status status = light_renderer_begin(&job->light, &job->session, gi_of(job));
     if (status != DONE || !has_results(job->arguments)) return status;
-    enum ag_result result = create_renderer(job);
-    if (result == AG_OK) result = render(job, &camera);
-    if (result == AG_OK) result = ag_lightmap_from_renderer(job->renderer, desc, &job->lightmap);
+    const enum ag_result result =
+        ag_lightmap_from_renderer(job->light.renderer, desc, &job->lightmap);
     return result == AG_OK ? DONE : fail_call(job, result);
 }
 
@@ -326,9 +295,7 @@ enum status light_map_bake(const struct arguments *arguments)
     job->arguments = arguments;
     const enum status status = run(job);
     ag_lightmap_destroy(job->lightmap);
-    ag_renderer_destroy(job->renderer);
-    ag_device_destroy(job->device);
-    bakes_finish(&job->bakes);
+    light_renderer_end(&job->light);
     baking_end(&job->baking);
     folder_abort(&job->folder);
     session_end(&job->session);
