@@ -206,6 +206,8 @@ TEST(light_map_functions_refuse_wrong_arguments)
     assert_int_equal(ag_lightmap_get_info(NULL, &info), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_lightmap_read(lightmap, true, &image), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_lightmap_write(lightmap, ""), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_lightmap_write_as(lightmap, test_path("."), 0), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_lightmap_write_as(lightmap, test_path("."), 8), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_lightmap_write(lightmap, test_path("absent")), AG_ERROR_FILE);
     ag_lightmap_destroy(lightmap);
     ag_lightmap_destroy(NULL);

@@ -57,6 +57,11 @@ for (let i = 0; i < rest.length; i += 3) {
   await call('Page.navigate', { url: `http://127.0.0.1:${server.address().port}/index.html?${query}` });
   const end = Date.now() + 90000;
   while (await value('document.title') !== 'ready' && complaints.length === 0 && Date.now() < end) await new Promise(done => setTimeout(done, 100));
+  if (complaints.some(text => text.includes('creating WebGL context'))) {
+    console.log('skipped: no WebGL in Chromium');
+    browser.kill();
+    process.exit(77);
+  }
   assert.deepEqual(complaints, []);
   assert.equal(await value('document.title'), 'ready', `${query}: not drawn in time`);
   const url = await value(`document.querySelector('canvas').toDataURL()`);

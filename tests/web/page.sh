@@ -5,7 +5,7 @@
 set -eu
 here=$(dirname "$0") folder=$1 program=$2 examples=$3 chromium=${AFTERGLOW_CHROMIUM-}
 for name in chromium chromium-browser google-chrome; do
-    [ -n "$chromium" ] || chromium=$(command -v $name) || :
+    [ -n "${AFTERGLOW_CHROMIUM+given}$chromium" ] || chromium=$(command -v $name) || :
 done
 [ -n "$chromium" ] || { echo "skipped: no Chromium"; exit 77; }
 sh "$here/run.sh" "$folder" gltf.mjs || exit $?
