@@ -6,7 +6,9 @@
 void mrt_host_solver_set_reflectance(struct mrt_host_solver *solver,
                                      const struct mrt_geometry_texel *geometry)
 {
-    for (int i = 0; i < solver->texels; i++) solver->reflectance[i] = geometry[i].reflectance;
+    for (int i = 0; i < solver->texels; i++)
+        solver->reflectance[i] = glms_vec3_mul(geometry[i].reflectance,
+                                               glms_vec3_sub(vec3_of(1, 1, 1), geometry[i].hidden));
 }
 
 bool mrt_host_solver_init(struct mrt_host_solver *out, struct host *host, struct gpu *gpu,

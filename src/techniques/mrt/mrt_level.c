@@ -161,6 +161,11 @@ static bool note_walls(struct mrt_parts *out, const struct scene_pose *walls)
     return out->has_walls;
 }
 
+static bool is_clutter(const void *clutter, int instance, uint32_t triangle)
+{
+    return mrt_is_clutter(clutter, instance, triangle);
+}
+
 static bool make_images(struct mrt_parts *out, const struct mrt *mrt, const struct scene_pose *pose,
                         const struct mrt_parts *last)
 {
@@ -168,6 +173,9 @@ static bool make_images(struct mrt_parts *out, const struct mrt *mrt, const stru
     const struct scene_pose *walls = out->clutter.triangles > 0 ? &out->clutter.walls.pose : pose;
     out->walls = hash_of_walls(walls);
     const bool same = last && hash128_same(last->walls, out->walls);
+    // A box that stands for a whole scene is no room: most of its surfaces have no texel.
+    if (mrt->options.map != MRT_MAP_SINGLE)
+        out->reflectors.own = (struct mrt_own_light){ is_clutter, &out->clutter };
     return (!mrt->delta || note_walls(out, walls)) &&
            mrt_scene_images_init(&out->reflectors, pose, walls, &mrt->atlas, probes,
                                  same ? last->images.geometry : NULL, &out->images);

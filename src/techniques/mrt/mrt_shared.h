@@ -54,12 +54,14 @@ struct mrt_texel {
     AG_STRUCT(mrt_gpu_reflector_row) reflected;
     vec3s emitted_vector[3], sky_vector; // of struct mrt_geometry_texel
     uint32_t across;                     // of a wall: octahedral, two snorm values
+    vec3s hidden;                        // of struct mrt_geometry_texel
 };
 
 // Light of emissive surfaces, the sky and reflectors at a texel: irradiance, and vector irradiance
-// along the first two axes of the frame of irradiance by normal.
+// along the first two axes of the frame of irradiance by normal. hidden: share of
+// the block's light that objects hide.
 struct mrt_gpu_area_light {
-    vec3s irradiance, along[2];
+    vec3s irradiance, along[2], hidden;
 };
 
 // A wall of a block: `texels` texels from first_texel.
@@ -208,8 +210,8 @@ struct mrt_view_push {
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct mrt_gpu_reflector_row) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_reflector_share) == 12, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_texel) == 120, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_gpu_area_light) == 36, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_texel) == 132, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_area_light) == 48, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_tile) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_block) == 220, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_probe) == 152, "layout is shared with GLSL");

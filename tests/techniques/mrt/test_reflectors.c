@@ -239,3 +239,43 @@ TEST(outdoor_points_are_as_dense_as_their_number_allows)
         close_place(&p);
     }
 }
+
+static vec3s hidden_by(struct place *p, const struct mrt_atlas *atlas,
+                       struct mrt_geometry_texel *geometry, int texel)
+{
+    bool lit;
+    p->reflectors.inside = (struct mrt_geometry){ &p->map, atlas, geometry };
+    assert_true(mrt_area_light_texels(p->trace, &p->reflectors,
+                                      &(struct mrt_texel_list){ &geometry[texel], 1, 0 }, &lit));
+    CHECK(lit);
+    return geometry[texel].hidden;
+}
+
+// The underside of a table is a reflector for the floor, of which it hides the share of its form
+// factor. From a texel above, which sees a surface that texels of the floor's wall stand for,
+// nothing is hidden.
+TEST(the_side_of_an_object_that_no_texel_stands_for_is_a_reflector)
+{
+    enum { RESOLUTION = 8 };
+    struct place p;
+    struct mrt_atlas atlas;
+    open_place(&p, -0.5f, vec3_of(0.4f, 0, 0), vec3_of(0, 0, 0.4f));
+    assert_true(mrt_atlas_init(test_host(), &p.map, RESOLUTION, &atlas));
+    struct mrt_geometry_texel *geometry = mrt_geometry_create(test_host(), &p.map, &atlas, p.trace);
+    assert_non_null(geometry);
+    const int top = atlas.tiles[atlas.tile_of_face[CUBE_TOP]].first_texel;
+    geometry[top] = (struct mrt_geometry_texel){ .position = vec3_of(0, -1, 0),
+                                                 .normal = vec3_of(0, 1, 0),
+                                                 .found = true };
+    // The form factor of a square of edge 2a at the height h, centred, with x = a/h.
+    const double x = 0.8, root = sqrt(1 + x * x);
+    const double share = 4 / 3.14159265 * x / root * atan(x / root);
+    const vec3s hidden = hidden_by(&p, &atlas, geometry, top);
+    CHECK_NEAR(hidden.x, (1 - (double)ALBEDO) * share, 0.02);
+    geometry[top].position = vec3_of(0, 0.9f, 0);
+    geometry[top].normal = vec3_of(0, -1, 0);
+    CHECK(glms_vec3_max(hidden_by(&p, &atlas, geometry, top)) == 0.0f);
+    host_free(test_host(), geometry);
+    mrt_atlas_finish(&atlas);
+    close_place(&p);
+}

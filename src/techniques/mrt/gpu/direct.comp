@@ -37,6 +37,7 @@ mrt_gpu_area_light area_light_at(mrt_texel texel)
     mrt_gpu_area_light light;
     light.irradiance = area_light_of(texel.emitted, vec3(texel.sky), environment) +
                        reflected_irradiance(texel.reflected);
+    light.hidden = texel.hidden;
     light.along[0] = across * vector;
     light.along[1] = cross(texel.normal, across) * vector;
     return light;

@@ -56,7 +56,8 @@ void add_area_light(mrt_gpu_area_light light, float weight, inout vec3 sum[4])
 
 void add(uint texel, float weight, inout vec3 sum[4])
 {
-    for (uint v = 0u; v < VALUES; v++) sum[v] += weight * irradiance_table[texel * VALUES + v];
+    vec3 passed = weight * (1.0 - area_light_table[texel].hidden);
+    for (uint v = 0u; v < VALUES; v++) sum[v] += passed * irradiance_table[texel * VALUES + v];
     add_area_light(area_light_table[texel], weight, sum);
 }
 

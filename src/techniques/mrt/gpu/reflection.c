@@ -23,8 +23,9 @@ static void fill_reflected(const struct builder *s, int block, int first_opening
     for (int f = 0; f < CUBE_FACES; f++) {
         if (!mrt_block_has_wall(of, f)) continue;
         for (size_t t = 0; t < s->face; t++, row++) {
+            const struct mrt_geometry_texel *texel = &input->images->geometry[first + (int)row];
             const float reflectance =
-                input->images->geometry[first + (int)row].reflectance.raw[colour];
+                texel->reflectance.raw[colour] * (1.0f - texel->hidden.raw[colour]);
             float *to = out->at + row * out->stride;
             const float *u_b = basis->u[0].at + row * basis->u[0].stride;
             for (int k = 0; k < o->k_b; k++) *to++ = reflectance * u_b[k];

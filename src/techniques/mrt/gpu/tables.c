@@ -30,6 +30,7 @@ static struct mrt_texel texel_of(const struct mrt_geometry_texel *from)
                             from->emitted_vector[2] },
         .sky_vector = from->sky_vector,
         .across = packed(from->across),
+        .hidden = from->hidden,
     };
 }
 

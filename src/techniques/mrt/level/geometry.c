@@ -5,6 +5,8 @@
 
 #include "core/parallel.h"
 
+#include <math.h>
+
 // Rays start in the middle of the block, which scenes fill less than their walls, and end behind
 // the wall by a quarter of the block.
 static const float RAY_END = 1.5f; // of the way from the middle to the wall
@@ -110,4 +112,48 @@ struct mrt_geometry_texel *mrt_geometry_create(struct host *host, const struct m
     }
     host_free(host, job.sight);
     return job.texels;
+}
+
+// ---- surfaces that texels stand for
+
+static const float NEAR_WALL = 0.15f;  // edges, and the cosine from which a surface faces it
+static const float FACES_WALL = 0.35f; // (gpu/pixels/light_map.glsl)
+static const float WITHIN = 1.5f;      // diagonals of a texel
+static const float SAME_NORMAL = 0.5f; // cosine
+
+static bool is_texel_of(const struct mrt_geometry_texel *texel, vec3s point, vec3s normal)
+{
+    return texel->found && glms_vec3_dot(texel->normal, normal) > SAME_NORMAL &&
+           glms_vec3_distance2(texel->position, point) < WITHIN * WITHIN * 2.0f * texel->area_m2;
+}
+
+// A texel near the place on the wall, so that the edge of an object counts, too.
+static bool tile_has(const struct mrt_geometry *g, int tile, vec2s place, vec3s point, vec3s normal)
+{
+    const int n = g->atlas->resolution;
+    const struct mrt_geometry_texel *texels = g->texels + g->atlas->tiles[tile].first_texel;
+    const int x = (int)floorf(place.x * (float)n), y = (int)floorf(place.y * (float)n);
+    for (int j = y - 1; j <= y + 1; j++)
+        for (int i = x - 1; i <= x + 1; i++)
+            if (i >= 0 && i < n && j >= 0 && j < n &&
+                is_texel_of(&texels[j * n + i], point, normal))
+                return true;
+    return false;
+}
+
+bool mrt_geometry_has(const struct mrt_geometry *g, int block, vec3s cell, vec3s point,
+                      vec3s normal)
+{
+    const mat3s jacobian = mrt_warp_jacobian(g->map->blocks[block].corner, cell);
+    for (int face = 0; face < CUBE_FACES; face++) {
+        const int tile = g->atlas->tile_of_face[CUBE_FACES * block + face];
+        const mat3s frame = cube_from_face(face);
+        const vec3s inwards = vec3_unit(glms_mat3_mulv(jacobian, glms_vec3_negate(frame.col[2])));
+        if (tile < 0 || glms_vec3_dot(inwards, normal) < FACES_WALL) continue;
+        if (0.5f - glms_vec3_dot(frame.col[2], cell) < NEAR_WALL) return true;
+        const vec2s place = { { 0.5f + glms_vec3_dot(frame.col[0], cell),
+                                0.5f + glms_vec3_dot(frame.col[1], cell) } };
+        if (tile_has(g, tile, place, point, normal)) return true;
+    }
+    return false;
 }

@@ -25,9 +25,23 @@ struct mrt_geometry_texel {
     vec3s emitted_vector[3], sky_vector;
     vec3s across; // of walls, unit: the first axis of the frame of irradiance by normal
     struct mrt_reflector_row reflected;
+    // Share of the block's light that is missing: objects inside it, which reflectors stand for,
+    // hide their part of the hemisphere, and reflect the same irradiance.
+    vec3s hidden;
 };
 
 // One for each texel of the level, without light. The caller frees it with host_free.
 struct mrt_geometry_texel *mrt_geometry_create(struct host *host, const struct mrt_block_map *map,
                                                const struct mrt_atlas *atlas,
                                                const struct trace_scene *scene);
+
+// Geometry images with their level.
+struct mrt_geometry {
+    const struct mrt_block_map *map;
+    const struct mrt_atlas *atlas;
+    const struct mrt_geometry_texel *texels;
+};
+// Whether a texel stands for a surface in a block of cubes, or the block's wall does: pixels near a
+// wall that they face have its light. `cell` is its place there.
+bool mrt_geometry_has(const struct mrt_geometry *geometry, int block, vec3s cell, vec3s point,
+                      vec3s normal);

@@ -1,8 +1,11 @@
 // Irradiance of emissive surfaces and of the sky at texels.
 #include "techniques/mrt/light/area_light.h"
 
+#include "techniques/mrt/level/wall.h"
+
 #include "core/rng.h"
 
+#include <stdatomic.h>
 #include <string.h>
 
 enum {
@@ -20,10 +23,12 @@ struct job {
     struct mrt_geometry_texel *texels;
     struct mrt_ray_cells cells;
     int rays;
+    const struct mrt_reflectors *wanted; // NULL: it is not asked whether there are any
+    atomic_bool has_reflectors;
 };
 
 struct view {
-    const struct trace_scene *scene;
+    struct job *job;
     struct mrt_reflector_hits *hits;
 };
 
@@ -31,8 +36,11 @@ static void add_hit(void *user, const struct ray *ray, const struct ray_hit *hit
                     const struct texel_hit *at_hit)
 {
     const struct view *view = user;
+    struct job *job = view->job;
     (void)local;
-    mrt_reflectors_add_hit(view->hits, view->scene, ray, hit, at_hit);
+    if (job->wanted && mrt_reflectors_have(job->wanted, job->scene, ray, hit, at_hit))
+        atomic_store_explicit(&job->has_reflectors, true, memory_order_relaxed);
+    mrt_reflectors_add_hit(view->hits, job->scene, ray, hit, at_hit);
 }
 
 // Less what uniform light of its irradiance would have: a control variate, whose part along the
@@ -45,11 +53,23 @@ static vec3s vector_of(const struct texel_light *light, const float uniform[3])
     return vector;
 }
 
+// A surface that hides a part of the block reflects its share of the irradiance that the texel has.
+static vec3s hidden_of(const struct mrt_reflector_hits *hits)
+{
+    const vec3s one = vec3_of(1, 1, 1);
+    vec3s hidden = vec3_of(0, 0, 0);
+    for (uint32_t k = 0; k < hits->count; k++)
+        if (hits->at[k].in_block)
+            hidden = glms_vec3_muladds(glms_vec3_sub(one, hits->at[k].reflectance),
+                                       hits->at[k].share, hidden);
+    return glms_vec3_minv(hidden, one);
+}
+
 static void gather(void *user, size_t i, struct mrt_reflector_hits *hits)
 {
-    const struct job *job = user;
+    struct job *job = user;
     struct mrt_geometry_texel *at = &job->texels[i];
-    struct view view = { job->scene, hits };
+    struct view view = { job, hits };
     struct texel_lights light;
     uint8_t further[MRT_MOST_CELLS];
     at->reflected = (struct mrt_reflector_row){ 0 };
@@ -64,6 +84,7 @@ static void gather(void *user, size_t i, struct mrt_reflector_hits *hits)
         .cells = { job->cells.side, further },
     };
     texel_gather_light(job->scene, &receiver, add_hit, &view, &light);
+    at->hidden = hidden_of(hits);
     at->sky = light.sky.irradiance / GLM_PIf;
     at->sky_vector = glms_vec3_divs(vector_of(&light.sky, light.uniform_vector), GLM_PIf);
     for (int c = 0; c < 3; c++) {
@@ -108,14 +129,17 @@ static bool gather_light(struct job *job, struct mrt_reflectors *reflectors,
     return ok;
 }
 
-// Without emitters a few rays tell whether the sky is seen at all.
+// Without emitters a few rays tell whether the sky or reflectors in blocks are seen at all.
 bool mrt_area_light_texels(const struct trace_scene *scene, struct mrt_reflectors *reflectors,
                            const struct mrt_texel_list *texels, bool *lit)
 {
     struct job job = { .scene = scene, .texels = texels->at };
     *lit = scene->lights.has_emitters;
     if (!*lit) {
+        job.wanted = reflectors && reflectors->inside.texels ? reflectors : NULL;
         if (!gather_all(&job, NULL, texels->count, PROBES)) return false;
+        *lit = atomic_load_explicit(&job.has_reflectors, memory_order_relaxed);
+        job.wanted = NULL;
         for (size_t i = 0; i < texels->count; i++) *lit = *lit || texels->at[i].sky > 0.0f;
     }
     return !*lit || gather_light(&job, reflectors, texels);
@@ -196,6 +220,9 @@ bool mrt_scene_images_init(struct mrt_reflectors *reflectors, const struct scene
         out->geometry = kept            ? copy_of(host, kept, texels)
                         : walls == pose ? mrt_geometry_create(host, map, atlas, scene)
                                         : geometry_of(host, walls, map, atlas);
+    if (reflectors->own.has && map->count > 0 && !map->is_open &&
+        !mrt_block_is_tube(&map->blocks[0]))
+        reflectors->inside = (struct mrt_geometry){ map, atlas, out->geometry };
     const bool ok =
         scene && out->geometry && light_all(out, scene, pose, reflectors, atlas, probes);
     trace_scene_destroy(scene);

@@ -42,6 +42,7 @@ static bool gather_rays(const struct job *job, const struct texel_receiver *at,
         mrt_reflectors_add_hit(hits, job->scene, &ray, &hit, &at_hit);
         add(glms_vec3_scale(at_hit.emission, GLM_PIf * per_sr / density), weight, out);
     }
+    mrt_reflectors_drop_inside(hits);
     return is_inside(backs, job->rays.count);
 }
 

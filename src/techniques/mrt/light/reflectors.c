@@ -24,27 +24,38 @@ static const float PER_DISTANCE = 0.125; // edge of a place over its distance, a
 
 // ---- which surfaces
 
-static bool is_of_block(const struct mrt_block *block, vec3s point, vec3s normal)
+enum owner { OF_BLOCK, INSIDE_BLOCK, OUTSIDE_BLOCKS };
+
+static enum owner owner_in(const struct mrt_reflectors *r, int index, vec3s point, vec3s normal)
 {
+    const struct mrt_block *block = &r->grid.map->blocks[index];
     vec3s cell;
-    if (!mrt_warp_inverse(block->corner, point, &cell)) return false;
+    if (!mrt_warp_inverse(block->corner, point, &cell)) return OUTSIDE_BLOCKS;
     const vec3s out = glms_vec3_abs(cell);
     const float most = glms_vec3_max(out);
-    if (!(most <= BEHIND_WALL)) return false;
-    if (most <= MRT_IN_CELL) return true;
+    if (!(most <= BEHIND_WALL)) return OUTSIDE_BLOCKS;
+    if (most <= MRT_IN_CELL)
+        return !r->inside.texels || mrt_geometry_has(&r->inside, index, cell, point, normal)
+                   ? OF_BLOCK
+                   : INSIDE_BLOCK;
     const int axis = most == out.x ? 0 : most == out.y ? 1 : 2;
     const mat3s jacobian = mrt_warp_jacobian(block->corner, cell);
     const vec3s across = vec3_unit(jacobian.col[axis]);
-    return copysignf(1.0f, -cell.raw[axis]) * glms_vec3_dot(across, normal) > FACING;
+    return copysignf(1.0f, -cell.raw[axis]) * glms_vec3_dot(across, normal) > FACING
+               ? OF_BLOCK
+               : OUTSIDE_BLOCKS;
 }
 
-static bool is_of_a_block(const struct mrt_reflectors *r, vec3s point, vec3s normal)
+static enum owner owner_of(const struct mrt_reflectors *r, vec3s point, vec3s normal)
 {
     const struct mrt_block_list list = mrt_blocks_near(&r->grid, point);
-    for (uint32_t k = 0; k < list.count; k++)
-        if (is_of_block(&r->grid.map->blocks[r->grid.candidates[list.first + k]], point, normal))
-            return true;
-    return false;
+    enum owner owner = OUTSIDE_BLOCKS;
+    for (uint32_t k = 0; k < list.count; k++) {
+        const enum owner here = owner_in(r, (int)r->grid.candidates[list.first + k], point, normal);
+        if (here == OF_BLOCK) return here;
+        if (here == INSIDE_BLOCK) owner = here;
+    }
+    return owner;
 }
 
 static int level_of(float edges)
@@ -73,14 +84,23 @@ static uint64_t key_of(const struct mrt_reflectors *r, vec3s point, vec3s normal
     return key;
 }
 
+static enum owner owner_at(const struct mrt_reflectors *r, const struct trace_scene *scene,
+                           const struct ray *ray, const struct ray_hit *hit,
+                           const struct texel_hit *at_hit)
+{
+    const int instance = scene->meshes[hit->geometry].instance;
+    if (at_hit->inside || (r->own.has && r->own.has(r->own.user, instance, hit->triangle)))
+        return OF_BLOCK;
+    const vec3s position = glms_vec3_muladds(ray->direction, hit->distance, ray->origin);
+    const vec3s facet = scene->meshes[hit->geometry].facets[hit->triangle].normal;
+    return owner_of(r, position, at_hit->back ? glms_vec3_negate(facet) : facet);
+}
+
 bool mrt_reflectors_have(const struct mrt_reflectors *r, const struct trace_scene *scene,
                          const struct ray *ray, const struct ray_hit *hit,
                          const struct texel_hit *at_hit)
 {
-    if (at_hit->inside) return false;
-    const vec3s position = glms_vec3_muladds(ray->direction, hit->distance, ray->origin);
-    const vec3s facet = scene->meshes[hit->geometry].facets[hit->triangle].normal;
-    return !is_of_a_block(r, position, at_hit->back ? glms_vec3_negate(facet) : facet);
+    return owner_at(r, scene, ray, hit, at_hit) != OF_BLOCK;
 }
 
 void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_scene *scene,
@@ -88,7 +108,9 @@ void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_
                             const struct texel_hit *at_hit)
 {
     float edge_m;
-    if (!hits->of || !mrt_reflectors_have(hits->of, scene, ray, hit, at_hit)) return;
+    if (!hits->of) return;
+    const enum owner owner = owner_at(hits->of, scene, ray, hit, at_hit);
+    if (owner == OF_BLOCK) return;
     struct surface surface;
     surface_at(scene, ray, hit, NULL, &surface);
     const uint64_t key =
@@ -101,7 +123,16 @@ void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_
         .direction = ray->direction,
         .area_m2 = edge_m * edge_m,
         .share = at_hit->share,
+        .in_block = owner == INSIDE_BLOCK,
     };
+}
+
+void mrt_reflectors_drop_inside(struct mrt_reflector_hits *hits)
+{
+    uint32_t kept = 0;
+    for (uint32_t k = 0; k < hits->count; k++)
+        if (!hits->at[k].in_block) hits->at[kept++] = hits->at[k];
+    hits->count = kept;
 }
 
 // ---- reflectors of hits
@@ -242,7 +273,8 @@ static bool gather_part(struct mrt_reflectors *r, struct part *part, size_t coun
                         struct mrt_reflector_hit *hits)
 {
     for (size_t i = 0; i < count; i++)
-        part->hits[i] = (struct mrt_reflector_hits){ r, hits + i * (size_t)part->gather->rays, 0 };
+        part->hits[i] =
+            (struct mrt_reflector_hits){ .of = r, .at = hits + i * (size_t)part->gather->rays };
     parallel_for(count, 8, gather_one, part);
     for (size_t i = 0; i < count; i++)
         if (!add_row(r, part, i)) return false;

@@ -1,12 +1,19 @@
-// Reflectors: places of surfaces that are in no block, such as ground outdoors or the reveals of a
-// window. Each stands for the surface around it and reflects light of the sky, the sun, other
-// lights and emissive surfaces, and what other reflectors send of that, towards the texels and
-// points whose rays end there.
+// Reflectors: places of surfaces that no texel stands for. They are in no block, such as ground
+// outdoors or the reveals of a window, or inside a block whose objects have no light of their own:
+// the sides of furniture, the inside of a shade. Each stands for the surface around it and reflects
+// light of the sky, the sun, other lights and emissive surfaces, and what other reflectors send of
+// that, towards the texels and points whose rays end there.
 #pragma once
 
 #include "techniques/mrt/level/block_grid.h"
 #include "techniques/mrt/level/geometry.h"
 #include "trace/texels/light.h"
+
+// Objects, whose triangles have light of their own.
+struct mrt_own_light {
+    bool (*has)(const void *user, int instance, uint32_t triangle);
+    const void *user;
+};
 
 // A reflector's share of the light of a texel or a point. weight: at a texel, irradiance over the
 // reflector's radiosity; at a point, its solid angle over π.
@@ -19,7 +26,9 @@ struct mrt_reflector_share {
 struct mrt_reflectors {
     struct host *host;
     struct mrt_block_grid grid;
-    float least_m; // edge of the smallest place
+    struct mrt_geometry inside; // texels NULL: blocks stand for all surfaces inside
+    struct mrt_own_light own;   // has NULL: blocks of a level stand for all surfaces inside
+    float least_m;              // edge of the smallest place
     // Numbers from which later hits have larger places: each 32nd part more doubles the edge, up to
     // the distance of the hit.
     uint32_t fine, fine_shares;
@@ -47,6 +56,7 @@ struct mrt_reflector_hit {
     vec3s position, normal, reflectance, direction;
     float area_m2;
     float share; // of the ray
+    bool in_block;
 };
 
 // The hits of one receiver.
@@ -66,6 +76,9 @@ bool mrt_reflectors_have(const struct mrt_reflectors *reflectors, const struct t
 void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_scene *scene,
                             const struct ray *ray, const struct ray_hit *hit,
                             const struct texel_hit *at_hit);
+
+// Drops hits inside blocks: lookups between probes would show this light beyond the objects.
+void mrt_reflectors_drop_inside(struct mrt_reflector_hits *hits);
 
 // Calls `gather` for each receiver, on all cores, and keeps what it adds: at most `rays` hits, of
 // this weight times the share of the ray. Afterwards *row_of(user, i) has the receiver's shares.

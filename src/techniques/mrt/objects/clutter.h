@@ -59,6 +59,14 @@ bool mrt_clutter_init(struct mrt_clutter *out, struct host *host, const struct s
                       const struct mrt_block_map *map, const struct mrt_clutter_options *options);
 void mrt_clutter_finish(struct mrt_clutter *clutter);
 
+static inline bool mrt_is_clutter(const struct mrt_clutter *clutter, int instance,
+                                  uint32_t triangle)
+{
+    return clutter->triangles > 0 &&
+           clutter->scene_chart_triangle[clutter->scene_triangle_0[instance] + triangle] !=
+               CHART_NONE;
+}
+
 // ---- clutter_find.c
 
 // Writes whether each triangle of the scene, instance after instance, is clutter. Returns their
