@@ -237,8 +237,10 @@ TEST(the_next_frame_is_that_of_a_new_renderer)
     struct ag_technique_info info;
     for (int t = 0; ag_technique_get(t, &info); t++) {
         if (!info.moving_geometry || info.needs_bake) continue;
-        struct renderer_fixture s = fixture_open(info.name, NULL);
-        check_changes(&s, info.name, info.name, NULL, (struct cube){ .size = 1.8f });
+        // Rays that accumulate differ by their noise.
+        const char *gi = strcmp(info.name, "vct") == 0 ? "vct:temporal=false" : info.name;
+        struct renderer_fixture s = fixture_open(gi, NULL);
+        check_changes(&s, info.name, gi, NULL, (struct cube){ .size = 1.8f });
         fixture_close(&s);
     }
 }

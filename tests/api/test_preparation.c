@@ -146,7 +146,7 @@ TEST(a_context_with_another_allocator_is_refused)
 // The image is that without a preparation.
 TEST(a_prepared_switch_gives_the_same_picture)
 {
-    static const char gi[] = "vct:resolution=32+vo";
+    static const char gi[] = "vct:resolution=32,temporal=false+vo";
     struct renderer_fixture s = fixture_open_lit("none"), other = fixture_open_lit("none");
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     assert_int_equal(ag_renderer_render(other.renderer, &other.frame), AG_OK);

@@ -206,13 +206,13 @@ TEST(after_other_changes_the_next_frame_equals_a_new_renderers)
 
 TEST(a_technique_beside_another_keeps_its_light)
 {
-    struct renderer_fixture s = fixture_open_lit("vct");
+    struct renderer_fixture s = fixture_open_lit("vct:temporal=false");
     const struct bakes no_bakes = { .count = 0 };
     render(&s, 6);
     struct ag_device_counters before, after;
     ag_device_get_counters(s.device, &before);
     struct ag_image *expected = fixture_read(&s, "irradiance");
-    set_gi(&s, "vct+hbao", &no_bakes);
+    set_gi(&s, "vct:temporal=false+hbao", &no_bakes);
     render(&s, 1);
     ag_device_get_counters(s.device, &after);
     struct ag_image *got = fixture_read(&s, "irradiance");

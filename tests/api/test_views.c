@@ -144,11 +144,11 @@ TEST(each_view_equals_that_of_a_renderer_alone_to_the_bit)
 // up for pixels.
 static bool is_of_view(const char *pass)
 {
-    static const char *const of_views[] = { "gbuffer",      "direct",       "exposure",
-                                            "composite",    "ambient.fill", "ort.replace",
-                                            "vct.edges",    "vct.cones",    "vct.gather",
-                                            "vct.blur",     "vctao.edges",  "vctao.cones",
-                                            "vctao.gather", "vctao.blur" };
+    static const char *const of_views[] = {
+        "gbuffer",     "direct",      "exposure",     "composite", "ambient.fill", "ort.replace",
+        "vct.edges",   "vct.cones",   "vct.gather",   "vct.blur",  "vct.temporal", "vct.denoise",
+        "vctao.edges", "vctao.cones", "vctao.gather", "vctao.blur"
+    };
     const char *dot = strchr(pass, '.');
     for (size_t i = 0; i < sizeof of_views / sizeof *of_views; i++)
         if (strcmp(pass, of_views[i]) == 0) return true;
