@@ -297,6 +297,15 @@ static void note_black_image(struct job *job)
     ag_image_destroy(job->session.context, color);
 }
 
+// One frame of a history.
+static void note_noise(const struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    if (a->frames == 1 && a->frame_samples == 1 &&
+        strstr(ag_renderer_gi(job->renderer), "temporal=true"))
+        note("the image has noise: %s accumulates over frames; try --frames 16", a->gi);
+}
+
 static enum status report(struct job *job, const char *path)
 {
     const struct arguments *a = job->arguments;
@@ -311,6 +320,7 @@ static enum status report(struct job *job, const char *path)
     }
     if (a->verbose) describe_passes(job);
     if (!a->quiet) note_black_image(job);
+    note_noise(job);
     if (status == DONE && a->json) status = json_print(result_json(job, path));
     return status;
 }

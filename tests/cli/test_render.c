@@ -98,6 +98,20 @@ TEST(visibility_alone_stands_on_ambient_and_says_so)
     CHECK(!files_are_equal(alone, both));
 }
 
+TEST(one_frame_of_a_history_is_said_to_have_noise)
+{
+    require_device();
+    const char *words = "render @cornell:light=point --size 48x32 -o";
+    char path[300];
+    snprintf(path, sizeof path, "%s", test_path("noise.png"));
+    const struct run *r = run_expect(0, words, path, "--gi", "vct:resolution=16", NULL);
+    CHECK(strstr(r->err, "vct:resolution=16 accumulates over frames; try --frames 16"));
+    r = run_expect(0, words, path, "--gi", "vct:resolution=16", "--frames", "2", NULL);
+    CHECK_STRING(r->err, "");
+    r = run_expect(0, words, path, "--gi", "vct:resolution=16,temporal=false", NULL);
+    CHECK_STRING(r->err, "");
+}
+
 TEST(direct_and_indirect_light_add_up_to_colour)
 {
     require_device();
