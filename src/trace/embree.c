@@ -163,23 +163,35 @@ bool embree_closest(const struct embree *embree, const struct ray *ray, const vo
     return true;
 }
 
-bool embree_occluded(const struct embree *embree, const struct ray *ray)
+// on_hit: called for each hit, or NULL.
+static bool occluded(const struct embree *embree, const struct ray *ray, struct query *query,
+                     RTCFilterFunctionN on_hit)
 {
     if (embree->log) log_ray(embree->log, ray, true);
-    struct query query;
-    query.view = NULL;
+    query->view = NULL;
     struct RTCRay r = rtc_ray(ray);
 #if AG_EMBREE == 4
-    rtcInitRayQueryContext(&query.context);
+    rtcInitRayQueryContext(&query->context);
     struct RTCOccludedArguments arguments;
     rtcInitOccludedArguments(&arguments);
-    arguments.context = &query.context;
+    arguments.context = &query->context;
+    if (on_hit) {
+        arguments.filter = on_hit;
+        arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+    }
     rtcOccluded1(embree->scene, &r, &arguments);
 #else
-    rtcInitIntersectContext(&query.context);
-    rtcOccluded1(embree->scene, &query.context, &r);
+    rtcInitIntersectContext(&query->context);
+    query->context.filter = on_hit;
+    rtcOccluded1(embree->scene, &query->context, &r);
 #endif
     return r.tfar < 0.0f; // −∞ when occluded
+}
+
+bool embree_occluded(const struct embree *embree, const struct ray *ray)
+{
+    struct query query;
+    return occluded(embree, ray, &query, NULL);
 }
 
 // Hands the hit over and rejects it, so that the ray goes on.
@@ -197,25 +209,10 @@ static void hand_over(const struct RTCFilterFunctionNArguments *arguments)
 void embree_all_hits(const struct embree *embree, const struct ray *ray, embree_hit *each,
                      void *user)
 {
-    if (embree->log) log_ray(embree->log, ray, true);
     struct query query;
-    query.view = NULL;
     query.each = each;
     query.user = user;
-    struct RTCRay r = rtc_ray(ray);
-#if AG_EMBREE == 4
-    rtcInitRayQueryContext(&query.context);
-    struct RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    arguments.context = &query.context;
-    arguments.filter = hand_over;
-    arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
-    rtcOccluded1(embree->scene, &r, &arguments);
-#else
-    rtcInitIntersectContext(&query.context);
-    query.context.filter = hand_over;
-    rtcOccluded1(embree->scene, &query.context, &r);
-#endif
+    occluded(embree, ray, &query, hand_over);
 }
 
 // ---- the floating-point unit
