@@ -1,6 +1,6 @@
 // Parses the command line, and prints it again.
 #include "arguments.h"
-#include "option_table.h"
+#include "cli/options/option_table.h"
 #include "shell/words.h"
 
 #include <afterglow/catalogue.h>

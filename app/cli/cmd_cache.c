@@ -1,6 +1,6 @@
 // afterglow cache: lists and removes cached references and bakes.
 #include "cli/cache/cache.h"
-#include "cache_content.h"
+#include "cli/cache/cache_content.h"
 #include "commands.h"
 #include "cli/files/json.h"
 #include "session.h"

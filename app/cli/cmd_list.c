@@ -1,7 +1,7 @@
 // afterglow list: techniques with their options and debug views, built-in scenes, devices.
 #include "commands.h"
 #include "cli/files/json.h"
-#include "option_text.h"
+#include "cli/options/option_text.h"
 #include "session.h"
 #include "cli/terminal/wrapped.h"
 

@@ -1,6 +1,6 @@
 #include "help.h"
 #include "commands.h"
-#include "option_table.h"
+#include "cli/options/option_table.h"
 #include "cli/terminal/wrapped.h"
 
 #include <stdio.h>

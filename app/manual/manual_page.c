@@ -2,8 +2,8 @@
 #include "manual_page.h"
 
 #include "cli/commands.h"
-#include "cli/option_table.h"
-#include "cli/option_text.h"
+#include "cli/options/option_table.h"
+#include "cli/options/option_text.h"
 
 #include <afterglow/afterglow.h>
 

@@ -18,7 +18,7 @@ awk '
     /^AG_API / && comment !~ /Thread: / { print FILENAME ":" FNR ": the comment has no \"Thread: ...\" (types.h)"; bad = 1 }
     { comment = /^\/\/\// ? comment $0 : "" }
     END { exit bad }' include/afterglow/*.h || bad=1
-for option in $(grep -o '^OPTION("[^"]*"' app/cli/options.def | cut -d'"' -f2 | grep -v -e --help); do
+for option in $(grep -o '^OPTION("[^"]*"' app/cli/options/options.def | cut -d'"' -f2 | grep -v -e --help); do
     grep -q -e "\`$option[\` ]" docs/cli.md || { echo "$option is not on docs/cli.md"; bad=1; }
 done
 exit $bad

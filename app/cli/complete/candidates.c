@@ -1,5 +1,5 @@
 #include "candidates.h"
-#include "cli/option_text.h"
+#include "cli/options/option_text.h"
 
 #include <afterglow/afterglow.h>
 

@@ -1,7 +1,7 @@
 #include "complete.h"
 #include "candidates.h"
 #include "cli/commands.h"
-#include "cli/option_table.h"
+#include "cli/options/option_table.h"
 
 #include <afterglow/afterglow.h>
 

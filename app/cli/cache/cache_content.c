@@ -1,7 +1,7 @@
 // References state their scene and view in attributes (tracing.c), bakes in the metadata of their
 // safetensors header (docs/cli.md).
 #include "cache_content.h"
-#include "option_text.h"
+#include "cli/options/option_text.h"
 
 #include <afterglow/image.h>
 

@@ -1,6 +1,6 @@
 // Setters of the options, and the table of options.def.
 #include "option_table.h"
-#include "values.h"
+#include "cli/values.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // The options of all commands, as options.def lists them.
 #pragma once
 
-#include "arguments.h"
+#include "cli/arguments.h"
 
 enum { MAX_OPTIONS = 128 };
 

@@ -1,7 +1,7 @@
 // Scene, technique and options of a cached file, from its own header.
 #pragma once
 
-#include "cli/cache/cache.h"
+#include "cache.h"
 
 #include <afterglow/context.h>
 
