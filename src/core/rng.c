@@ -95,3 +95,9 @@ vec2s sobol_2d(uint32_t i, uint32_t seed)
     }
     return (vec2s){ { rng_unit(x), rng_unit(y) } };
 }
+
+vec2s sobol_2d_padded(uint32_t i, uint32_t seed)
+{
+    static const uint32_t POINTS = UINT32_C(1) << 20; // fewer digits of the second dimension
+    return sobol_2d(owen_scramble(i, pcg_hash(seed + 1u)) % POINTS, seed);
+}

@@ -22,6 +22,9 @@ uint32_t pcg_hash(uint32_t word);
 vec2s r2_sequence(uint32_t i);
 // Point i of the two-dimensional Sobol sequence, Owen-scrambled by `seed` (0: plain), in [0, 1)².
 vec2s sobol_2d(uint32_t i, uint32_t seed);
+// The same with `i` permuted by `seed`, so that pairs of dimensions with seeds of their own are
+// independent (Burley 2020, sec. 3); i: below 2²⁰. Any aligned 2ᵏ points remain a net.
+vec2s sobol_2d_padded(uint32_t i, uint32_t seed);
 
 // ---- inline, for the path tracer
 

@@ -5,6 +5,9 @@
 #include "core/rng.h"
 #include "trace/next_event.h"
 
+// Reflections of the sun in narrower lobes than texels resolve would be single bright texels.
+static const float MIN_PUNCTUAL_ROUGHNESS = 0.4f;
+
 bool gather_scene_init(struct gather_scene *s, struct host *host, const struct scene_pose *pose,
                        const struct charts *charts)
 {
@@ -62,6 +65,8 @@ vec3s gather_paths(const struct gather_scene *s, const struct gather_points *poi
         .bounces = -1,
         .direct = true,
         .indirect = true,
+        .stratified = true,
+        .min_punctual_roughness = MIN_PUNCTUAL_ROUGHNESS,
         .seed = (uint32_t)(rng_mix(seed + points->back) >> 32),
     };
     struct path_start starts[GATHER_POINTS];

@@ -131,16 +131,23 @@ static void add_arriving(struct path *p, const struct arriving_light *g)
     }
 }
 
-// Random dimensions per vertex. Samples are independent, so that their variance gives the standard
-// error of the mean; Owen-scrambled Sobol points have a tenth less error but no such estimate.
+// Random dimensions per vertex. Samples of an image are independent, so that their variance gives
+// the standard error of the mean. Sobol points at the primary hit have less variance, a tenth less
+// error in an image and two fifths less variance in a light map; at later vertices they gain
+// nothing.
 enum dimension { DIM_CHOICES, DIM_LIGHT, DIM_STEP, DIM_LATER, DIM_COUNT };
 
 // Increment of SplitMix64; the sample's key is its initial state.
 static const uint64_t SPLITMIX_INCREMENT = UINT64_C(0x9e3779b97f4a7c15);
 
+static uint64_t pixel_key(const struct path_settings *settings, uint32_t pixel)
+{
+    return rng_mix((uint64_t)settings->seed << 32 | pixel);
+}
+
 static uint64_t key_of(const struct path_settings *settings, uint32_t pixel, uint32_t sample)
 {
-    return rng_mix(rng_mix((uint64_t)settings->seed << 32 | pixel) + sample);
+    return rng_mix(pixel_key(settings, pixel) + sample);
 }
 
 vec2s path_subpixel(const struct path_settings *settings, uint32_t pixel, uint32_t sample)
@@ -148,17 +155,24 @@ vec2s path_subpixel(const struct path_settings *settings, uint32_t pixel, uint32
     return rng_pair(rng_mix(key_of(settings, pixel, sample)));
 }
 
+static vec2s numbered_pair(const struct path *p, uint64_t number)
+{
+    if (!p->settings->stratified || p->depth > 0)
+        return rng_pair(rng_mix(p->key + number * SPLITMIX_INCREMENT));
+    const struct path_sample *sample = p->sample;
+    const uint64_t key = pixel_key(p->settings, sample->pixel) + number * SPLITMIX_INCREMENT;
+    return sobol_2d_padded(sample->sample, (uint32_t)rng_mix(key) | 1u);
+}
+
 static vec2s random_pair(const struct path *p, enum dimension dimension)
 {
-    uint64_t number = (uint64_t)(DIM_COUNT * p->depth + (int)dimension) + 1;
-    return rng_pair(rng_mix(p->key + number * SPLITMIX_INCREMENT));
+    return numbered_pair(p, (uint64_t)(DIM_COUNT * p->depth + (int)dimension) + 1);
 }
 
 // A dimension beside the others, whose numbers do not depend on whether there is a map.
 static vec2s random_direction_pair(const struct path *p)
 {
-    const uint64_t number = (UINT64_C(1) << 32) + (uint64_t)p->depth;
-    return rng_pair(rng_mix(p->key + number * SPLITMIX_INCREMENT));
+    return numbered_pair(p, (UINT64_C(1) << 32) + (uint64_t)p->depth);
 }
 
 // Light found at the end of the recorded step.
@@ -173,16 +187,29 @@ static void record_next_event(struct path *p, vec3s light)
     if (p->depth > 0) record_light(p, light);
 }
 
+// At a later hit.
+static void sample_punctual(struct path *p)
+{
+    const struct path_settings *settings = p->settings;
+    const struct bsdf *bsdf = &p->bsdf.bsdf;
+    struct bsdf wide;
+    if (p->surface.material.roughness < settings->min_punctual_roughness) {
+        struct surface rough = p->surface;
+        rough.material.roughness = settings->min_punctual_roughness;
+        wide = surface_bsdf(&rough, bsdf->to_viewer, settings->diffuse_only);
+        bsdf = &wide;
+    }
+    const vec3s light = next_event_one_punctual(settings->scene, &p->surface, bsdf,
+                                                random_pair(p, DIM_LATER).x, p->rays);
+    record_next_event(p, light);
+    add_reflected(p, light);
+}
+
 static void sample_lights(struct path *p, float choice)
 {
     const struct trace_scene *scene = p->settings->scene;
     if (p->depth == 0 && !p->settings->direct) return;
-    if (p->depth > 0 && scene->lights.punctual_count > 0) {
-        vec3s light = next_event_one_punctual(scene, &p->surface, &p->bsdf.bsdf,
-                                              random_pair(p, DIM_LATER).x, p->rays);
-        record_next_event(p, light);
-        add_reflected(p, light);
-    }
+    if (p->depth > 0 && scene->lights.punctual_count > 0) sample_punctual(p);
     if (environment_table_has_light(&scene->lights.environment_table)) {
         struct arriving_light g =
             next_event_environment(scene, &p->surface, &p->bsdf, random_direction_pair(p), p->rays);

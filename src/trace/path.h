@@ -10,6 +10,12 @@ struct path_settings {
     const struct guide *guide; // NULL: no guided rays
     int bounces;               // -1: unlimited, ended by Russian roulette
     bool direct, indirect, diffuse_only;
+    // Samples of a pixel, from 0, share points of a Sobol sequence at the primary hit. Less
+    // variance, but the samples are not independent: their variance gives no standard error.
+    bool stratified;
+    // Least roughness of lobes that reflect punctual lights at later hits, which sampled directions
+    // never meet (path regularisation, Kaplanyan & Dachsbacher 2013). 0: none, without bias.
+    float min_punctual_roughness;
     uint32_t seed;
 };
 

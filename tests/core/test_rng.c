@@ -225,6 +225,28 @@ TEST(sobol_has_one_point_in_each_elementary_interval_for_any_seed)
     }
 }
 
+TEST(padded_sobol_is_a_net_whose_pairs_are_independent)
+{
+    enum { BLOCK = 64, STRATA = 4 };
+    int joint[STRATA][STRATA] = { { 0 } };
+    for (uint32_t seed = 1; seed <= 512; seed++) {
+        int counts[BLOCK] = { 0 };
+        for (uint32_t i = BLOCK; i < 2 * BLOCK; i++) {
+            const vec2s p = sobol_2d_padded(i, seed), q = sobol_2d_padded(i, seed + 1000);
+            counts[(int)(p.y * 8.0f) * 8 + (int)(p.x * 8.0f)]++;
+            joint[(int)(p.x * (float)STRATA)][(int)(q.x * (float)STRATA)]++;
+        }
+        for (int i = 0; i < BLOCK; i++) assert_int_equal(counts[i], 1);
+    }
+    // Plain points of one index would share their stratum, or never do, for each pair of seeds.
+    int diagonal = 0;
+    for (uint32_t i = 0; i < BLOCK; i++)
+        diagonal += (int)(sobol_2d_padded(i, 5).x * 8.0f) == (int)(sobol_2d_padded(i, 6).x * 8.0f);
+    CHECK(diagonal > 0 && diagonal < BLOCK / 2);
+    for (int i = 0; i < STRATA * STRATA; i++)
+        CHECK_RELATIVE(joint[i / STRATA][i % STRATA], 512.0 * BLOCK / (STRATA * STRATA), 0.1);
+}
+
 TEST(scrambling_makes_each_point_uniform_over_seeds)
 {
     enum { CELLS = 16, SEEDS = 65536 };
