@@ -65,6 +65,7 @@ struct arguments {
     float sky[3];
     // reference
     int spp, bounces;
+    double spp_noise; // of --spp auto:noise=PERCENT, 0…1; 0: none
     bool has_spp, direct_only, indirect_only, no_guiding, antialias, resume;
     float obscurance_radius_m, occlusion_decay_per_m;
     bool obscurance_sphere;

@@ -29,6 +29,12 @@ struct ag_bake_desc {
     /// For dnrt: all instances of the scene are objects, as those of an asset that scenes will have
     /// as movable ones; default false: those that are dynamic.
     bool all_objects;
+    /// With lightmap_samples of at least 32: gather each chart until its noise is at most this,
+    /// 0…1, and at most lightmap_samples paths of a texel. The noise is the root of the mean
+    /// variance of the chart's texels over their mean light, both of luminance and without direct
+    /// light of punctual lights; light below 1 % of the map's mean counts as that. Default 0: all
+    /// texels have lightmap_samples paths
+    float lightmap_noise;
     uint64_t reserved[7]; ///< 0; see ABI in types.h
 };
 /// Thread: any.
@@ -161,7 +167,8 @@ struct ag_bake_origin {
     /// Paths per texel of a light map; 0: it is not one. Its merge needs the light of the parts.
     int lightmap_samples;
     float scene_scale;    ///< ag_scene_load_desc.scale
-    uint64_t reserved[3]; ///< 0; see ABI in types.h
+    float lightmap_noise; ///< ag_bake_desc.lightmap_noise
+    uint64_t reserved[2]; ///< 0; see ABI in types.h
 };
 /// The bake that such a file is a part of, for ag_bake_create. Thread: the context's.
 AG_API enum ag_result ag_bake_partial_origin(struct ag_context *context, const char *path,

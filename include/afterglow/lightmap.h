@@ -52,7 +52,11 @@ struct ag_lightmap_info {
     bool has_back;        ///< there is a second map, of the backs of double-sided materials
     int charts, texels;   ///< texels: on surfaces, of one side
     float texels_per_m;   ///< density
-    uint64_t reserved[4]; ///< 0; see ABI in types.h
+    float paths;          ///< of a texel, in the mean; 0: not by paths
+    float noise;          ///< of the noisiest chart (ag_bake_desc.lightmap_noise); NaN: not known
+    int noisy_charts;     ///< whose noise is above the bound, with the most paths. Small charts of
+                          ///< an instance count together, here and for `noise`
+    uint64_t reserved[2]; ///< 0; see ABI in types.h
 };
 /// Thread: the context's.
 AG_API enum ag_result ag_lightmap_get_info(const struct ag_lightmap *lightmap,

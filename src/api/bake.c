@@ -15,6 +15,10 @@ static const double CHECKPOINT_EVERY_S = 30.0;
 enum { TECHNIQUE_NAME = 32, MOST_SAMPLES = 1000000 };
 // Versions of the charts, in that of a light map.
 enum { LIGHTMAP_VERSIONS = 10000 };
+// At the end of its options.
+#define NOISE   ",noise="
+#define SAMPLES ",samples="
+enum { NOISE_UNITS = 1000000 };
 
 const char *api_program(void)
 {
@@ -107,13 +111,22 @@ static struct bake_run_options run_options(const struct ag_bake_desc *desc)
                                       .max_memory_bytes = desc->max_memory_bytes };
 }
 
+static char *lightmap_options(const struct ag_bake *b, const char *options)
+{
+    struct host *host = &b->context->host;
+    if (!(b->lightmap_noise > 0.0f))
+        return host_sprintf(host, "%s" SAMPLES "%d", options, b->lightmap_samples);
+    return host_sprintf(host, "%s" NOISE "%ld" SAMPLES "%d", options,
+                        lround((double)b->lightmap_noise * NOISE_UNITS), b->lightmap_samples);
+}
+
 // The light map's texels are the technique's; a path needs none of its other data.
 static struct bake *create_lightmap(struct ag_bake *b, struct bake_identity identity)
 {
     struct host *host = &b->context->host;
     const struct technique *technique = b->spec.technique[b->term];
     char *options = gi_bake_options(host, technique, b->spec.options[b->term]);
-    char *text = options ? host_sprintf(host, "%s,samples=%d", options, b->lightmap_samples) : NULL;
+    char *text = options ? lightmap_options(b, options) : NULL;
     identity.technique = LIGHTMAP_NAME;
     identity.version = LIGHTMAP_VERSION * LIGHTMAP_VERSIONS + technique->bake_version;
     identity.options = text;
@@ -121,6 +134,7 @@ static struct bake *create_lightmap(struct ag_bake *b, struct bake_identity iden
     struct bake *bake = text ? bake_create(host, &identity) : NULL;
     const struct lightmap_bake how = { .pose = &b->pose,
                                        .samples = b->lightmap_samples,
+                                       .noise = b->lightmap_noise,
                                        .charts = technique->charts,
                                        .options = b->spec.options[b->term] };
     host_free(host, options);
@@ -135,6 +149,8 @@ static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *
     struct host *host = &b->context->host;
     if (!gi_spec_parse(&b->spec, host, gi) || !find_term(b, gi, desc->technique)) return false;
     b->lightmap_samples = desc->lightmap_samples;
+    b->lightmap_noise =
+        (float)(round((double)desc->lightmap_noise * NOISE_UNITS) / NOISE_UNITS); // as in its key
     if (b->lightmap_samples > 0 &&
         !technique_has_light_map(b->spec.technique[b->term], b->spec.options[b->term]))
         return host_fail(host, FAIL_ARGUMENT, "cannot bake %s: it has no light map", gi);
@@ -177,6 +193,13 @@ static enum ag_result desc_check(const char *function, const struct ag_scene *sc
     AG_REQUIRE_FOR(function, context,
                    desc->lightmap_samples >= 0 && desc->lightmap_samples <= MOST_SAMPLES,
                    "lightmap_samples %d is not 0 to %d", desc->lightmap_samples, MOST_SAMPLES);
+    AG_REQUIRE_FOR(function, context, desc->lightmap_noise >= 0.0f && desc->lightmap_noise < 1.0f,
+                   "lightmap_noise %g is not 0 to 1", (double)desc->lightmap_noise);
+    AG_REQUIRE_FOR(function, context,
+                   desc->lightmap_noise == 0.0f || desc->lightmap_samples >= LIGHTMAP_LEAST_PATHS,
+                   "lightmap_noise requires lightmap_samples of at least %d, the most paths of a "
+                   "texel",
+                   LIGHTMAP_LEAST_PATHS);
     AG_REQUIRE_FOR(function, context, desc->checkpoint_every_s >= 0.0,
                    "checkpoint_every_s is negative");
     AG_REQUIRE_FOR(function, context, api_animation_exists(scene, desc->animation),
@@ -397,14 +420,28 @@ enum ag_result ag_bake_merge(struct ag_bake *b, const char *path)
     return api_done(context, bake_merge(b->bake, path));
 }
 
-// The number of samples in the options of a light map; 0: not stated.
+// The value behind the last `key` in the options of a light map; NULL: none.
+static const char *value_of(const char *options, const char *key)
+{
+    const char *last = NULL;
+    for (const char *at = options; (at = strstr(at, key)); at++) last = at;
+    return last ? last + strlen(key) : NULL;
+}
+
+// 0: not stated.
 static int samples_of(const char *options)
 {
-    static const char KEY[] = ",samples=";
-    const char *last = NULL;
-    for (const char *at = options; (at = strstr(at, KEY)); at++) last = at;
-    const long samples = last ? strtol(last + sizeof KEY - 1, NULL, 10) : 0;
+    const char *value = value_of(options, SAMPLES);
+    const long samples = value ? strtol(value, NULL, 10) : 0;
     return samples >= 1 && samples <= MOST_SAMPLES ? (int)samples : 0;
+}
+
+// 0: not stated.
+static float noise_of(const char *options)
+{
+    const char *value = value_of(options, NOISE);
+    const long units = value ? strtol(value, NULL, 10) : 0;
+    return units > 0 && units < NOISE_UNITS ? (float)((double)units / NOISE_UNITS) : 0.0f;
 }
 
 static bool take_origin(struct host *host, const char *path, const struct bake_origin *origin,
@@ -412,6 +449,7 @@ static bool take_origin(struct host *host, const char *path, const struct bake_o
 {
     const bool lightmap = strcmp(origin->technique, LIGHTMAP_NAME) == 0;
     if (lightmap) out->lightmap_samples = samples_of(origin->options);
+    if (lightmap) out->lightmap_noise = noise_of(origin->options);
     if (lightmap && out->lightmap_samples == 0)
         return host_fail(host, FAIL_FORMAT, "cannot use %s: it does not state its samples", path);
     if (strlen(origin->gi) >= sizeof out->gi ||

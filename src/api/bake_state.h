@@ -12,6 +12,7 @@ struct ag_bake {
     struct gi_spec spec;
     int term;             // of the spec
     int lightmap_samples; // 0: the data of the technique
+    float lightmap_noise; // bound; 0: none
     struct scene_pose pose;
     struct technique_bake how; // refers to spec and pose
     struct bake *bake;

@@ -6,6 +6,7 @@
 #include "lightmap/write.h"
 #include "scene/statics.h"
 
+#include <math.h>
 #include <string.h>
 
 struct ag_lightmap {
@@ -13,6 +14,7 @@ struct ag_lightmap {
     struct ag_scene *scene;
     struct lightmap map;
     struct lightmap_facts facts;
+    struct lightmap_noise noise;
     bool no_light;
     char *gi;
 };
@@ -67,6 +69,7 @@ static enum ag_result begin(const char *function, struct ag_scene *scene,
     if (!l) return api_done(context, false);
     l->context = context;
     l->scene = scene;
+    l->noise.largest = NAN;
     l->facts.punctual = !desc->indirect_only;
     l->no_light = desc->no_light;
     api_scene_use(scene, &scene->bakes);
@@ -103,7 +106,9 @@ enum ag_result ag_lightmap_from_bake(const struct ag_bake *bake,
     l->facts.samples = bake->lightmap_samples;
     bool ok = make_map(l, &bake->spec, bake->term, &bake->pose);
     if (!desc->no_light)
-        ok = ok && lightmap_set_paths(&l->map, bake_tensors(bake->bake), !desc->indirect_only);
+        ok = ok && lightmap_set_paths(&l->map, bake_tensors(bake->bake), !desc->indirect_only) &&
+             lightmap_noise_read(&l->map, bake_tensors(bake->bake), bake->lightmap_samples,
+                                 bake->lightmap_noise, &l->noise);
     return done(l, desc, ok, out);
 }
 
@@ -203,7 +208,10 @@ enum ag_result ag_lightmap_get_info(const struct ag_lightmap *l, struct ag_light
                                       .has_back = l->map.has_back,
                                       .charts = (int)charts->count,
                                       .texels = (int)charts->texel_count,
-                                      .texels_per_m = charts->texels_per_m };
+                                      .texels_per_m = charts->texels_per_m,
+                                      .paths = l->noise.paths,
+                                      .noise = l->noise.largest,
+                                      .noisy_charts = l->noise.above };
     return AG_OK;
 }
 

@@ -47,20 +47,18 @@ vec3s gather_punctual(const struct gather_scene *s, const struct gather_points *
     return glms_vec3_scale(sum, GLM_PIf / (float)points->count);
 }
 
-static void add_batch(const struct path_settings *settings, struct path_sample *samples, int count,
-                      double sum[3])
-{
-    uint64_t rays = 0;
-    path_trace(settings, samples, count, &rays);
-    for (int i = 0; i < count; i++)
-        for (int c = 0; c < 3; c++)
-            sum[c] += (double)samples[i].light.irradiance_emitters_sky.raw[c];
-}
+// The paths of a texel, or of a group of them.
+struct paths {
+    struct path_settings settings;
+    struct path_start starts[GATHER_POINTS];
+    int start_count;
+    uint32_t pixel; // of random numbers
+};
 
-vec3s gather_paths(const struct gather_scene *s, const struct gather_points *points, int samples,
-                   uint64_t seed)
+static void init_paths(struct paths *paths, const struct gather_scene *s,
+                       const struct gather_points *points, uint64_t seed)
 {
-    const struct path_settings settings = {
+    paths->settings = (struct path_settings){
         .scene = s->trace,
         .bounces = -1,
         .direct = true,
@@ -69,19 +67,58 @@ vec3s gather_paths(const struct gather_scene *s, const struct gather_points *poi
         .min_punctual_roughness = MIN_PUNCTUAL_ROUGHNESS,
         .seed = (uint32_t)(rng_mix(seed + points->back) >> 32),
     };
-    struct path_start starts[GATHER_POINTS];
+    paths->pixel = points->pixel;
+    paths->start_count = points->count;
+    for (int k = 0; k < points->count; k++)
+        paths->starts[k] = start_at(s, &points->at[k], points->back);
+}
+
+// Adds the irradiance of paths `first` to `end` − 1.
+static void add_paths(const struct paths *paths, uint32_t first, uint32_t end, double sum[3])
+{
     struct path_sample batch[PATH_BATCH];
+    uint64_t rays = 0;
+    while (first < end) {
+        int count = 0;
+        for (; count < PATH_BATCH && first < end; count++, first++)
+            batch[count] =
+                (struct path_sample){ .start = &paths->starts[first % (uint32_t)paths->start_count],
+                                      .pixel = paths->pixel,
+                                      .sample = first };
+        path_trace(&paths->settings, batch, count, &rays);
+        for (int i = 0; i < count; i++)
+            for (int c = 0; c < 3; c++)
+                sum[c] += (double)batch[i].light.irradiance_emitters_sky.raw[c];
+    }
+}
+
+vec3s gather_paths(const struct gather_scene *s, const struct gather_points *points, int samples,
+                   uint64_t seed)
+{
+    struct paths paths;
     double sum[3] = { 0.0, 0.0, 0.0 };
     if (points->count == 0 || samples < 1) return vec3_of(0, 0, 0);
-    for (int k = 0; k < points->count; k++) starts[k] = start_at(s, &points->at[k], points->back);
-    for (int done = 0; done < samples;) {
-        int count = 0;
-        for (; count < PATH_BATCH && done < samples; count++, done++)
-            batch[count] = (struct path_sample){ .start = &starts[done % points->count],
-                                                 .pixel = points->pixel,
-                                                 .sample = (uint32_t)done };
-        add_batch(&settings, batch, count, sum);
-    }
+    init_paths(&paths, s, points, seed);
+    add_paths(&paths, 0, (uint32_t)samples, sum);
     for (int c = 0; c < 3; c++) sum[c] /= (double)samples;
     return vec3_of((float)sum[0], (float)sum[1], (float)sum[2]);
+}
+
+// Texels of an atlas are fewer than 2²⁸ (CHART_MAX_SIDE), so that groups have pixels of their own.
+void gather_grouped_paths(const struct gather_scene *s, const struct gather_points *points,
+                          uint32_t before, uint32_t after, uint64_t seed, struct noise_sums *sums)
+{
+    struct paths paths;
+    double all[3] = { 0.0, 0.0, 0.0 };
+    if (points->count == 0 || after <= before) return;
+    init_paths(&paths, s, points, seed);
+    for (uint32_t g = 0; g < NOISE_GROUPS; g++) {
+        double sum[3] = { 0.0, 0.0, 0.0 };
+        paths.pixel = points->pixel | g << 28;
+        add_paths(&paths, before / NOISE_GROUPS, after / NOISE_GROUPS, sum);
+        sums->group[g] += luminance(vec3_of((float)sum[0], (float)sum[1], (float)sum[2]));
+        for (int c = 0; c < 3; c++) all[c] += sum[c];
+    }
+    for (int c = 0; c < 3; c++) sums->light[c] += (float)all[c];
+    sums->paths = (float)after;
 }

@@ -2,7 +2,7 @@
 // texel's square that the surface covers; points inside geometry are left out.
 #pragma once
 
-#include "scene/charts/charts.h"
+#include "lightmap/noise.h"
 #include "trace/path.h"
 
 // gather_scene_finish accepts zero. pose and charts outlive it.
@@ -46,3 +46,6 @@ vec3s gather_punctual(const struct gather_scene *scene, const struct gather_poin
 // Irradiance by emissive surfaces, the sky and all bounces: the mean of `samples` paths.
 vec3s gather_paths(const struct gather_scene *scene, const struct gather_points *points,
                    int samples, uint64_t seed);
+// Adds paths `before` to `after` − 1 of the texel, in groups: multiples of NOISE_GROUPS.
+void gather_grouped_paths(const struct gather_scene *scene, const struct gather_points *points,
+                          uint32_t before, uint32_t after, uint64_t seed, struct noise_sums *sums);

@@ -11,10 +11,15 @@
 
 #define LIGHTMAP_PUNCTUAL "texels/punctual" // F32 [texels of both sides][3], lux
 #define LIGHTMAP_REST     "texels/rest" // F32 [texels of both sides][4], lux; share of open points
+// With a bound of noise: F32 [units of texels][3], noise, paths of a texel, texels (noise.h).
+#define LIGHTMAP_NOISE "charts/noise"
 
+enum { LIGHTMAP_LEAST_PATHS = 32 };
 struct lightmap_bake {
     const struct scene_pose *pose; // outlives the bake
-    int samples;                   // paths of a texel
+    int samples;                   // paths of a texel; with a bound of noise the most
+    // With a bound at least LIGHTMAP_LEAST_PATHS samples.
+    float noise; // bound of each chart's noise, 0…1; 0: none
     // The charts of static surfaces: the same for each call.
     bool (*charts)(const struct scene_pose *statics, const void *options, struct host *host,
                    struct charts *out);
@@ -44,6 +49,15 @@ bool lightmap_positions(const struct lightmap *map, enum lightmap_side side, str
 
 // punctual: with direct light of punctual lights. FAIL_FORMAT: the tensors are not of these charts.
 bool lightmap_set_paths(struct lightmap *map, const struct tensors *bake, bool punctual);
+// Noise of a map by paths.
+struct lightmap_noise {
+    float paths;   // of a texel, in the mean
+    float largest; // of all units of texels (noise.h); NaN: not estimated
+    int above;     // units above the bound
+};
+// samples, bound: of the bake.
+bool lightmap_noise_read(const struct lightmap *map, const struct tensors *bake, int samples,
+                         float bound, struct lightmap_noise *out);
 // Light of a technique, for each side and colour an image of irradiance along the surface's normal
 // and vector irradiance, times `scale`. punctual: direct light of punctual lights is added.
 struct lightmap_layers {

@@ -1,38 +1,36 @@
 // The bake of a light map by the path tracer: one stage, whose tasks are blocks of texels.
-#include "lightmap/lightmap.h"
+#include "lightmap/adaptive.h"
 
 #include "bake/scene_key.h"
-#include "lightmap/gather.h"
-#include "scene/statics.h"
 
 #include <string.h>
 
-struct job {
-    struct lightmap_bake how;
-    struct scene_statics statics;
-    struct charts charts;
-    struct gather_scene scene;
-};
-
 static bool prepare(void *argument, struct host *host)
 {
-    struct job *job = argument;
+    struct lightmap_job *job = argument;
     return scene_statics_init(&job->statics, host, job->how.pose) &&
-           job->how.charts(&job->statics.pose, job->how.options, host, &job->charts) &&
            gather_scene_init(&job->scene, host, &job->statics.pose, &job->charts);
 }
 
 static void finish(void *argument)
 {
-    struct job *job = argument;
+    struct lightmap_job *job = argument;
     gather_scene_finish(&job->scene);
-    charts_finish(&job->charts);
     scene_statics_finish(&job->statics);
 }
 
+static void destroy(void *argument)
+{
+    struct lightmap_job *job = argument;
+    noise_units_finish(&job->units, job->host);
+    charts_finish(&job->charts);
+}
+
+// ---- one number of paths for all texels
+
 static void gather(const struct bake_task *task, uint32_t texel, uint64_t row)
 {
-    const struct job *job = task->job;
+    const struct lightmap_job *job = task->job;
     struct gather_points points;
     gather_find_points(&job->scene, texel, &points);
     if (points.count == 0) return;
@@ -46,16 +44,7 @@ static void gather(const struct bake_task *task, uint32_t texel, uint64_t row)
 
 static bool run(const struct bake_task *task)
 {
-    const struct job *job = task->job;
-    uint64_t count, first = bake_task_rows(task, 0, &count);
-    const unsigned before = embree_flush_denormals();
-    bool ok = true;
-    for (uint64_t i = 0; ok && i < count && first + i < job->charts.side_texel_count; i++) {
-        ok = !bake_task_cancelled(task);
-        if (ok) gather(task, (uint32_t)(first + i), i);
-    }
-    embree_restore_denormals(before);
-    return ok;
+    return lightmap_run_rows(task, gather);
 }
 
 // ---- dependencies of the light
@@ -78,49 +67,42 @@ static struct hash128 key_of(const struct scene_pose *pose)
     return key;
 }
 
-// Some thousand paths, so that a task takes a fraction of a second.
-enum { PATHS_PER_TASK = 16384, RAYS_PER_PATH = 8 };
-
-static bool add_stage(struct bake_plan *plan, int samples, uint64_t rows)
+static bool add_stage(struct bake_plan *plan, int samples, uint64_t texels)
 {
-    const uint64_t texels = rows > 0 ? rows : 1; // an empty scene has one row, of zeros
-    const uint64_t tasks = (texels * (uint64_t)samples + PATHS_PER_TASK - 1) / PATHS_PER_TASK;
-    const struct bake_output out[] = {
-        { LIGHTMAP_PUNCTUAL, TENSOR_F32, 2, { texels, 3 }, BAKE_ROWS, BAKE_SAVED },
-        { LIGHTMAP_REST, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
-    };
-    const size_t count = (size_t)(tasks < texels ? tasks : texels);
-    return bake_plan_add(plan, &(struct bake_stage){ .name = "paths",
-                                                     .task_count = count,
-                                                     .run = run,
-                                                     .outputs = out,
-                                                     .output_count = 2,
-                                                     .rays = (double)texels * samples *
-                                                             RAYS_PER_PATH / (double)count,
-                                                     .texels = (double)texels / (double)count });
+    const size_t count = lightmap_task_count(texels, (uint64_t)samples);
+    return bake_plan_add(
+        plan, &(struct bake_stage){
+                  .name = "paths",
+                  .task_count = count,
+                  .run = run,
+                  BAKE_OUTPUTS(BAKE_F32(BAKE_ROWS, LIGHTMAP_PUNCTUAL, BAKE_SAVED, texels, 3),
+                               BAKE_F32(BAKE_ROWS, LIGHTMAP_REST, BAKE_SAVED, texels, 4)),
+                  .rays = (double)texels * samples * LIGHTMAP_RAYS_PER_PATH / (double)count,
+                  .texels = (double)texels / (double)count });
 }
 
-static bool count_texels(struct host *host, const struct lightmap_bake *how,
-                         const struct scene_pose *statics, uint64_t *rows)
+static bool plan_job(struct lightmap_job *job, struct host *host, const struct lightmap_bake *how,
+                     struct bake_plan *plan)
 {
-    struct charts charts;
-    if (!how->charts(statics, how->options, host, &charts)) return false;
-    *rows = charts.side_texel_count;
-    charts_finish(&charts);
-    return true;
+    struct scene_statics statics;
+    *job = (struct lightmap_job){ .host = host, .how = *how };
+    if (!scene_statics_init(&statics, host, how->pose)) return false;
+    bake_plan_depends(plan, key_of(&statics.pose));
+    const bool ok = how->charts(&statics.pose, how->options, host, &job->charts);
+    scene_statics_finish(&statics);
+    return ok && (!(how->noise > 0.0f) || noise_units_init(&job->units, &job->charts));
 }
 
 bool lightmap_add_stages(struct bake_plan *plan, const struct lightmap_bake *how)
 {
-    struct host *host = bake_plan_host(plan);
-    struct job *job = bake_plan_alloc(plan, 1, sizeof *job);
-    struct scene_statics statics;
-    uint64_t rows = 0;
-    if (!job || !scene_statics_init(&statics, host, how->pose)) return false;
-    job->how = *how;
-    bake_plan_depends(plan, key_of(&statics.pose));
-    const bool ok = count_texels(host, how, &statics.pose, &rows);
-    scene_statics_finish(&statics);
-    bake_plan_set_job(plan, &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish });
-    return ok && add_stage(plan, how->samples, rows);
+    struct lightmap_job *job = bake_plan_alloc(plan, 1, sizeof *job);
+    if (!job) return false;
+    const bool ok = plan_job(job, bake_plan_host(plan), how, plan);
+    bake_plan_set_job(
+        plan,
+        &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish, .destroy = destroy });
+    if (!ok || how->noise > 0.0f) return ok && adaptive_add_stages(plan, job);
+    // An empty scene has one row, of zeros.
+    return add_stage(plan, how->samples,
+                     job->charts.side_texel_count > 0 ? job->charts.side_texel_count : 1);
 }

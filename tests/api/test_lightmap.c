@@ -173,6 +173,36 @@ TEST(technique_of_a_light_map_is_the_one_of_the_stack_that_has_it)
     ag_context_destroy(context);
 }
 
+TEST(light_map_with_a_bound_of_noise_states_noise_and_paths)
+{
+    struct ag_context *context = fixture_context();
+    struct ag_scene *scene = NULL;
+    struct ag_bake *bake = NULL;
+    struct ag_bake_desc desc;
+    struct ag_lightmap *lightmap = NULL;
+    struct ag_lightmap_info info;
+    assert_int_equal(ag_scene_load(context, "@cornell", &scene), AG_OK);
+    ag_bake_desc_default(&desc);
+    for (int bound = 0; bound < 2; bound++) {
+        desc.lightmap_samples = 512;
+        desc.lightmap_noise = bound ? 0.1f : 0.0f;
+        assert_int_equal(ag_bake_create(scene, "radiosity:texels=2048", &desc, &bake), AG_OK);
+        assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
+        assert_int_equal(ag_lightmap_from_bake(bake, NULL, &lightmap), AG_OK);
+        assert_int_equal(ag_lightmap_get_info(lightmap, &info), AG_OK);
+        if (bound) {
+            CHECK(info.paths >= 32.0f && info.paths < 512.0f);
+            CHECK(info.noise > 0.02f && (info.noise <= 0.11f || info.noisy_charts > 0));
+        } else {
+            CHECK(info.paths == 512.0f && isnan(info.noise) && info.noisy_charts == 0);
+        }
+        ag_lightmap_destroy(lightmap);
+        ag_bake_destroy(bake);
+    }
+    ag_scene_destroy(scene);
+    ag_context_destroy(context);
+}
+
 TEST(light_map_functions_refuse_wrong_arguments)
 {
     struct ag_context *context = fixture_context();
@@ -186,6 +216,14 @@ TEST(light_map_functions_refuse_wrong_arguments)
     ag_bake_desc_default(&desc);
     desc.lightmap_samples = -1;
     assert_int_equal(ag_bake_create(scene, SPEC, &desc, &bake), AG_ERROR_ARGUMENT);
+    desc.lightmap_samples = 31;
+    desc.lightmap_noise = 0.1f;
+    assert_int_equal(ag_bake_create(scene, SPEC, &desc, &bake), AG_ERROR_ARGUMENT);
+    CHECK(strstr(ag_context_last_error(context), "lightmap_samples"));
+    desc.lightmap_samples = 64;
+    desc.lightmap_noise = 1.0f;
+    assert_int_equal(ag_bake_create(scene, SPEC, &desc, &bake), AG_ERROR_ARGUMENT);
+    desc.lightmap_noise = 0.0f;
     desc.lightmap_samples = 1;
     assert_int_equal(ag_bake_create(scene, "mrt", &desc, &bake), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_bake_create(scene, SPEC, &desc, &bake), AG_OK);

@@ -41,6 +41,36 @@ TEST(scene_with_light_map_renders_as_before)
     json_decref(errors);
 }
 
+#define NOISE "bake @cornell --gi radiosity:texels=2048 --spp auto:noise=12,max=2048 --quiet"
+
+TEST(light_map_to_a_bound_of_noise_is_the_same_in_parts)
+{
+    use_cache("lightmap-noise");
+    const char *maps = path_of("maps-bound"), *merged = path_of("maps-noise-merged");
+    const char *a = path_of("n0.safetensors"), *b = path_of("n1.safetensors");
+    json_t *result = run_json(run_expect(0, NOISE " --json --lightmap", maps, NULL));
+    const double noise = json_number_value(json_object_get(result, "noise"));
+    CHECK(noise > 0.01 && noise < 0.13);
+    CHECK(json_number_value(json_object_get(result, "paths")) >= 32.0);
+    json_decref(result);
+    run_expect(0, NOISE " --lightmap x --shard 0/2 -o", a, NULL);
+    run_expect(0, NOISE " --lightmap x --shard 1/2 -o", b, NULL);
+    run_expect(0, "bake --quiet --merge", a, b, "--lightmap", merged, NULL);
+    CHECK(files_are_equal(path_of("maps-bound/irradiance.exr"),
+                          path_of("maps-noise-merged/irradiance.exr")));
+}
+
+TEST(wrong_bounds_of_noise_are_refused_in_one_line)
+{
+    static const char *const wrong[] = {
+        "auto:",         "auto:noise=0", "auto:noise=x", "auto:max=64", "auto:noise=2,max=31",
+        "auto:noise=60", "auto:paths=3", "noise=2"
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        check_one_error_line(run_expect(2, "bake @cornell --lightmap x --spp", wrong[i], NULL));
+    check_one_error_line(run_expect(2, "reference @cornell -o x.exr --spp auto:noise=2", NULL));
+}
+
 static double width_of(const char *scene)
 {
     json_t *info = run_json(run_expect(0, "info --json", scene, NULL));

@@ -1,4 +1,5 @@
 ag_test(lightmap/lightmap USES lightmap)
+ag_test(lightmap/noise USES lightmap)
 ag_test(lightmap/gltf_copy USES lightmap)
 ag_test(lightmap/materials USES lightmap)
 ag_test(lightmap/gltf_environment USES lightmap)

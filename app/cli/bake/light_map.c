@@ -7,6 +7,7 @@
 #include "cli/files/interrupt.h"
 #include "cli/files/json.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -172,6 +173,7 @@ static enum status begin_paths(struct job *job)
     desc.shard_count = a->shard_count;
     desc.max_memory_bytes = (uint64_t)a->max_memory_mib << 20;
     desc.lightmap_samples = a->merge ? job->origin.lightmap_samples : a->spp;
+    desc.lightmap_noise = a->merge ? job->origin.lightmap_noise : (float)a->spp_noise;
     return baking_begin(&job->baking, &job->session, gi_of(job), &desc, a->output);
 }
 
@@ -236,6 +238,34 @@ static enum status write_folder(struct job *job)
                            : fail_call(job, result);
 }
 
+static void say_noise(const struct ag_lightmap_info *info)
+{
+    if (!isfinite(info->noise)) return;
+    char noisy[128] = "";
+    if (info->noisy_charts > 0)
+        snprintf(noisy, sizeof noisy, "; %d charts with the most paths are above the bound",
+                 info->noisy_charts);
+    note("noise %.2g %% of a chart's light at most; %.0f paths per texel in the mean%s",
+         100.0 * (double)info->noise, (double)info->paths, noisy);
+}
+
+static json_t *json_of(const struct job *job, const struct ag_lightmap_info *info,
+                       double utilisation)
+{
+    json_t *out =
+        json_pack("{s:o, s:[i, i], s:i, s:i, s:o, s:o, s:b, s:o}", "output",
+                  json_text(job->folder.shown), "size", info->width, info->height, "texels",
+                  info->texels, "charts", info->charts, "texels_per_m",
+                  json_double((double)info->texels_per_m), "utilisation", json_double(utilisation),
+                  "back", info->has_back, "formats", formats_json(formats_of(job->arguments)));
+    if (out && info->paths > 0.0f)
+        json_object_set_new(out, "paths", json_double((double)info->paths));
+    if (!out || !isfinite(info->noise)) return out;
+    json_object_set_new(out, "noise", json_double((double)info->noise));
+    json_object_set_new(out, "noisy_charts", json_integer(info->noisy_charts));
+    return out;
+}
+
 static enum status report(const struct job *job)
 {
     struct ag_lightmap_info info;
@@ -245,13 +275,9 @@ static enum status report(const struct job *job)
          "written: %s",
          info.width, info.height, info.texels, info.charts, 100.0 * utilisation,
          (double)info.texels_per_m, job->folder.shown);
+    say_noise(&info);
     if (!job->arguments->json) return DONE;
-    return json_print(json_pack("{s:o, s:[i, i], s:i, s:i, s:o, s:o, s:b, s:o}", "output",
-                                json_text(job->folder.shown), "size", info.width, info.height,
-                                "texels", info.texels, "charts", info.charts, "texels_per_m",
-                                json_double((double)info.texels_per_m), "utilisation",
-                                json_double(utilisation), "back", info.has_back, "formats",
-                                formats_json(formats_of(job->arguments))));
+    return json_print(json_of(job, &info, utilisation));
 }
 
 // Everything that can fail before the work.

@@ -5,7 +5,14 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_FRAMES = 1000000, MAX_FRAME_SAMPLES = 4096, MAX_SPP = 1000000, MAX_BOUNCES = 1000000 };
+enum {
+    MAX_FRAMES = 1000000,
+    MAX_FRAME_SAMPLES = 4096,
+    MAX_SPP = 1000000,
+    MIN_AUTO_SPP = 32,
+    DEFAULT_AUTO_SPP = 4096,
+    MAX_BOUNCES = 1000000
+};
 enum { MAX_THREADS = 1024, MAX_SHARDS = 10000 };
 
 // ---- switches and texts
@@ -223,6 +230,48 @@ static bool set_spp(struct arguments *a, const char *value, const char **why)
     *why = "it must be 1 to 1000000";
     a->has_spp = true;
     return set_int(value, 1, MAX_SPP, &a->spp);
+}
+
+// "auto:noise=PERCENT[,max=N]"
+static bool set_auto_spp(struct arguments *a, char *text, const char **why)
+{
+    static const char NOISE[] = "noise=", MAX[] = "max=";
+    char *rest = NULL;
+    bool has_noise = false;
+    a->spp = DEFAULT_AUTO_SPP;
+    for (char *item = strtok_r(text, ",", &rest); item; item = strtok_r(NULL, ",", &rest)) {
+        double percent = 0.0;
+        if (strncmp(item, NOISE, sizeof NOISE - 1) == 0) {
+            *why = "noise must be 0.01 to 50 percent";
+            has_noise = value_number(item + sizeof NOISE - 1, &percent) && percent >= 0.01 &&
+                        percent <= 50.0;
+            if (!has_noise) return false;
+            a->spp_noise = percent / 100.0;
+        } else if (strncmp(item, MAX, sizeof MAX - 1) == 0) {
+            *why = "max must be 32 to 1000000 paths";
+            if (!set_int(item + sizeof MAX - 1, MIN_AUTO_SPP, MAX_SPP, &a->spp)) return false;
+        } else {
+            *why = "it is N or auto:noise=PERCENT[,max=N]";
+            return false;
+        }
+    }
+    *why = "it is N or auto:noise=PERCENT[,max=N]";
+    return has_noise;
+}
+
+static bool set_bake_spp(struct arguments *a, const char *value, const char **why)
+{
+    static const char AUTO[] = "auto:";
+    char text[64];
+    if (strncmp(value, AUTO, sizeof AUTO - 1) != 0) {
+        const bool ok = set_spp(a, value, why);
+        *why = "it must be 1 to 1000000, or auto:noise=PERCENT[,max=N]";
+        return ok;
+    }
+    a->has_spp = true;
+    *why = "it is N or auto:noise=PERCENT[,max=N]";
+    const int length = snprintf(text, sizeof text, "%s", value + sizeof AUTO - 1);
+    return length > 0 && (size_t)length < sizeof text && set_auto_spp(a, text, why);
 }
 
 static bool set_bounces(struct arguments *a, const char *value, const char **why)
