@@ -1,0 +1,43 @@
+"""Reads and writes the JSON of binary glTF files, and finds their light maps (docs/lightmaps.md). Needs no Blender."""
+import json
+import struct
+
+MAGIC, JSON, HEADER = b"glTF", b"JSON", 20
+
+
+def read(path):
+    """The JSON of a GLB, and all bytes after it."""
+    with open(path, "rb") as file:
+        data = file.read()
+    magic, version, _, length, kind = struct.unpack_from("<4sIII4s", data.ljust(HEADER, b"\0"))
+    if (magic, version, kind) != (MAGIC, 2, JSON):
+        raise SystemExit(f"{path}: not a binary glTF 2.0 file")
+    return json.loads(data[HEADER:HEADER + length]), data[HEADER + length:]
+
+
+def write(path, document, rest):
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    with open(path, "wb") as file:
+        file.write(struct.pack("<4sIII4s", MAGIC, 2, HEADER + len(text) + len(rest), len(text), JSON))
+        file.write(text + rest)
+
+
+def light_map(document, side="front", file_format="exr"):
+    """The entry of a map in the file's extras: uri, width, height, and scale, the lux of the value 1. None: there is none."""
+    maps = document.get("extras", {}).get("afterglow_lightmap", {}).get("maps", [])
+    return next((m for m in maps if m["side"] == side and m["format"] == file_format), None)
+
+
+def light_map_set(mesh):
+    """The set of a mesh that has the coordinates of its texels: 1 is TEXCOORD_1. None: it has no texels."""
+    sets = {p.get("extras", {}).get("afterglow_lightmap", {}).get("texCoord") for p in mesh["primitives"]}
+    if len(sets) > 1:
+        raise SystemExit(f"mesh {mesh.get('name', '')}: its primitives have their texels in different sets, {sets}")
+    return sets.pop()
+
+
+def sky(document):
+    """Radiance of the sky in cd/m², which glTF has no member for."""
+    scene = document.get("scenes", [{}])[document.get("scene", 0)]
+    return scene.get("extras", {}).get("afterglow_sky", [0.0, 0.0, 0.0])
