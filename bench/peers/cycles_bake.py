@@ -72,6 +72,8 @@ def bake(scene, image, seed):
 
 def main(path, paths, out, *seeds):
     document = lightmapped.load(path)
+    if any(light.type == "SPOT" for light in bpy.data.lights):
+        raise SystemExit(f"{path}: Blender's spots have another penumbra than those of glTF")
     size = glb.light_map(document)
     image = bpy.data.images.new("texels", size["width"], size["height"], alpha=True, float_buffer=True, is_data=True)
     image.generated_color = (0, 0, 0, 0)

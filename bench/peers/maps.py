@@ -6,14 +6,19 @@ import struct
 import zlib
 
 LUMINANCE = (0.2126, 0.7152, 0.0722)
+DARK = 1e-4  # of the mean: texels inside geometry, into which light leaks
 LINES = 16  # of a block of ZIP compression
 
 
 class Map:
-    """The luminance of each texel in lux, row by row, top first; None: no texel, or one without light."""
+    """The luminance of each texel in lux, row by row, top first; None: no light. Where the program has texels: None, not known."""
 
-    def __init__(self, width, height, luminance):
-        self.size, self.luminance = (width, height), luminance
+    def __init__(self, width, height, channels, covered=None):
+        self.size, self.covered = (width, height), covered
+        r, g, b = LUMINANCE
+        values = [r * x + g * y + b * z for x, y, z in zip(*channels)]
+        dark = DARK * statistics.fmean(values)
+        self.luminance = [value if value > dark else None for value in values]
 
 
 def read_cycles(path, width, height):
@@ -21,13 +26,7 @@ def read_cycles(path, width, height):
     values = array.array("f")
     with open(path, "rb") as file:
         values.frombytes(file.read())
-    red, green, blue, covered = (values[c::4] for c in range(4))
-    return Map(width, height, luminances(red, green, blue, covered))
-
-
-def luminances(red, green, blue, covered=itertools.repeat(1.0)):
-    r, g, b = LUMINANCE
-    return [r * x + g * y + b * z if c and x + y + z > 0 else None for x, y, z, c in zip(red, green, blue, covered)]
+    return Map(width, height, [values[c::4] for c in range(3)], [value > 0 for value in values[3::4]])
 
 
 def read_exr(path):
@@ -49,7 +48,7 @@ def read_exr(path):
             for c, name in enumerate("BGR"):
                 at = (3 * line + c) * width
                 channels[name].extend(rows[at:at + width])
-    return Map(width, height, luminances(channels["R"], channels["G"], channels["B"]))
+    return Map(width, height, [channels[name] for name in "RGB"])
 
 
 def exr_header(data):
@@ -85,11 +84,17 @@ def unzip(block, size):
     return bytes(result)
 
 
-def common_texels(maps):
-    """Indices of the texels that all maps light."""
-    if len({m.size for m in maps}) != 1:
-        raise SystemExit(f"light maps of different sizes: {[m.size for m in maps]}")
-    return [i for i, values in enumerate(zip(*(m.luminance for m in maps))) if None not in values]
+def common_texels(ours, theirs):
+    """Indices of the texels that all maps light, and that lie within a chart: the eight around them are texels of Cycles, too. At
+    borders the two differ: afterglow averages over the part that the surface covers, Cycles over the whole texel."""
+    if len({m.size for m in ours + theirs}) != 1:
+        raise SystemExit(f"light maps of different sizes: {[m.size for m in ours + theirs]}")
+    width = ours[0].size[0]
+    covered = theirs[0].covered
+    around = [y * width + x for y in (-1, 0, 1) for x in (-1, 0, 1)]
+    lit = zip(*(m.luminance for m in ours + theirs))
+    return [i for i, values in enumerate(lit)
+            if None not in values and all(0 <= i + step < len(covered) and covered[i + step] for step in around)]
 
 
 def means(maps, texels):
@@ -107,7 +112,6 @@ def noise(maps, texels):
 
 
 def difference(a, b, texels):
-    """How two programs differ: the ratio of their means, and the median over texels of the relative difference."""
+    """How two programs differ: the ratio of their means, and the median over texels of their ratio."""
     x, y = means(a, texels), means(b, texels)
-    return (statistics.fmean(x) / statistics.fmean(y),
-            statistics.median(2 * abs(p - q) / (p + q) for p, q in zip(x, y)))
+    return statistics.fmean(x) / statistics.fmean(y), statistics.median(p / q for p, q in zip(x, y))
