@@ -41,3 +41,19 @@ def sky(document):
     """Radiance of the sky in cd/m², which glTF has no member for."""
     scene = document.get("scenes", [{}])[document.get("scene", 0)]
     return scene.get("extras", {}).get("afterglow_sky", [0.0, 0.0, 0.0])
+
+
+def make_diffuse(source, target):
+    """A copy with Lambertian materials, which two extensions of glTF say exactly, and without normal maps."""
+    document, rest = read(source)
+    for material in document.setdefault("materials", []):
+        material.pop("normalTexture", None)
+        kept = {name: value for name, value in material.get("extensions", {}).items()
+                if name in ("KHR_materials_emissive_strength", "KHR_materials_unlit")}
+        material["extensions"] = {**kept, "KHR_materials_specular": {"specularFactor": 0.0}}
+        shading = material.setdefault("pbrMetallicRoughness", {})
+        shading.pop("metallicRoughnessTexture", None)
+        shading["metallicFactor"] = 0.0
+    used = set(document.get("extensionsUsed", [])) | {"KHR_materials_specular"}
+    document["extensionsUsed"] = sorted(used)
+    write(target, document, rest)

@@ -59,7 +59,8 @@ class Surface:
     def __init__(self, material):
         self.material, self.tree = material, material.node_tree
         kinds = {node.bl_idname: node for node in self.tree.nodes}
-        self.principled = kinds.get("ShaderNodeBsdfPrincipled")  # None: unlit
+        self.principled = kinds.get("ShaderNodeBsdfPrincipled")  # None: unlit, an emission that the camera alone sees
+        self.unlit = kinds.get("ShaderNodeEmission")
         self.output = kinds["ShaderNodeOutputMaterial"]
 
     def node(self, kind, *inputs, **properties):
@@ -81,6 +82,10 @@ class Surface:
         """A colour times a colour (MULTIPLY) or a number (SCALE), or plus a colour (ADD)."""
         return self.node("ShaderNodeVectorMath", a, b, operation=operation)["Vector"]
 
+    def mix(self, share, a, b):
+        """Colour a, or b where the share is 1."""
+        return self.vector("ADD", self.vector("SCALE", a, self.math("SUBTRACT", 1.0, share)), self.vector("SCALE", b, share))
+
     def given(self, *names):
         """What the importer gave an input, whose name differs among releases: a socket, or a value."""
         socket = next(self.principled.inputs[name] for name in names if name in self.principled.inputs)
@@ -88,6 +93,11 @@ class Surface:
             return socket.links[0].from_socket
         value = socket.default_value
         return value if isinstance(value, float) else tuple(value)
+
+    def normal(self):
+        """The normal map, as the last inputs of a node; none: the vertex normal."""
+        links = self.principled.inputs["Normal"].links
+        return [link.from_socket for link in links]
 
     def emission(self):
         """The emitted radiance of the front, in cd/m²; of both sides if the material is double-sided."""
