@@ -7,6 +7,7 @@ import zlib
 
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 DARK = 1e-4  # of the mean: texels inside geometry, into which light leaks
+MAGIC, ZIP, FLOAT = b"\x76\x2f\x31\x01", b"\x03", 2  # of OpenEXR
 LINES = 16  # of a block of ZIP compression
 
 
@@ -33,9 +34,11 @@ def read_exr(path):
     """An OpenEXR file as afterglow writes it: 32-bit floats B, G, R, blocks of 16 lines with ZIP compression."""
     with open(path, "rb") as file:
         data = file.read()
+    if data[:4] != MAGIC:
+        raise SystemExit(f"{path}: not an OpenEXR file")
     attributes, offset = exr_header(data)
-    if attributes["compression"] != b"\x03" or [c[0] for c in exr_channels(attributes["channels"])] != ["B", "G", "R"]:
-        raise SystemExit(f"{path}: not an EXR file of afterglow bake --lightmap")
+    if attributes["compression"] != ZIP or exr_channels(attributes["channels"]) != [(name, FLOAT) for name in "BGR"]:
+        raise SystemExit(f"{path}: not a light map of afterglow")
     x0, y0, x1, y1 = struct.unpack("<4i", attributes["dataWindow"])
     width, height = x1 - x0 + 1, y1 - y0 + 1
     channels = {name: array.array("f") for name in "BGR"}
