@@ -146,3 +146,6 @@ double bake_seconds(const struct bake *bake);
 double bake_prepare_seconds(const struct bake *bake); // of the newest run, before its tasks
 uint64_t bake_bytes(const struct bake *bake);         // of the file's tensors
 const char *bake_options_text(const struct bake *bake);
+
+// differences.c: "rays is 256, not 512, …" for those options of a file that are not as wanted.
+void option_differences(const char *of_file, const char *wanted, char *out, size_t size);

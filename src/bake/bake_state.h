@@ -201,7 +201,5 @@ bool identity_write(struct host *host, const char *path, struct identity_text *t
 // Refuses a file of another kind or identity, or whose hash differs.
 bool identity_check(struct host *host, const struct bake *bake, const char *kind, const char *path,
                     const struct tensors *set);
-// differences.c: "rays is 256, not 512, …" for those options of a file that are not as wanted.
-void option_differences(const char *of_file, const char *wanted, char *out, size_t size);
 // afterglow.seconds of a file; NaN: none.
 double identity_seconds(const struct tensors *set);

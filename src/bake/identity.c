@@ -14,9 +14,8 @@ static const char KIND[] = "afterglow.kind", TECHNIQUE[] = "afterglow.technique"
                   VERSION[] = "afterglow.bake_version", OPTIONS[] = "afterglow.options",
                   SCENE[] = "afterglow.scene", SEED[] = "afterglow.seed",
                   PROGRAM[] = "afterglow.program", SECONDS[] = "afterglow.seconds",
-                  STAGE_SECONDS[] = "afterglow.stage_seconds", CONTENT[] = "afterglow.content",
-                  GI[] = "afterglow.gi", SCENE_NAME[] = "afterglow.scene_name",
-                  SCENE_SCALE[] = "afterglow.scene_scale";
+                  STAGE_SECONDS[] = "afterglow.stage_seconds", GI[] = "afterglow.gi",
+                  SCENE_NAME[] = "afterglow.scene_name", SCENE_SCALE[] = "afterglow.scene_scale";
 static const char PARTIAL[] = "partial", ANY_SCENE[] = "any";
 
 // ---- metadata
@@ -81,33 +80,13 @@ void bake_key(const struct bake *bake, char out[HASH128_TEXT])
     identity_key(&text, out);
 }
 
-static struct hash128 content_hash(const struct tensor_metadata *metadata, size_t metadata_count,
-                                   const struct tensor *at, size_t count)
-{
-    struct hash128 hash = { 0 };
-    for (size_t i = 0; i < metadata_count; i++) {
-        if (strcmp(metadata[i].key, CONTENT) == 0) continue;
-        hash = hash128_add_text(hash, metadata[i].key);
-        hash = hash128_add_text(hash, metadata[i].value);
-    }
-    // By element size, as in the file.
-    for (size_t size = 4; size > 0; size /= 2)
-        for (size_t i = 0; i < count; i++) {
-            if (tensor_type_bytes(at[i].type) != size) continue;
-            hash = hash128_add_text(hash, at[i].name);
-            hash = hash128_add_text(hash, tensor_type_name(at[i].type));
-            hash = hash128_add(hash, at[i].shape, (size_t)at[i].rank * sizeof at[i].shape[0]);
-            hash = hash128_add(hash, at[i].data, at[i].bytes);
-        }
-    return hash;
-}
-
 bool identity_write(struct host *host, const char *path, struct identity_text *text,
                     const struct tensor *at, size_t count)
 {
-    hash128_print(content_hash(text->metadata, text->count, at, count), text->content);
-    add_metadata(text, CONTENT, text->content);
-    const struct tensors set = { at, count, text->metadata, text->count };
+    struct tensors set = { at, count, text->metadata, text->count };
+    hash128_print(tensors_content(&set), text->content);
+    add_metadata(text, TENSORS_CONTENT, text->content);
+    set.metadata_count = text->count;
     return safetensors_write(host, path, &set);
 }
 
@@ -116,15 +95,6 @@ bool identity_write(struct host *host, const char *path, struct identity_text *t
 bool identity_fail(struct host *host, const char *path, const char *why)
 {
     return host_fail(host, FAIL_FORMAT, "cannot use %s: %s", path, why);
-}
-
-static bool check_content(struct host *host, const char *path, const struct tensors *set)
-{
-    char text[HASH128_TEXT];
-    const char *written = tensors_metadata(set, CONTENT);
-    hash128_print(content_hash(set->metadata, set->metadata_count, set->at, set->count), text);
-    return (written && strcmp(written, text) == 0) ||
-           identity_fail(host, path, "it is damaged: its content differs from its checksum");
 }
 
 static bool differs(const struct tensors *set, const char *key, const char *wanted)
@@ -176,7 +146,7 @@ bool identity_check(struct host *host, const struct bake *bake, const char *kind
     // Partial results of two seeds are no bake of either.
     if (strcmp(kind, IDENTITY_BAKE) != 0 && differs(set, SEED, text.seed))
         return fail_value(host, path, "seed", set, SEED, text.seed);
-    return check_content(host, path, set);
+    return tensors_check_content(host, path, set);
 }
 
 double identity_seconds(const struct tensors *set)

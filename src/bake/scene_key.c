@@ -7,7 +7,7 @@ static struct hash128 add_array(struct hash128 key, const void *data, size_t cou
 }
 
 // Deformed vertices are in world space, rigid ones are placed by a matrix.
-static struct hash128 add_geometry(struct hash128 key, const struct scene_pose *pose, int instance)
+struct hash128 scene_key_add_shape(struct hash128 key, const struct scene_pose *pose, int instance)
 {
     const struct mesh *mesh = scene_mesh_of(pose->scene, instance);
     const struct deformed_mesh *deformed = &pose->deformed[instance];
@@ -17,9 +17,14 @@ static struct hash128 add_geometry(struct hash128 key, const struct scene_pose *
     key = add_array(key, mesh->indices, mesh->index_count, sizeof *mesh->indices);
     key = add_array(key, deformed->positions ? deformed->positions : mesh->positions, count,
                     sizeof *mesh->positions);
-    key = add_array(key, deformed->normals ? deformed->normals : mesh->normals, count,
-                    sizeof *mesh->normals);
-    return hash128_add(key, &mesh->material, sizeof mesh->material);
+    return add_array(key, deformed->normals ? deformed->normals : mesh->normals, count,
+                     sizeof *mesh->normals);
+}
+
+static struct hash128 add_geometry(struct hash128 key, const struct scene_pose *pose, int instance)
+{
+    const int *material = &scene_mesh_of(pose->scene, instance)->material;
+    return hash128_add(scene_key_add_shape(key, pose, instance), material, sizeof *material);
 }
 
 static struct hash128 add_map(struct hash128 key, const struct scene *scene,
@@ -37,9 +42,9 @@ static struct hash128 add_map(struct hash128 key, const struct scene *scene,
     return add_array(key, image->rgba, (size_t)image->width * (size_t)image->height, 4);
 }
 
-static struct hash128 add_material(struct hash128 key, const struct scene *scene,
-                                   const struct material *m)
+struct hash128 scene_key_add_material(struct hash128 key, const struct scene *scene, int material)
 {
+    const struct material *m = &scene->materials[material];
     const float values[] = { m->base_color.x, m->base_color.y,     m->base_color.z,
                              m->base_color.w, m->metallic,         m->roughness,
                              m->ior,          m->specular,         m->specular_color.x,
@@ -53,14 +58,19 @@ static struct hash128 add_material(struct hash128 key, const struct scene *scene
     return add_map(add_map(key, scene, &m->specular_map), scene, &m->specular_color_map);
 }
 
-static struct hash128 add_surface(struct hash128 key, const struct scene *scene, int instance)
+struct hash128 scene_key_add_attributes(struct hash128 key, const struct scene *scene, int instance)
 {
     const struct mesh *mesh = scene_mesh_of(scene, instance);
     const size_t count = mesh->vertex_count;
     for (int i = 0; i < 2; i++) key = add_array(key, mesh->uv[i], count, sizeof *mesh->uv[i]);
     key = add_array(key, mesh->colors, count, sizeof *mesh->colors);
-    key = add_array(key, mesh->tangents, count, sizeof *mesh->tangents);
-    return add_material(key, scene, &scene->materials[mesh->material]);
+    return add_array(key, mesh->tangents, count, sizeof *mesh->tangents);
+}
+
+static struct hash128 add_surface(struct hash128 key, const struct scene *scene, int instance)
+{
+    return scene_key_add_material(scene_key_add_attributes(key, scene, instance), scene,
+                                  scene_mesh_of(scene, instance)->material);
 }
 
 struct hash128 scene_key(const struct scene_pose *pose, unsigned parts)

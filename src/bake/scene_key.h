@@ -12,3 +12,12 @@ enum scene_key_part {
 
 // parts: scene_key_part bits. Continue with hash128_add for block maps and the like.
 struct hash128 scene_key(const struct scene_pose *pose, unsigned parts);
+
+// ---- parts of the key, of an instance with a mesh or of a material
+
+// Triangles in world space.
+struct hash128 scene_key_add_shape(struct hash128 key, const struct scene_pose *pose, int instance);
+// Attributes of the vertices that materials read.
+struct hash128 scene_key_add_attributes(struct hash128 key, const struct scene *scene,
+                                        int instance);
+struct hash128 scene_key_add_material(struct hash128 key, const struct scene *scene, int material);

@@ -123,3 +123,34 @@ const void *tensors_expect(struct host *host, const struct tensors *set, const c
     }
     return tensor->data;
 }
+
+struct hash128 tensors_content(const struct tensors *set)
+{
+    struct hash128 hash = { 0 };
+    for (size_t i = 0; i < set->metadata_count; i++) {
+        if (strcmp(set->metadata[i].key, TENSORS_CONTENT) == 0) continue;
+        hash = hash128_add_text(hash, set->metadata[i].key);
+        hash = hash128_add_text(hash, set->metadata[i].value);
+    }
+    // By element size, as in the file.
+    for (size_t size = 4; size > 0; size /= 2)
+        for (size_t i = 0; i < set->count; i++) {
+            const struct tensor *at = &set->at[i];
+            if (tensor_type_bytes(at->type) != size) continue;
+            hash = hash128_add_text(hash, at->name);
+            hash = hash128_add_text(hash, tensor_type_name(at->type));
+            hash = hash128_add(hash, at->shape, (size_t)at->rank * sizeof at->shape[0]);
+            hash = hash128_add(hash, at->data, at->bytes);
+        }
+    return hash;
+}
+
+bool tensors_check_content(struct host *host, const char *path, const struct tensors *set)
+{
+    char text[HASH128_TEXT];
+    const char *written = tensors_metadata(set, TENSORS_CONTENT);
+    hash128_print(tensors_content(set), text);
+    return (written && strcmp(written, text) == 0) ||
+           host_fail(host, FAIL_FORMAT,
+                     "cannot use %s: it is damaged: its content differs from its checksum", path);
+}

@@ -1,6 +1,7 @@
 // A set of named arrays with metadata: the content of a bake, in memory or read from a file.
 #pragma once
 
+#include "core/hash.h"
 #include "core/host.h"
 
 #include <stdint.h>
@@ -48,3 +49,11 @@ const void *tensors_expect(struct host *host, const struct tensors *set, const c
 #define TENSORS_EXPECT(host, set, name, type, ...)                                                 \
     tensors_expect(host, set, name, type, sizeof((const uint64_t[]){ __VA_ARGS__ }) / 8,           \
                    (const uint64_t[]){ __VA_ARGS__ })
+
+// ---- a checksum in the metadata of a file
+
+#define TENSORS_CONTENT "afterglow.content"
+// The hash of all arrays and metadata but that entry.
+struct hash128 tensors_content(const struct tensors *set);
+// FAIL_FORMAT: the entry differs from the content; `path` is for the message.
+bool tensors_check_content(struct host *host, const char *path, const struct tensors *set);

@@ -36,8 +36,8 @@ static float mean_emission(const struct trace_mesh *mesh, uint32_t triangle)
     return fmaxf(sum / (SIDE * SIDE), 0.01f * factor);
 }
 
-// Alias table of Vose 1991. scaled: weights divided by their mean.
-static void build_alias(struct emitter *emitters, uint32_t count, double *scaled, uint32_t *work)
+void light_table_build_alias(struct emitter *emitters, uint32_t count, double *scaled,
+                             uint32_t *work)
 {
     uint32_t small = 0, large = count;
     for (uint32_t i = 0; i < count; i++) {
@@ -87,7 +87,7 @@ static bool choose_by_power(struct trace_scene *scene)
         t->emitters[i].density = power[i] > 0.0 ? (float)(power[i] / total / area) : 0.0f;
         power[i] *= (double)t->emitter_count / total;
     }
-    if (t->has_emitters) build_alias(t->emitters, t->emitter_count, power, work);
+    if (t->has_emitters) light_table_build_alias(t->emitters, t->emitter_count, power, work);
     host_free(scene->host, power);
     host_free(scene->host, work);
     return ok;

@@ -37,6 +37,10 @@ struct light_table {
 // Fills scene->lights and the meshes' emitter_first. light_table_finish accepts a half-built table.
 bool light_table_init(struct trace_scene *scene, const struct scene_pose *pose);
 void light_table_finish(struct trace_scene *scene);
+// The alias table of Vose 1991: `stay` and `alias` of emitters. scaled: their weights divided by
+// the mean, overwritten. work: [count].
+void light_table_build_alias(struct emitter *emitters, uint32_t count, double *scaled,
+                             uint32_t *work);
 
 // A punctual light as seen from a point: unit direction, distance (infinite for directional lights)
 // and illuminance at normal incidence, lux (light.glsl).

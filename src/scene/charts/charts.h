@@ -110,6 +110,8 @@ struct charts {
 bool charts_init(struct charts *out, struct host *host, const struct scene_pose *pose,
                  const struct charts_options *options);
 void charts_finish(struct charts *charts);
+// instance_count: of the scene.
+bool charts_copy(struct charts *out, const struct charts *from, int instance_count);
 // Texels over places of the atlas.
 static inline float charts_utilisation(const struct charts *charts)
 {
