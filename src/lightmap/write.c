@@ -7,6 +7,7 @@
 #include "image/ktx2.h"
 #include "lightmap/attach.h"
 #include "lightmap/materials.h"
+#include "lightmap/record.h"
 #include "lightmap/texture.h"
 
 #include <stdio.h>
@@ -185,6 +186,15 @@ static bool prepare(struct writing *w, int side)
            lightmap_texture(w->map->host, s->image, &s->png, &s->png_size, &s->scale[2]);
 }
 
+static bool write_record(const struct writing *w)
+{
+    if (!w->facts->record) return true;
+    char *path = host_sprintf(w->map->host, "%s/" LIGHTMAP_RECORD_FILE, w->folder);
+    const bool ok = path && lightmap_record_write(w->facts->record, path);
+    host_free(w->map->host, path);
+    return ok;
+}
+
 bool lightmap_write(const struct lightmap *map, const struct scene *scene,
                     const struct lightmap_facts *facts, unsigned formats, const char *folder)
 {
@@ -198,6 +208,7 @@ bool lightmap_write(const struct lightmap *map, const struct scene *scene,
     for (int side = 0; ok && side < w.side_count; side++) ok = prepare(&w, side);
     for (int i = 0; ok && i < FORMATS * w.side_count; i++)
         ok = write_map(&w, i / FORMATS, i % FORMATS);
+    ok = ok && write_record(&w);
     char *path = ok ? host_sprintf(map->host, "%s/%s", folder, LIGHTMAP_SCENE_FILE) : NULL;
     ok = path && write_scene(&w, path);
     host_free(map->host, path);

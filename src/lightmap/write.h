@@ -15,11 +15,14 @@ enum lightmap_format {
     LIGHTMAP_FORMATS = 7
 };
 
+struct lightmap_record;
+
 // Facts about the maps: in the extras of the scene's copy, and in attributes of the maps.
 struct lightmap_facts {
     int samples; // paths of a texel; 0: of a technique
     bool punctual;
     const char *gi;
+    const struct lightmap_record *record; // for updates; NULL: none is written
 };
 // Into an existing folder. formats: at least one of enum lightmap_format.
 bool lightmap_write(const struct lightmap *map, const struct scene *scene,

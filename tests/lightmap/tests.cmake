@@ -2,6 +2,7 @@ ag_test(lightmap/lightmap USES lightmap)
 ag_test(lightmap/noise USES lightmap)
 ag_test(lightmap/gltf_copy USES lightmap)
 ag_test(lightmap/materials USES lightmap)
+ag_test(lightmap/update USES lightmap)
 ag_test(lightmap/gltf_environment USES lightmap)
 
 # The denoiser's code, with a stand-in for Open Image Denoise.

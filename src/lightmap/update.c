@@ -1,0 +1,313 @@
+// The bake of an update: estimates of the change in all texels, the choice of those that are baked
+// again, and their paths. Others keep the light of the earlier bake.
+#include "lightmap/update.h"
+
+#include "bake/scene_key.h"
+#include "core/rng.h"
+
+#include <string.h>
+
+static const char PROBES[] = "update/probes";
+
+struct job {
+    struct host *host;
+    struct lightmap_bake how;
+    struct scene_statics statics;
+    struct charts charts;
+    struct lightmap_record was, now;
+    struct update_match match;
+    struct update_before before;
+    bool is_same; // nothing has changed
+    // While tasks run.
+    struct gather_scene scene, scene_before;
+    struct update_coupled coupled;
+    struct gather_scene probe_now, probe_before; // views with coupled lights
+};
+
+// ---- while tasks run
+
+static bool prepare_before(struct job *job, struct host *host)
+{
+    bool ok = gather_scene_init(&job->scene_before, host, &job->before.pose, &job->charts) &&
+              update_coupled_init(&job->coupled, host, job->scene_before.trace, job->scene.trace,
+                                  &job->was);
+    job->probe_now = job->scene;
+    job->probe_now.trace = &job->coupled.now;
+    job->probe_before = job->scene_before;
+    job->probe_before.trace = &job->coupled.before;
+    return ok;
+}
+
+static bool prepare(void *argument, struct host *host)
+{
+    struct job *job = argument;
+    return gather_scene_init(&job->scene, host, &job->statics.pose, &job->charts) &&
+           (job->is_same || prepare_before(job, host));
+}
+
+static void finish(void *argument)
+{
+    struct job *job = argument;
+    update_coupled_finish(&job->coupled);
+    gather_scene_finish(&job->scene_before);
+    gather_scene_finish(&job->scene);
+}
+
+static void destroy(void *argument)
+{
+    struct job *job = argument;
+    update_before_finish(&job->before);
+    update_match_finish(&job->match);
+    lightmap_record_finish(&job->was);
+    lightmap_record_finish(&job->now);
+    charts_finish(&job->charts);
+    scene_statics_finish(&job->statics);
+}
+
+// ---- wave 0: direct light of all texels, and estimates of the change
+
+// Whether a texel had the same points outside geometry.
+static bool has_same_points(const struct job *job, uint32_t texel, const struct gather_points *now)
+{
+    struct gather_points was;
+    if (!update_is_near_change(&job->match, chart_texel_of(&job->charts, texel)->position))
+        return true;
+    gather_find_points(&job->scene_before, texel, &was);
+    return now->count == was.count &&
+           memcmp(now->at, was.at, (size_t)now->count * sizeof now->at[0]) == 0;
+}
+
+// Means of some paths of each scene, with the same random numbers.
+struct pair {
+    vec3s before, now;
+};
+static struct pair trace_pair(const struct job *job, const struct gather_points *points, int first,
+                              uint64_t seed)
+{
+    struct gather_points few = { .pixel = points->pixel, .back = points->back };
+    for (; few.count < UPDATE_HALF_PATHS; few.count++)
+        few.at[few.count] = points->at[(first + few.count) % points->count];
+    return (struct pair){ gather_paths(&job->probe_before, &few, UPDATE_HALF_PATHS, seed),
+                          gather_paths(&job->probe_now, &few, UPDATE_HALF_PATHS, seed) };
+}
+
+// The two halves have other random numbers: their difference is the noise.
+static void estimate(const struct job *job, const struct gather_points *points, uint64_t seed,
+                     struct update_probe *out)
+{
+    const struct pair a = trace_pair(job, points, 0, rng_mix(seed + 1)),
+                      b = trace_pair(job, points, UPDATE_HALF_PATHS, rng_mix(seed + 2));
+    for (int c = 0; c < 3; c++) {
+        out->value[c] = 0.5f * (a.now.raw[c] + b.now.raw[c]);
+        out->change[c] = out->value[c] - 0.5f * (a.before.raw[c] + b.before.raw[c]);
+    }
+    const float noise = luminance(a.now) - luminance(b.now);
+    out->variance = 0.5f * noise * noise * UPDATE_HALF_PATHS;
+}
+
+static void probe(const struct bake_task *task, uint32_t texel, uint64_t row)
+{
+    const struct job *job = task->job;
+    struct update_probe *out = bake_row(task, 1, row);
+    struct gather_points points;
+    gather_find_points(&job->scene, texel, &points);
+    if (points.count > 0) {
+        const vec3s punctual = gather_punctual(&job->scene, &points);
+        memcpy(bake_row(task, 0, row), punctual.raw, sizeof punctual.raw);
+    }
+    out->touched = job->match.row_was[texel] == UPDATE_NONE;
+    if (job->is_same || out->touched > 0.0f) return;
+    out->touched = !has_same_points(job, texel, &points);
+    if (out->touched > 0.0f || points.count == 0) return;
+    estimate(job, &points, task->bake_seed, out);
+}
+
+static bool run_rows(const struct bake_task *task,
+                     void (*each)(const struct bake_task *task, uint32_t texel, uint64_t row))
+{
+    const struct job *job = task->job;
+    uint64_t count, first = bake_task_rows(task, 0, &count);
+    const unsigned before = embree_flush_denormals();
+    bool ok = true;
+    for (uint64_t i = 0; ok && i < count && first + i < job->charts.side_texel_count; i++) {
+        ok = !bake_task_cancelled(task);
+        if (ok) each(task, (uint32_t)(first + i), i);
+    }
+    embree_restore_denormals(before);
+    return ok;
+}
+
+static bool run_probes(const struct bake_task *task)
+{
+    return run_rows(task, probe);
+}
+
+// ---- wave 1: what is baked again
+
+static bool run_reach(const struct bake_task *task)
+{
+    const struct job *job = task->job;
+    const struct tensor *probes = bake_task_input(task, PROBES);
+    return probes &&
+           update_reach(task->host, &job->charts, probes->data, job->how.samples, task->out[0]);
+}
+
+// ---- wave 2: the light of emitters, the sky and all bounces
+
+static void gather(const struct bake_task *task, uint32_t texel, uint64_t row)
+{
+    const struct job *job = task->job;
+    struct gather_points points;
+    gather_find_points(&job->scene, texel, &points);
+    if (points.count == 0) return;
+    const vec3s rest = gather_paths(&job->scene, &points, job->how.samples, task->bake_seed);
+    float *out = bake_row(task, 0, row);
+    memcpy(out, rest.raw, sizeof rest.raw);
+    out[3] = (float)points.count / GATHER_POINTS;
+}
+
+static bool run_paths(const struct bake_task *task)
+{
+    const struct job *job = task->job;
+    const struct tensor *again = bake_task_input(task, LIGHTMAP_AGAIN);
+    uint64_t count, first = bake_task_rows(task, 0, &count);
+    if (!again) return false;
+    const uint8_t *marks = again->data;
+    for (uint64_t i = 0; i < count && first + i < job->charts.side_texel_count; i++)
+        if (!marks[first + i])
+            memcpy(bake_row(task, 0, i), job->was.rest + 4 * (size_t)job->match.row_was[first + i],
+                   4 * sizeof(float));
+    const unsigned before = embree_flush_denormals();
+    bool ok = true;
+    for (uint64_t i = 0; ok && i < count && first + i < job->charts.side_texel_count; i++) {
+        if (!marks[first + i]) continue;
+        ok = !bake_task_cancelled(task);
+        if (ok) gather(task, (uint32_t)(first + i), i);
+    }
+    embree_restore_denormals(before);
+    return ok;
+}
+
+// ---- the plan
+
+enum { ROWS_PER_PROBE_TASK = 256, PATHS_PER_TASK = 16384, RAYS_PER_PATH = 8, RAYS_OF_POINTS = 100 };
+// The share of texels that estimates of time assume.
+static const double ASSUMED_SHARE = 0.2;
+
+static bool add_probes(struct bake_plan *plan, uint64_t rows)
+{
+    const size_t count = (size_t)((rows + ROWS_PER_PROBE_TASK - 1) / ROWS_PER_PROBE_TASK);
+    const double rays = 2 * (UPDATE_PROBE_PATHS * RAYS_PER_PATH + RAYS_OF_POINTS);
+    const struct bake_output out[] = {
+        { LIGHTMAP_PUNCTUAL, TENSOR_F32, 2, { rows, 3 }, BAKE_ROWS, BAKE_SAVED },
+        { PROBES, TENSOR_F32, 2, { rows, UPDATE_PROBE_FLOATS }, BAKE_ROWS, 1 },
+    };
+    return bake_plan_add(plan, &(struct bake_stage){ .name = "changes",
+                                                     .task_count = count,
+                                                     .run = run_probes,
+                                                     .outputs = out,
+                                                     .output_count = 2,
+                                                     .rays = rays * (double)rows / (double)count,
+                                                     .texels = (double)rows / (double)count });
+}
+
+static bool add_reach(struct bake_plan *plan, uint64_t rows)
+{
+    const struct bake_output out = {
+        LIGHTMAP_AGAIN, TENSOR_U8, 1, { rows }, BAKE_ROWS, BAKE_SAVED
+    };
+    return bake_plan_add(plan, &(struct bake_stage){ .name = "reach",
+                                                     .wave = 1,
+                                                     .task_count = 1,
+                                                     .run = run_reach,
+                                                     .outputs = &out,
+                                                     .output_count = 1,
+                                                     .others = (double)rows,
+                                                     .scratch_bytes = 16 * (size_t)rows });
+}
+
+static bool add_paths(struct bake_plan *plan, uint64_t rows, int samples)
+{
+    const uint64_t wanted = (rows * (uint64_t)samples + PATHS_PER_TASK - 1) / PATHS_PER_TASK;
+    const size_t count = (size_t)(wanted < rows ? wanted : rows);
+    const double rays = (double)rows * samples * RAYS_PER_PATH * ASSUMED_SHARE;
+    const struct bake_output out = { LIGHTMAP_REST, TENSOR_F32, 2,
+                                     { rows, 4 },   BAKE_ROWS,  BAKE_SAVED };
+    return bake_plan_add(plan, &(struct bake_stage){ .name = "paths",
+                                                     .wave = 2,
+                                                     .task_count = count,
+                                                     .run = run_paths,
+                                                     .outputs = &out,
+                                                     .output_count = 1,
+                                                     .rays = rays / (double)count });
+}
+
+// ---- comparison of the scenes
+
+static struct hash128 key_of(const struct job *job)
+{
+    const struct lightmap_record *now = &job->now;
+    struct hash128 key = hash128_add_text((struct hash128){ 0 }, "update");
+    key = hash128_add(key, &job->was.content, sizeof job->was.content);
+    key = hash128_add(key, &now->environment, sizeof now->environment);
+    for (uint32_t i = 0; i < now->instance_count; i++) {
+        key = hash128_add(key, &now->instances[i].shape, sizeof(struct hash128));
+        key = hash128_add(key, &now->instances[i].surface, sizeof(struct hash128));
+    }
+    for (uint32_t i = 0; i < now->light_count; i++) {
+        const struct world_light *l = &now->lights[i];
+        const float values[] = { (float)l->type, l->position.x,  l->position.y,  l->position.z,
+                                 l->direction.x, l->direction.y, l->direction.z, l->intensity.x,
+                                 l->intensity.y, l->intensity.z, l->cos_inner,   l->cos_outer,
+                                 l->range_m };
+        key = hash128_add(key, values, sizeof values);
+    }
+    return key;
+}
+
+static bool compare(struct job *job, const char *folder)
+{
+    if (!lightmap_record_init(&job->now, job->host, &job->statics.pose, &job->charts, NULL) ||
+        !update_match_init(&job->match, job->host, &job->was, &job->now, &job->charts))
+        return false;
+    if (job->was.environment != job->now.environment)
+        return host_fail(job->host, FAIL_FORMAT,
+                         "cannot update %s: the sky or the environment has changed, whose light "
+                         "reaches everything",
+                         folder);
+    if (job->match.without == job->now.row_count)
+        return host_fail(job->host, FAIL_FORMAT,
+                         "cannot update %s: no surface of the scene is in it", folder);
+    job->is_same = job->match.changed == 0 && job->match.same_lights && job->match.without == 0;
+    return job->is_same || update_before_init(&job->before, job->host, folder, &job->statics.pose,
+                                              &job->was, &job->match);
+}
+
+bool lightmap_add_update_stages(struct bake_plan *plan, const struct lightmap_update *update,
+                                struct lightmap_change *change)
+{
+    struct job *job = bake_plan_alloc(plan, 1, sizeof *job);
+    if (!job) {
+        lightmap_record_finish(update->was);
+        charts_finish(update->charts);
+        return false;
+    }
+    *job = (struct job){ .host = bake_plan_host(plan),
+                         .how = *update->how,
+                         .was = *update->was,
+                         .charts = *update->charts };
+    *update->was = (struct lightmap_record){ 0 };
+    *update->charts = (struct charts){ 0 };
+    bake_plan_set_job(
+        plan,
+        &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish, .destroy = destroy });
+    if (!scene_statics_init(&job->statics, job->host, job->how.pose) ||
+        !compare(job, update->folder))
+        return false;
+    const uint32_t rows = job->charts.side_texel_count;
+    *change =
+        (struct lightmap_change){ job->match.changed, !job->match.same_lights, rows, &job->charts };
+    bake_plan_depends(plan, key_of(job));
+    return add_probes(plan, rows) && add_reach(plan, rows) &&
+           add_paths(plan, rows, job->how.samples);
+}
