@@ -72,7 +72,7 @@ struct arguments {
     // bakes
     const char *bake_files[MAX_BAKE_FILES]; // each a --bake
     int bake_file_count;
-    bool no_bake, force, merge, report_full, all_objects;
+    bool no_bake, force, merge, report_full, all_objects, update;
     int threads;               // 0: all cores
     int shard, shard_count;    // count 0: everything
     long long max_memory_mib;  // 0: no limit

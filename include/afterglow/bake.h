@@ -35,7 +35,12 @@ struct ag_bake_desc {
     /// light of punctual lights; light below 1 % of the map's mean counts as that. Default 0: all
     /// texels have lightmap_samples paths
     float lightmap_noise;
-    uint64_t reserved[7]; ///< 0; see ABI in types.h
+    /// With lightmap_samples: the folder of an earlier light map of the scene (ag_lightmap_write).
+    /// Texels that no change of the scene since then reaches keep its light; see
+    /// docs/lightmaps.md. AG_ERROR_FORMAT or AG_ERROR_FILE from ag_bake_create where that cannot
+    /// be: bake all then. Default NULL: all is baked
+    const char *update_folder;
+    uint64_t reserved[6]; ///< 0; see ABI in types.h
 };
 /// Thread: any.
 AG_API void ag_bake_desc_default(struct ag_bake_desc *desc);
@@ -173,6 +178,23 @@ struct ag_bake_origin {
 /// The bake that such a file is a part of, for ag_bake_create. Thread: the context's.
 AG_API enum ag_result ag_bake_partial_origin(struct ag_context *context, const char *path,
                                              struct ag_bake_origin *out);
+
+/// The result of an update of a light map.
+struct ag_bake_update_info {
+    uint64_t texels;       ///< of both sides of surfaces
+    uint64_t texels_again; ///< of those, baked again
+    /// Instances that were moved, added or removed, or whose material has changed.
+    int instances_changed;
+    bool lights_changed; ///< punctual lights
+    double seconds;      ///< of the bake, as in ag_bake_info
+    /// Estimated for a bake of all texels from the time of those that were baked again; NaN: too
+    /// few.
+    double full_seconds;
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
+};
+/// Requires a complete bake with ag_bake_desc.update_folder. Thread: the context's.
+AG_API enum ag_result ag_bake_get_update(const struct ag_bake *bake,
+                                         struct ag_bake_update_info *out);
 
 struct ag_bake_info {
     /// Owned by the bake. technique: as in its file, mrt for drt, which has the same bake.

@@ -120,8 +120,21 @@ static char *lightmap_options(const struct ag_bake *b, const char *options)
                         lround((double)b->lightmap_noise * NOISE_UNITS), b->lightmap_samples);
 }
 
+static bool add_lightmap_stages(struct ag_bake *b, struct bake_plan *plan, const char *update,
+                                const char *options)
+{
+    if (update) return api_update_add_stages(b, plan, update, options);
+    const struct lightmap_bake how = { .pose = &b->pose,
+                                       .samples = b->lightmap_samples,
+                                       .noise = b->lightmap_noise,
+                                       .charts = b->spec.technique[b->term]->charts,
+                                       .options = b->spec.options[b->term] };
+    return lightmap_add_stages(plan, &how);
+}
+
 // The light map's texels are the technique's; a path needs none of its other data.
-static struct bake *create_lightmap(struct ag_bake *b, struct bake_identity identity)
+static struct bake *create_lightmap(struct ag_bake *b, struct bake_identity identity,
+                                    const char *update)
 {
     struct host *host = &b->context->host;
     const struct technique *technique = b->spec.technique[b->term];
@@ -131,17 +144,16 @@ static struct bake *create_lightmap(struct ag_bake *b, struct bake_identity iden
     identity.version = LIGHTMAP_VERSION * LIGHTMAP_VERSIONS + technique->bake_version;
     identity.options = text;
     identity.of_light = true;
+    b->lightmap_version = identity.version;
+    b->seed = identity.seed;
     struct bake *bake = text ? bake_create(host, &identity) : NULL;
-    const struct lightmap_bake how = { .pose = &b->pose,
-                                       .samples = b->lightmap_samples,
-                                       .noise = b->lightmap_noise,
-                                       .charts = technique->charts,
-                                       .options = b->spec.options[b->term] };
+    if (bake && !add_lightmap_stages(b, bake_plan_of(bake), update, text)) {
+        bake_destroy(bake);
+        bake = NULL;
+    }
     host_free(host, options);
     host_free(host, text);
-    if (!bake || lightmap_add_stages(bake_plan_of(bake), &how)) return bake;
-    bake_destroy(bake);
-    return NULL;
+    return bake;
 }
 
 static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *desc)
@@ -172,7 +184,7 @@ static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *
                                             .scene_name = b->scene->scene->name,
                                             .scene_scale = b->scene->scene->scale };
     if (text && b->lightmap_samples > 0)
-        b->bake = create_lightmap(b, identity);
+        b->bake = create_lightmap(b, identity, desc->update_folder);
     else if (text)
         b->bake = gi_bake_create(host, b->spec.technique[b->term], &b->how, identity);
     host_free(host, text);
@@ -200,6 +212,12 @@ static enum ag_result desc_check(const char *function, const struct ag_scene *sc
                    "lightmap_noise requires lightmap_samples of at least %d, the most paths of a "
                    "texel",
                    LIGHTMAP_LEAST_PATHS);
+    AG_REQUIRE_FOR(function, context, !desc->update_folder || desc->lightmap_samples > 0,
+                   "update_folder is of a light map: set lightmap_samples");
+    AG_REQUIRE_FOR(function, context, !desc->update_folder || desc->shard_count == 0,
+                   "an update has no shards");
+    AG_REQUIRE_FOR(function, context, !desc->update_folder || desc->lightmap_noise == 0.0f,
+                   "an update has one number of paths: lightmap_noise is not 0");
     AG_REQUIRE_FOR(function, context, desc->checkpoint_every_s >= 0.0,
                    "checkpoint_every_s is negative");
     AG_REQUIRE_FOR(function, context, api_animation_exists(scene, desc->animation),

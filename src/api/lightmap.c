@@ -17,6 +17,7 @@ struct ag_lightmap {
     struct lightmap_noise noise;
     bool no_light;
     char *gi;
+    struct lightmap_record record; // zero: not by paths
 };
 
 static struct ag_context *context_of(const struct ag_lightmap *l)
@@ -45,15 +46,18 @@ enum ag_result ag_lightmap_technique(struct ag_context *context, const char *gi,
 
 // ---- creation
 
+// known: the charts, made before; NULL: they are made.
 static bool make_map(struct ag_lightmap *l, const struct gi_spec *spec, int term,
-                     const struct scene_pose *pose)
+                     const struct scene_pose *pose, const struct charts *known)
 {
     struct host *host = &l->context->host;
     struct scene_statics statics;
     struct charts charts = { 0 };
     if (!scene_statics_init(&statics, host, pose)) return false;
-    bool ok = spec->technique[term]->charts(&statics.pose, spec->options[term], host, &charts) &&
-              lightmap_init(&l->map, &charts, pose->scene);
+    bool ok =
+        known ? charts_copy(&charts, known, pose->scene->instance_count)
+              : spec->technique[term]->charts(&statics.pose, spec->options[term], host, &charts);
+    ok = ok && lightmap_init(&l->map, &charts, pose->scene);
     scene_statics_finish(&statics);
     l->gi = ok ? gi_spec_print(spec) : NULL;
     l->facts.gi = l->gi;
@@ -104,11 +108,13 @@ enum ag_result ag_lightmap_from_bake(const struct ag_bake *bake,
     const enum ag_result begun = begin(__func__, bake->scene, desc, &l);
     if (begun != AG_OK) return begun;
     l->facts.samples = bake->lightmap_samples;
-    bool ok = make_map(l, &bake->spec, bake->term, &bake->pose);
+    bool ok = make_map(l, &bake->spec, bake->term, &bake->pose, bake->change.charts);
     if (!desc->no_light)
         ok = ok && lightmap_set_paths(&l->map, bake_tensors(bake->bake), !desc->indirect_only) &&
              lightmap_noise_read(&l->map, bake_tensors(bake->bake), bake->lightmap_samples,
-                                 bake->lightmap_noise, &l->noise);
+                                 bake->lightmap_noise, &l->noise) &&
+             api_update_record(bake, &l->map.charts, &l->record);
+    if (ok && !desc->no_light) l->facts.record = &l->record;
     return done(l, desc, ok, out);
 }
 
@@ -182,7 +188,8 @@ enum ag_result ag_lightmap_from_renderer(struct ag_renderer *r, const struct ag_
     enum ag_result result = desc->no_light ? AG_OK : ag_renderer_wait(r);
     if (result == AG_OK) result = begin(__func__, r->scene, desc, &l);
     if (result != AG_OK) return result;
-    return done(l, desc, make_map(l, &r->spec, term, &r->pose) && set_layers(l, r, image), out);
+    return done(l, desc, make_map(l, &r->spec, term, &r->pose, NULL) && set_layers(l, r, image),
+                out);
 }
 
 void ag_lightmap_destroy(struct ag_lightmap *l)
@@ -190,6 +197,7 @@ void ag_lightmap_destroy(struct ag_lightmap *l)
     if (!l) return;
     struct ag_scene *scene = l->scene;
     lightmap_finish(&l->map);
+    lightmap_record_finish(&l->record);
     host_free(&l->context->host, l->gi);
     host_free(&l->context->host, l);
     api_scene_release(scene, &scene->bakes);

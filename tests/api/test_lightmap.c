@@ -2,6 +2,7 @@
 #include "api/renderer_fixture.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -250,6 +251,105 @@ TEST(light_map_functions_refuse_wrong_arguments)
     ag_lightmap_destroy(lightmap);
     ag_lightmap_destroy(NULL);
     ag_bake_destroy(bake);
+    ag_scene_destroy(scene);
+    ag_context_destroy(context);
+}
+
+// ---- updates: no device is needed
+
+#define UPDATE_SPEC "radiosity:texels=4096"
+
+static enum ag_result create_update(struct ag_scene *scene, const char *folder, int samples,
+                                    struct ag_bake **out)
+{
+    struct ag_bake_desc desc;
+    ag_bake_desc_default(&desc);
+    desc.lightmap_samples = samples;
+    desc.update_folder = folder;
+    return ag_bake_create(scene, UPDATE_SPEC, &desc, out);
+}
+
+// Bakes and writes the map into the folder, and destroys the bake.
+static void write_map(struct ag_bake *bake, const char *folder)
+{
+    struct ag_lightmap *lightmap = NULL;
+    assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
+    assert_int_equal(ag_lightmap_from_bake(bake, NULL, &lightmap), AG_OK);
+    assert_int_equal(ag_lightmap_write_as(lightmap, folder, AG_LIGHTMAP_EXR), AG_OK);
+    ag_lightmap_destroy(lightmap);
+    ag_bake_destroy(bake);
+}
+
+TEST(update_keeps_what_a_moved_instance_does_not_reach)
+{
+    struct ag_context *context = fixture_context();
+    struct ag_scene *scene = NULL;
+    struct ag_bake *bake = NULL;
+    struct ag_bake_update_info info;
+    struct ag_scene_info counts;
+    char folder[512];
+    snprintf(folder, sizeof folder, "%s", test_path("update-maps"));
+    CHECK(mkdir(folder, 0700) == 0);
+    assert_int_equal(ag_scene_load(context, "@cornell:light=point", &scene), AG_OK);
+    assert_int_equal(create_update(scene, NULL, SAMPLES, &bake), AG_OK);
+    assert_int_equal(ag_bake_get_update(bake, &info), AG_ERROR_ARGUMENT);
+    CHECK(strstr(ag_context_last_error(context), "set update_folder"));
+    write_map(bake, folder);
+
+    // A small move of the last instance.
+    assert_int_equal(ag_scene_get_info(scene, -1, 0.0, &counts), AG_OK);
+    struct ag_instance_info placed;
+    const int last = counts.instances - 1;
+    assert_int_equal(ag_scene_get_instance(scene, last, -1, 0.0, &placed), AG_OK);
+    placed.world_from_mesh[12] += 0.1f;
+    assert_int_equal(ag_scene_set_instance_transform(scene, last, placed.world_from_mesh), AG_OK);
+    assert_int_equal(ag_scene_set_instance_mobility(scene, last, AG_MOBILITY_STATIC), AG_OK);
+    assert_int_equal(create_update(scene, folder, SAMPLES, &bake), AG_OK);
+    assert_int_equal(ag_bake_get_update(bake, &info), AG_ERROR_ARGUMENT);
+    CHECK(strstr(ag_context_last_error(context), "run it first"));
+    assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
+    assert_int_equal(ag_bake_get_update(bake, &info), AG_OK);
+    print_message("%d instances, %llu of %llu texels, %.2f s, all %.2f s\n", info.instances_changed,
+                  (unsigned long long)info.texels_again, (unsigned long long)info.texels,
+                  info.seconds, info.full_seconds);
+    CHECK(info.instances_changed == 1 && !info.lights_changed);
+    CHECK(info.texels_again > 0 && info.texels_again < info.texels);
+    write_map(bake, folder);
+
+    // Now nothing has changed.
+    assert_int_equal(create_update(scene, folder, SAMPLES, &bake), AG_OK);
+    assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
+    assert_int_equal(ag_bake_get_update(bake, &info), AG_OK);
+    CHECK(info.texels_again == 0 && info.instances_changed == 0);
+    ag_bake_destroy(bake);
+    ag_scene_destroy(scene);
+    ag_context_destroy(context);
+}
+
+TEST(folders_that_cannot_be_updated_are_refused_in_one_sentence)
+{
+    struct ag_context *context = fixture_context();
+    struct ag_scene *scene = NULL;
+    struct ag_bake *bake = NULL;
+    char folder[512];
+    snprintf(folder, sizeof folder, "%s", test_path("update-refused"));
+    CHECK(mkdir(folder, 0700) == 0);
+    assert_int_equal(ag_scene_load(context, "@cornell", &scene), AG_OK);
+    assert_int_equal(create_update(scene, folder, 4, &bake), AG_ERROR_FILE);
+    CHECK(bake == NULL && strstr(ag_context_last_error(context), "bake.safetensors"));
+    assert_int_equal(create_update(scene, folder, 0, &bake), AG_ERROR_ARGUMENT);
+    assert_int_equal(create_update(scene, NULL, 4, &bake), AG_OK);
+    write_map(bake, folder);
+    bake = NULL;
+    assert_int_equal(create_update(scene, folder, 8, &bake), AG_ERROR_FORMAT);
+    CHECK(bake == NULL && strstr(ag_context_last_error(context), "samples is 4, not 8"));
+    struct ag_bake_desc desc;
+    ag_bake_desc_default(&desc);
+    desc.lightmap_samples = 4;
+    desc.update_folder = folder;
+    desc.shard_count = 2;
+    assert_int_equal(ag_bake_create(scene, UPDATE_SPEC, &desc, &bake), AG_ERROR_ARGUMENT);
+    CHECK(strstr(ag_context_last_error(context), "an update has no shards"));
     ag_scene_destroy(scene);
     ag_context_destroy(context);
 }

@@ -20,11 +20,11 @@ TEST(light_map_is_the_same_for_any_threads_and_replaces_an_earlier_one)
     const char *a = path_of("maps-a"), *b = path_of("maps-b");
     run_expect(0, BAKE " --threads 1 --force --lightmap", a, NULL);
     run_expect(0, BAKE " --threads 3 --force --lightmap", b, NULL);
-    assert_int_equal(count_files(a), 4);
+    assert_int_equal(count_files(a), 5);
     CHECK(files_are_equal(path_of("maps-a/irradiance.exr"), path_of("maps-b/irradiance.exr")));
     CHECK(files_are_equal(path_of("maps-a/scene.glb"), path_of("maps-b/scene.glb")));
     run_expect(0, BAKE " --seed 5 --lightmap", a, NULL);
-    assert_int_equal(count_files(a), 4);
+    assert_int_equal(count_files(a), 5);
     CHECK(!files_are_equal(path_of("maps-a/irradiance.exr"), path_of("maps-b/irradiance.exr")));
 }
 
@@ -132,7 +132,7 @@ TEST(formats_are_those_of_the_list_and_replace_those_of_an_earlier_run)
     use_cache("lightmap-formats");
     const char *maps = path_of("maps-f");
     run_expect(0, BAKE " --lightmap-format ktx2 --lightmap", maps, NULL);
-    assert_int_equal(count_files(maps), 2);
+    assert_int_equal(count_files(maps), 3);
     CHECK(file_exists(path_of("maps-f/irradiance.ktx2")));
     CHECK(!scene_has("maps-f/scene.glb", "MOZ_lightmap"));
     const struct run *r =
@@ -141,7 +141,7 @@ TEST(formats_are_those_of_the_list_and_replace_those_of_an_earlier_run)
     assert_int_equal(json_array_size(formats), 2);
     CHECK_STRING(json_string_value(json_array_get(formats, 0)), "exr");
     json_decref(report);
-    assert_int_equal(count_files(maps), 3);
+    assert_int_equal(count_files(maps), 4);
     CHECK(file_exists(path_of("maps-f/irradiance.png")));
     CHECK(scene_has("maps-f/scene.glb", "MOZ_lightmap"));
     // A copy's copy has the map once more, not twice.
@@ -200,7 +200,7 @@ static void check_merged(const char *scene, const char *more)
                           path_of("parts-whole/irradiance.exr")));
     CHECK(files_are_equal(path_of("parts-merged/scene.glb"), path_of("parts-whole/scene.glb")));
     static const char *const files[] = { "irradiance.exr", "irradiance.ktx2", "irradiance.png",
-                                         "scene.glb" };
+                                         "bake.safetensors", "scene.glb" };
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         char name[64];
         snprintf(name, sizeof name, "parts-merged/%s", files[i]);
@@ -267,4 +267,135 @@ TEST(denoising_without_its_library_is_a_warning)
     CHECK(strstr(r->err, "built without Open Image Denoise"));
 #endif
     CHECK(file_exists(path_of("maps-d/irradiance.exr")));
+}
+
+// ---- updates
+
+// A floor of 8 m and a screen of 1 m that stands on it at x.
+static const char *write_screen(const char *name, double x)
+{
+    static const char FORMAT[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":["
+        "{\"mesh\":0,\"scale\":[8,1,8]},"
+        "{\"mesh\":0,\"translation\":[%g,0.5,0],\"rotation\":[0.70710678,0,0,0.70710678]}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":"
+        "0}]}],"
+        "\"materials\":[{\"doubleSided\":true,\"pbrMetallicRoughness\":{\"metallicFactor\":0}}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\","
+        "\"min\":[-0.5,0,-0.5],\"max\":[0.5,0,0.5]},"
+        "{\"bufferView\":1,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},"
+        "{\"buffer\":0,\"byteOffset\":48,\"byteLength\":12}],"
+        "\"buffers\":[{\"byteLength\":60,\"uri\":\"data:application/octet-stream;base64,"
+        "AAAAvwAAAAAAAAC/AAAAvwAAAAAAAAA/AAAAPwAAAAAAAAA/AAAAPwAAAAAAAAC/AAABAAIAAAACAAMA\"}]}";
+    static char text[2048];
+    const int size = snprintf(text, sizeof text, FORMAT, x);
+    write_file(path_of(name), text, (size_t)size);
+    return path_of(name);
+}
+
+#define SCREEN                                                                                     \
+    "bake --gi radiosity:texels=2048 --spp 16 --sky 100,100,100 --light "                          \
+    "sun:0.3,-1,0.2:500,500,500 "
+
+static json_t *update_of(const struct run *r)
+{
+    json_t *report = run_json(r), *update = json_object_get(report, "update");
+    assert_non_null(update);
+    json_incref(update);
+    json_decref(report);
+    return update;
+}
+
+static double number(const json_t *update, const char *key)
+{
+    return json_number_value(json_object_get(update, key));
+}
+
+TEST(update_without_a_change_writes_the_same_bytes_without_the_cache)
+{
+    use_cache("update-same");
+    const char *scene = write_screen("update-same.gltf", 0.0), *maps = path_of("update-same-maps");
+    static const char *const files[] = { "irradiance.exr", "irradiance_back.exr", "scene.glb",
+                                         "bake.safetensors" };
+    char a[64], b[64];
+    run_expect(0, SCREEN "--quiet --lightmap", path_of("update-first"), scene, NULL);
+    run_expect(0, SCREEN "--quiet --lightmap", maps, scene, NULL);
+    use_cache("update-same-empty");
+    json_t *update =
+        update_of(run_expect(0, SCREEN "--quiet --json --update --lightmap", maps, scene, NULL));
+    CHECK(number(update, "texels_again") == 0.0 && number(update, "instances_changed") == 0.0);
+    json_decref(update);
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        snprintf(a, sizeof a, "update-first/%s", files[i]);
+        snprintf(b, sizeof b, "update-same-maps/%s", files[i]);
+        CHECK(files_are_equal(path_of(a), path_of(b)));
+    }
+}
+
+TEST(update_after_a_move_bakes_a_part_again_and_says_what_it_cost)
+{
+    use_cache("update-moved");
+    const char *maps = path_of("update-moved-maps");
+    run_expect(0, SCREEN "--quiet --lightmap", maps, write_screen("moved-a.gltf", -3.0), NULL);
+    const struct run *r = run_expect(0, SCREEN "--json --update --lightmap", maps,
+                                     write_screen("moved-b.gltf", -2.4), NULL);
+    CHECK(strstr(r->err, "changed: 1 instance; baked again: "));
+    json_t *update = update_of(r);
+    const double again = number(update, "texels_again"), texels = number(update, "texels");
+    print_message("%.0f of %.0f texels\n", again, texels);
+    CHECK(again > 0.01 * texels && again < 0.7 * texels);
+    CHECK(number(update, "instances_changed") == 1.0);
+    CHECK(number(update, "seconds") > 0.0);
+    json_decref(update);
+    // The result is an earlier map, too.
+    update = update_of(run_expect(0, SCREEN "--quiet --json --update --lightmap", maps,
+                                  path_of("moved-b.gltf"), NULL));
+    CHECK(number(update, "texels_again") == 0.0);
+    json_decref(update);
+}
+
+static void check_all_is_baked(const char *words, const char *maps, const char *scene,
+                               const char *why)
+{
+    const struct run *r = run_expect(0, words, maps, scene, NULL);
+    CHECK(strstr(r->err, "warning: all is baked: cannot ") && strstr(r->err, why));
+}
+
+TEST(folders_that_cannot_be_updated_are_baked_completely_and_the_reason_is_said)
+{
+    use_cache("update-not");
+    const char *scene = write_screen("update-not.gltf", 1.0), *maps = path_of("update-not-maps");
+    check_all_is_baked(SCREEN "--update --lightmap", maps, scene, "bake.safetensors");
+    check_all_is_baked("bake --gi radiosity:texels=4096 --spp 4 --update --lightmap", maps, scene,
+                       "texels is 2048, not 4096, samples is 16, not 4");
+    check_all_is_baked("bake --gi radiosity:texels=4096 --spp 4 --seed 9 --update --lightmap", maps,
+                       scene, "its seed is 0, not 9");
+    check_all_is_baked("bake --gi radiosity:texels=4096 --spp 4 --seed 9 --sky 1,2,3 --update "
+                       "--lightmap",
+                       maps, scene, "the sky or the environment has changed");
+    write_file(path_of("update-not-maps/bake.safetensors"), "no", 2);
+    check_all_is_baked(SCREEN "--update --lightmap", maps, scene, "bake.safetensors");
+    check_all_is_baked("bake @cornell --gi radiosity:texels=2048 --spp 16 --light "
+                       "sun:0.3,-1,0.2:500,500,500 --sky 100,100,100 --update --lightmap",
+                       maps, NULL, "no surface of the scene is in it");
+}
+
+TEST(updates_that_cannot_be_are_wrong_usage)
+{
+    use_cache("update-usage");
+    const char *maps = path_of("update-usage-maps"), *part = path_of("update-usage.safetensors");
+    const struct run *r = run_expect(2, "bake @cornell --gi radiosity --update", NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "it requires --lightmap DIR"));
+    r = run_expect(2, "bake @cornell --gi radiosity --update --lightmap", maps, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "add --spp N"));
+    r = run_expect(2, BAKE " --update --shard 0/2 --lightmap", maps, "-o", part, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "cannot use --update with --shard"));
+    r = run_expect(2, "bake --merge --update --lightmap", maps, part, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "cannot use --update with --merge"));
+    CHECK(!file_exists(maps) && !file_exists(part));
 }

@@ -45,11 +45,25 @@ static enum status find_path(struct baking *b, const char *path)
     return DONE;
 }
 
+// Bakes all where the folder cannot be updated.
+static enum ag_result create(struct baking *b, const char *gi, const struct ag_bake_desc *desc)
+{
+    struct ag_scene *scene = b->session->scene;
+    enum ag_result result = ag_bake_create(scene, gi, desc, &b->bake);
+    b->updates = desc->update_folder && result == AG_OK;
+    if (!desc->update_folder || (result != AG_ERROR_FORMAT && result != AG_ERROR_FILE))
+        return result;
+    note("warning: all is baked: %s", ag_context_last_error(b->session->context));
+    struct ag_bake_desc all = *desc;
+    all.update_folder = NULL;
+    return ag_bake_create(scene, gi, &all, &b->bake);
+}
+
 enum status baking_begin(struct baking *b, struct session *session, const char *gi,
                          const struct ag_bake_desc *desc, const char *path)
 {
     *b = (struct baking){ .session = session, .estimate_seconds = (double)NAN };
-    enum ag_result result = ag_bake_create(session->scene, gi, desc, &b->bake);
+    enum ag_result result = create(b, gi, desc);
     if (result != AG_OK) return fail_bake(b, result);
     enum status status = find_path(b, path);
     if (status != DONE || !b->path[0]) return status;
@@ -227,6 +241,7 @@ static enum status estimate(struct baking *b, bool shard)
     if (result == AG_OK && mib > 0 && needs.peak_memory_bytes > (uint64_t)mib << 20)
         return fail_bake(b, ag_bake_run(b->bake, NULL, NULL));
     if (result == AG_OK && !shard && check_disk(b, needs.file_bytes) != DONE) return FAILED;
+    if (result == AG_OK && b->updates) return DONE; // its cost is not known before
     if (result == AG_OK) result = ag_bake_estimate_cost(b->bake, true, &needs);
     if (result != AG_OK) return fail_bake(b, result);
     b->estimate_seconds = needs.seconds / (a->team ? a->team->ranks.count : 1);

@@ -18,6 +18,7 @@ struct baking {
     bool loaded;                   // from a file, not run
     bool settled;                  // the other ranks of the team know that it is complete
     bool from_cache;               // that file is in the cache
+    bool updates;                  // an earlier light map
     double estimate_seconds;       // of the whole run, before it; NaN: nothing was estimated
 };
 // Creates the bake of one technique of the spec. path NULL: a file in the cache. desc: see

@@ -32,7 +32,7 @@ struct job {
 static bool is_ours(const char *name)
 {
     static const char *const others[] = { "irradiance_back.exr", "irradiance_back.ktx2",
-                                          "irradiance_back.png", "scene.glb" };
+                                          "irradiance_back.png", "bake.safetensors", "scene.glb" };
     for (size_t i = 0; i < sizeof MARKS / sizeof *MARKS; i++)
         if (strcmp(name, MARKS[i]) == 0) return true;
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
@@ -73,6 +73,7 @@ enum status light_map_check_others(const struct arguments *a)
                          : a->has_spp            ? "--spp"
                          : a->indirect_only      ? "--indirect-only"
                          : a->denoise            ? "--denoise"
+                         : a->update             ? "--update"
                                                  : NULL;
     if (option) return wrong_usage("cannot use %s: it requires --lightmap DIR", option);
     option = a->light_count > 0   ? "--light"
@@ -113,6 +114,21 @@ static enum status check_part(const struct arguments *a)
     if (a->merge && option)
         return wrong_usage("cannot use %s with --merge: it is that of the parts; leave it out",
                            option);
+    return DONE;
+}
+
+static enum status check_update(const struct arguments *a)
+{
+    if (!a->update) return DONE;
+    if (is_part(a) || a->merge)
+        return wrong_usage("cannot use --update with --%s: an update has no parts; leave one out",
+                           a->merge ? "merge" : "shard");
+    if (a->team)
+        return wrong_usage(
+            "cannot use --update with afterglow-mpi: use afterglow, or leave it out");
+    if (!a->has_spp)
+        return wrong_usage(
+            "cannot use --update: only a light map by paths is updated; add --spp N");
     return DONE;
 }
 
@@ -174,6 +190,7 @@ static enum status begin_paths(struct job *job)
     desc.max_memory_bytes = (uint64_t)a->max_memory_mib << 20;
     desc.lightmap_samples = a->merge ? job->origin.lightmap_samples : a->spp;
     desc.lightmap_noise = a->merge ? job->origin.lightmap_noise : (float)a->spp_noise;
+    desc.update_folder = a->update ? a->lightmap : NULL;
     return baking_begin(&job->baking, &job->session, gi_of(job), &desc, a->output);
 }
 
@@ -249,8 +266,32 @@ static void say_noise(const struct ag_lightmap_info *info)
          100.0 * (double)info->noise, (double)info->paths, noisy);
 }
 
+static void say_update(const struct ag_bake_update_info *u)
+{
+    char full[64] = "";
+    const double share = u->texels > 0 ? 100.0 * (double)u->texels_again / (double)u->texels : 0.0;
+    if (u->instances_changed == 0 && !u->lights_changed && u->texels_again == 0) {
+        note("nothing has changed; no texel is baked again");
+        return;
+    }
+    if (isfinite(u->full_seconds))
+        snprintf(full, sizeof full, "; all: about %.1f s", u->full_seconds);
+    note("changed: %d instance%s%s; baked again: %llu of %llu texels, %.1f %%, in %.1f s%s",
+         u->instances_changed, u->instances_changed == 1 ? "" : "s",
+         u->lights_changed ? " and lights" : "", (unsigned long long)u->texels_again,
+         (unsigned long long)u->texels, share, u->seconds, full);
+}
+
+static json_t *update_json(const struct ag_bake_update_info *u)
+{
+    return json_pack("{s:i, s:b, s:I, s:I, s:o, s:o}", "instances_changed", u->instances_changed,
+                     "lights_changed", u->lights_changed, "texels", (json_int_t)u->texels,
+                     "texels_again", (json_int_t)u->texels_again, "seconds",
+                     json_double(u->seconds), "full_seconds", json_double(u->full_seconds));
+}
+
 static json_t *json_of(const struct job *job, const struct ag_lightmap_info *info,
-                       double utilisation)
+                       double utilisation, const struct ag_bake_update_info *update)
 {
     json_t *out =
         json_pack("{s:o, s:[i, i], s:i, s:i, s:o, s:o, s:b, s:o}", "output",
@@ -260,6 +301,7 @@ static json_t *json_of(const struct job *job, const struct ag_lightmap_info *inf
                   "back", info->has_back, "formats", formats_json(formats_of(job->arguments)));
     if (out && info->paths > 0.0f)
         json_object_set_new(out, "paths", json_double((double)info->paths));
+    if (out && update) json_object_set_new(out, "update", update_json(update));
     if (!out || !isfinite(info->noise)) return out;
     json_object_set_new(out, "noise", json_double((double)info->noise));
     json_object_set_new(out, "noisy_charts", json_integer(info->noisy_charts));
@@ -268,6 +310,10 @@ static json_t *json_of(const struct job *job, const struct ag_lightmap_info *inf
 
 static enum status report(const struct job *job)
 {
+    struct ag_bake_update_info update;
+    const bool updated =
+        job->baking.updates && ag_bake_get_update(job->baking.bake, &update) == AG_OK;
+    if (updated) say_update(&update);
     struct ag_lightmap_info info;
     ag_lightmap_get_info(job->lightmap, &info);
     const double utilisation = (double)info.texels / ((double)info.width * (double)info.height);
@@ -277,7 +323,7 @@ static enum status report(const struct job *job)
          (double)info.texels_per_m, job->folder.shown);
     say_noise(&info);
     if (!job->arguments->json) return DONE;
-    return json_print(json_of(job, &info, utilisation));
+    return json_print(json_of(job, &info, utilisation, updated ? &update : NULL));
 }
 
 // Everything that can fail before the work.
@@ -286,6 +332,7 @@ static enum status prepare(struct job *job)
     const struct arguments *a = job->arguments;
     enum status status = check_usage(a);
     if (status == DONE) status = check_part(a);
+    if (status == DONE) status = check_update(a);
     if (status == DONE) status = session_begin(&job->session, a);
     if (status == DONE) status = find_origin(job);
     if (status == DONE) status = check_technique(job);

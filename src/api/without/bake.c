@@ -137,6 +137,13 @@ enum ag_result ag_bake_merge(struct ag_bake *bake, const char *path)
     return ag_bake_set_checkpoint(bake, path);
 }
 
+enum ag_result ag_bake_get_update(const struct ag_bake *bake, struct ag_bake_update_info *out)
+{
+    (void)bake;
+    (void)out;
+    return absent(NULL, __func__);
+}
+
 enum ag_result ag_bake_get_info(const struct ag_bake *bake, struct ag_bake_info *out)
 {
     (void)bake;
