@@ -228,11 +228,32 @@ static bool find_boxes(struct update_match *m, const struct lightmap_record *was
     return true;
 }
 
-bool update_is_near_change(const struct update_match *m, vec3s position)
+static bool is_in(const struct box3 *box, vec3s position)
 {
-    for (uint32_t i = 0; i < m->near_count; i++)
-        if (box3_intersects(m->near[i], (struct box3){ position, position })) return true;
-    return false;
+    return box3_intersects(*box, (struct box3){ position, position });
+}
+
+// Beside a small object light changes from texel to texel. A large box may be most of the scene.
+enum { SMALL_SHARE = 50 };
+
+static bool find_small_boxes(struct update_match *m, const struct charts *charts)
+{
+    m->near_is_small = host_alloc(m->host, MOST_BOXES, sizeof *m->near_is_small);
+    for (uint32_t b = 0; m->near_is_small && b < m->near_count; b++) {
+        uint32_t inside = 0;
+        for (uint32_t i = 0; i < charts->texel_count; i++)
+            inside += is_in(&m->near[b], charts->texels[i].position);
+        m->near_is_small[b] = inside <= charts->texel_count / SMALL_SHARE;
+    }
+    return m->near_is_small;
+}
+
+enum update_near update_near_change(const struct update_match *m, vec3s position)
+{
+    enum update_near near = UPDATE_FAR;
+    for (uint32_t i = 0; i < m->near_count && near != UPDATE_BESIDE; i++)
+        if (is_in(&m->near[i], position)) near = m->near_is_small[i] ? UPDATE_BESIDE : UPDATE_NEAR;
+    return near;
 }
 
 // ---- all
@@ -249,7 +270,7 @@ bool update_match_init(struct update_match *out, struct host *host,
     bool ok = out->was && out->same && out->gone && out->row_was;
     for (uint32_t i = 0; ok && i < now->row_count; i++) out->row_was[i] = UPDATE_NONE;
     ok = ok && match_instances(out, was, now) && match_charts(out, was, now) &&
-         find_boxes(out, was, now);
+         find_boxes(out, was, now) && find_small_boxes(out, charts);
     if (ok) drop_unmatched(out, charts);
     for (uint32_t i = 0; ok && i < now->row_count; i++)
         out->without += out->row_was[i] == UPDATE_NONE;
@@ -265,5 +286,6 @@ void update_match_finish(struct update_match *m)
     host_free(m->host, m->gone);
     host_free(m->host, m->row_was);
     host_free(m->host, m->near);
+    host_free(m->host, m->near_is_small);
     *m = (struct update_match){ 0 };
 }

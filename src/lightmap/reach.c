@@ -1,19 +1,20 @@
 // Which texels a change reaches. Texels are pooled in cells of space: paths of one texel are too
-// few, and a chart may be smaller than the change. Cells of three sizes, each twice the last: small
+// few, and a chart may be smaller than the change. Cells of four sizes, each twice the last: small
 // ones find shadows at contacts, large ones weak light.
 //
 // A cell is baked again where its mean has changed by more than the noise of a full bake: by the
-// standard error of the mean of BLOCK texels, or by a hundredth where that is less.
+// standard error of the mean of BLOCK texels, or by a hundredth where that is more.
 #include "lightmap/update.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-enum { SMALL, MIDDLE, LARGE, LEVELS };
-enum { EDGE = 4, BLOCK = 16 }; // EDGE: of small cells, texels
-// In small cells a few paths are most of the change.
-static const double LEVEL_THRESHOLD[LEVELS] = { 2.0, 1.0, 1.0 };
+enum { TINY, SMALL, MIDDLE, LARGE, LEVELS };
+enum { EDGE = 2, BLOCK = 16 }; // EDGE: of tiny cells, texels
+// The noise of a full bake is larger in cells of fewer texels than a block.
+static const double LEVEL_THRESHOLD[LEVELS] = { 2.0, 1.5, 1.0, 1.0 };
 static const double PART_THRESHOLD = 0.5; // of a middle cell in a large one that has changed
+static const double SUSPECT_THRESHOLD = 0.5;
 static const double LEAST_CHANGE = 0.01, SIGNIFICANT = 2.0;
 
 // ---- cells
@@ -210,19 +211,41 @@ static void dilate(struct reach *r)
     for (uint32_t i = 0; i < r->charts->side_texel_count; i++) r->again[i] = r->again[i] != 0;
 }
 
+static bool reach_init(struct reach *r, struct host *host, const struct charts *charts,
+                       const struct update_probe *probes, int samples, uint8_t *again)
+{
+    *r = (struct reach){ .charts = charts,
+                         .probes = probes,
+                         .again = again,
+                         .block = (double)BLOCK * samples,
+                         .edge_m = (float)EDGE / charts->texels_per_m };
+    r->members = host_alloc(host, charts->side_texel_count, sizeof *r->members);
+    return r->members;
+}
+
+bool update_suspects(struct host *host, const struct charts *charts,
+                     const struct update_probe *probes, int samples, uint8_t *suspects)
+{
+    struct reach r;
+    if (!reach_init(&r, host, charts, probes, samples, suspects)) return false;
+    sort_into_cells(&r, r.edge_m * (float)(1 << MIDDLE));
+    for (uint32_t i = 0, end; i < charts->side_texel_count; i = end) {
+        bool significant;
+        end = end_of_cell(&r, i);
+        if (change_of(&r, i, end, &significant) > SUSPECT_THRESHOLD) mark(&r, i, end, AGAIN);
+    }
+    host_free(host, r.members);
+    return true;
+}
+
 bool update_reach(struct host *host, const struct charts *charts, const struct update_probe *probes,
                   int samples, uint8_t *again)
 {
     const uint32_t rows = charts->side_texel_count;
-    struct reach r = { charts,
-                       probes,
-                       again,
-                       host_alloc(host, rows, sizeof *r.members),
-                       (double)BLOCK * samples,
-                       (float)EDGE / charts->texels_per_m };
-    if (!r.members) return false;
+    struct reach r;
+    if (!reach_init(&r, host, charts, probes, samples, again)) return false;
     for (uint32_t i = 0; i < rows; i++) again[i] = probes[i].touched > 0.0f;
-    for (int level = LARGE; level >= SMALL; level--) mark_level(&r, level);
+    for (int level = LARGE; level >= TINY; level--) mark_level(&r, level);
     dilate(&r);
     host_free(host, r.members);
     return true;

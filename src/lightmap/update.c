@@ -7,7 +7,8 @@
 
 #include <string.h>
 
-static const char PROBES[] = "update/probes";
+static const char FIRST_PROBES[] = "update/first", SUSPECTS[] = "update/suspects",
+                  PROBES[] = "update/probes";
 
 struct job {
     struct host *host;
@@ -66,15 +67,16 @@ static void destroy(void *argument)
 
 // ---- wave 0: direct light of all texels, and estimates of the change
 
-// Whether a texel had the same points outside geometry.
-static bool has_same_points(const struct job *job, uint32_t texel, const struct gather_points *now)
+// Whether a texel is beside a small object that has changed, or had other points outside geometry.
+static bool is_touched(const struct job *job, uint32_t texel, const struct gather_points *now)
 {
     struct gather_points was;
-    if (!update_is_near_change(&job->match, chart_texel_of(&job->charts, texel)->position))
-        return true;
+    const enum update_near near =
+        update_near_change(&job->match, chart_texel_of(&job->charts, texel)->position);
+    if (near != UPDATE_NEAR) return near == UPDATE_BESIDE;
     gather_find_points(&job->scene_before, texel, &was);
-    return now->count == was.count &&
-           memcmp(now->at, was.at, (size_t)now->count * sizeof now->at[0]) == 0;
+    return now->count != was.count ||
+           memcmp(now->at, was.at, (size_t)now->count * sizeof now->at[0]) != 0;
 }
 
 // Means of some paths of each scene, with the same random numbers.
@@ -91,18 +93,23 @@ static struct pair trace_pair(const struct job *job, const struct gather_points 
                           gather_paths(&job->probe_now, &few, UPDATE_HALF_PATHS, seed) };
 }
 
-// The two halves have other random numbers: their difference is the noise.
-static void estimate(const struct job *job, const struct gather_points *points, uint64_t seed,
-                     struct update_probe *out)
+// Adds the `index`-th pair of halves, whose random numbers differ: their difference is the noise.
+static void add_estimate(const struct job *job, const struct gather_points *points, int index,
+                         uint64_t seed, struct update_probe *out)
 {
-    const struct pair a = trace_pair(job, points, 0, rng_mix(seed + 1)),
-                      b = trace_pair(job, points, UPDATE_HALF_PATHS, rng_mix(seed + 2));
+    const int first = 2 * index * UPDATE_HALF_PATHS;
+    const uint64_t half = 2 * (uint64_t)index + 1;
+    const struct pair a = trace_pair(job, points, first, rng_mix(seed + half)),
+                      b = trace_pair(job, points, first + UPDATE_HALF_PATHS,
+                                     rng_mix(seed + half + 1));
+    const float noise = luminance(a.now) - luminance(b.now), weight = 1.0f / (float)(index + 1);
     for (int c = 0; c < 3; c++) {
-        out->value[c] = 0.5f * (a.now.raw[c] + b.now.raw[c]);
-        out->change[c] = out->value[c] - 0.5f * (a.before.raw[c] + b.before.raw[c]);
+        const float now = 0.5f * (a.now.raw[c] + b.now.raw[c]);
+        const float change = now - 0.5f * (a.before.raw[c] + b.before.raw[c]);
+        out->value[c] += weight * (now - out->value[c]);
+        out->change[c] += weight * (change - out->change[c]);
     }
-    const float noise = luminance(a.now) - luminance(b.now);
-    out->variance = 0.5f * noise * noise * UPDATE_HALF_PATHS;
+    out->variance += weight * (0.5f * noise * noise * UPDATE_HALF_PATHS - out->variance);
 }
 
 static void probe(const struct bake_task *task, uint32_t texel, uint64_t row)
@@ -117,9 +124,9 @@ static void probe(const struct bake_task *task, uint32_t texel, uint64_t row)
     }
     out->touched = job->match.row_was[texel] == UPDATE_NONE;
     if (job->is_same || out->touched > 0.0f) return;
-    out->touched = !has_same_points(job, texel, &points);
+    out->touched = is_touched(job, texel, &points);
     if (out->touched > 0.0f || points.count == 0) return;
-    estimate(job, &points, task->bake_seed, out);
+    add_estimate(job, &points, 0, task->bake_seed, out);
 }
 
 static bool run_rows(const struct bake_task *task,
@@ -142,7 +149,48 @@ static bool run_probes(const struct bake_task *task)
     return run_rows(task, probe);
 }
 
-// ---- wave 1: what is baked again
+// ---- waves 1 and 2: more estimates where a few paths have changed
+
+static bool run_suspects(const struct bake_task *task)
+{
+    const struct job *job = task->job;
+    const struct tensor *probes = bake_task_input(task, FIRST_PROBES);
+    return probes &&
+           update_suspects(task->host, &job->charts, probes->data, job->how.samples, task->out[0]);
+}
+
+static void probe_more(const struct bake_task *task, uint32_t texel, struct update_probe *out)
+{
+    const struct job *job = task->job;
+    struct gather_points points;
+    gather_find_points(&job->scene, texel, &points);
+    for (int i = 1; points.count > 0 && i < UPDATE_PAIRS; i++)
+        add_estimate(job, &points, i, task->bake_seed, out);
+}
+
+static bool run_more_probes(const struct bake_task *task)
+{
+    const struct job *job = task->job;
+    const struct tensor *first = bake_task_input(task, FIRST_PROBES),
+                        *suspects = bake_task_input(task, SUSPECTS);
+    uint64_t count, at = bake_task_rows(task, 0, &count);
+    if (!first || !suspects) return false;
+    const struct update_probe *probes = first->data;
+    const uint8_t *marks = suspects->data;
+    const unsigned before = embree_flush_denormals();
+    bool ok = true;
+    for (uint64_t i = 0; ok && i < count && at + i < job->charts.side_texel_count; i++) {
+        struct update_probe *out = bake_row(task, 0, i);
+        ok = !bake_task_cancelled(task);
+        *out = probes[at + i];
+        if (ok && marks[at + i] && !(out->touched > 0.0f))
+            probe_more(task, (uint32_t)(at + i), out);
+    }
+    embree_restore_denormals(before);
+    return ok;
+}
+
+// ---- wave 3: what is baked again
 
 static bool run_reach(const struct bake_task *task)
 {
@@ -152,7 +200,7 @@ static bool run_reach(const struct bake_task *task)
            update_reach(task->host, &job->charts, probes->data, job->how.samples, task->out[0]);
 }
 
-// ---- wave 2: the light of emitters, the sky and all bounces
+// ---- wave 4: the light of emitters, the sky and all bounces
 
 static void gather(const struct bake_task *task, uint32_t texel, uint64_t row)
 {
@@ -191,18 +239,20 @@ static bool run_paths(const struct bake_task *task)
 // ---- the plan
 
 enum { ROWS_PER_PROBE_TASK = 256, PATHS_PER_TASK = 16384, RAYS_PER_PATH = 8, RAYS_OF_POINTS = 100 };
+enum { WAVE_FIRST, WAVE_SUSPECTS, WAVE_MORE, WAVE_REACH, WAVE_PATHS };
 // The share of texels that estimates of time assume.
 static const double ASSUMED_SHARE = 0.2;
 
 static bool add_probes(struct bake_plan *plan, uint64_t rows)
 {
     const size_t count = (size_t)((rows + ROWS_PER_PROBE_TASK - 1) / ROWS_PER_PROBE_TASK);
-    const double rays = 2 * (UPDATE_PROBE_PATHS * RAYS_PER_PATH + RAYS_OF_POINTS);
+    const double rays = 4 * UPDATE_HALF_PATHS * RAYS_PER_PATH + RAYS_OF_POINTS;
     const struct bake_output out[] = {
         { LIGHTMAP_PUNCTUAL, TENSOR_F32, 2, { rows, 3 }, BAKE_ROWS, BAKE_SAVED },
-        { PROBES, TENSOR_F32, 2, { rows, UPDATE_PROBE_FLOATS }, BAKE_ROWS, 1 },
+        { FIRST_PROBES, TENSOR_F32, 2, { rows, UPDATE_PROBE_FLOATS }, BAKE_ROWS, WAVE_MORE },
     };
     return bake_plan_add(plan, &(struct bake_stage){ .name = "changes",
+                                                     .wave = WAVE_FIRST,
                                                      .task_count = count,
                                                      .run = run_probes,
                                                      .outputs = out,
@@ -211,15 +261,31 @@ static bool add_probes(struct bake_plan *plan, uint64_t rows)
                                                      .texels = (double)rows / (double)count });
 }
 
-static bool add_reach(struct bake_plan *plan, uint64_t rows)
+static bool add_more_probes(struct bake_plan *plan, uint64_t rows)
 {
-    const struct bake_output out = {
-        LIGHTMAP_AGAIN, TENSOR_U8, 1, { rows }, BAKE_ROWS, BAKE_SAVED
-    };
-    return bake_plan_add(plan, &(struct bake_stage){ .name = "reach",
-                                                     .wave = 1,
+    const size_t count = (size_t)((rows + ROWS_PER_PROBE_TASK - 1) / ROWS_PER_PROBE_TASK);
+    const double rays = 4 * (UPDATE_PAIRS - 1) * UPDATE_HALF_PATHS * RAYS_PER_PATH + RAYS_OF_POINTS;
+    const struct bake_output out = { PROBES,    TENSOR_F32, 2, { rows, UPDATE_PROBE_FLOATS },
+                                     BAKE_ROWS, WAVE_REACH };
+    return bake_plan_add(
+        plan, &(struct bake_stage){ .name = "more changes",
+                                    .wave = WAVE_MORE,
+                                    .task_count = count,
+                                    .run = run_more_probes,
+                                    .outputs = &out,
+                                    .output_count = 1,
+                                    .rays = ASSUMED_SHARE * rays * (double)rows / (double)count });
+}
+
+// A stage of one task, which marks rows.
+static bool add_marks(struct bake_plan *plan, uint64_t rows, const char *stage, int wave,
+                      bool (*run)(const struct bake_task *task), const char *tensor, int keep)
+{
+    const struct bake_output out = { tensor, TENSOR_U8, 1, { rows }, BAKE_ROWS, keep };
+    return bake_plan_add(plan, &(struct bake_stage){ .name = stage,
+                                                     .wave = wave,
                                                      .task_count = 1,
-                                                     .run = run_reach,
+                                                     .run = run,
                                                      .outputs = &out,
                                                      .output_count = 1,
                                                      .others = (double)rows,
@@ -234,7 +300,7 @@ static bool add_paths(struct bake_plan *plan, uint64_t rows, int samples)
     const struct bake_output out = { LIGHTMAP_REST, TENSOR_F32, 2,
                                      { rows, 4 },   BAKE_ROWS,  BAKE_SAVED };
     return bake_plan_add(plan, &(struct bake_stage){ .name = "paths",
-                                                     .wave = 2,
+                                                     .wave = WAVE_PATHS,
                                                      .task_count = count,
                                                      .run = run_paths,
                                                      .outputs = &out,
@@ -308,6 +374,9 @@ bool lightmap_add_update_stages(struct bake_plan *plan, const struct lightmap_up
     *change =
         (struct lightmap_change){ job->match.changed, !job->match.same_lights, rows, &job->charts };
     bake_plan_depends(plan, key_of(job));
-    return add_probes(plan, rows) && add_reach(plan, rows) &&
+    return add_probes(plan, rows) &&
+           add_marks(plan, rows, "suspects", WAVE_SUSPECTS, run_suspects, SUSPECTS, WAVE_MORE) &&
+           add_more_probes(plan, rows) &&
+           add_marks(plan, rows, "reach", WAVE_REACH, run_reach, LIGHTMAP_AGAIN, BAKE_SAVED) &&
            add_paths(plan, rows, job->how.samples);
 }

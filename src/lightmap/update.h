@@ -25,6 +25,7 @@ struct update_match {
     // Boxes around instances that have changed, as they were and as they are, each wider by its own
     // size: a point elsewhere is inside geometry if it was.
     struct box3 *near;
+    bool *near_is_small; // has few texels, which are baked again
     uint32_t near_count;
     uint32_t changed; // instances that were moved, added, removed or have another material
     uint32_t without; // rows without an earlier one
@@ -35,7 +36,8 @@ bool update_match_init(struct update_match *out, struct host *host,
                        const struct lightmap_record *was, const struct lightmap_record *now,
                        const struct charts *charts);
 void update_match_finish(struct update_match *match);
-bool update_is_near_change(const struct update_match *match, vec3s position);
+enum update_near { UPDATE_FAR, UPDATE_NEAR, UPDATE_BESIDE }; // BESIDE: in a small box
+enum update_near update_near_change(const struct update_match *match, vec3s position);
 // Whether two lights emit the same.
 bool update_same_light(const struct world_light *a, const struct world_light *b);
 
@@ -76,8 +78,9 @@ void update_coupled_finish(struct update_coupled *coupled);
 
 // ---- reach.c
 
-// Estimates of a texel: paths in both scenes with the same random numbers.
-enum { UPDATE_HALF_PATHS = 2, UPDATE_PROBE_PATHS = 2 * UPDATE_HALF_PATHS, UPDATE_PROBE_FLOATS = 8 };
+// Estimates of a texel: paths in both scenes with the same random numbers. All texels have one pair
+// of halves, those whose surroundings seem to have changed have more.
+enum { UPDATE_HALF_PATHS = 2, UPDATE_PAIRS = 4, UPDATE_PROBE_FLOATS = 8 };
 struct update_probe {
     float change[3]; // now − before, lux
     float value[3];  // now, lux
@@ -85,7 +88,10 @@ struct update_probe {
     float touched;   // 1: the texel is new, or its points are others; baked again
 };
 _Static_assert(sizeof(struct update_probe) == UPDATE_PROBE_FLOATS * sizeof(float), "a row");
-// Sets again[row] of rows to bake again. samples: paths of a texel.
+// Sets suspects[row] of rows to look at again. samples: paths of a texel.
+bool update_suspects(struct host *host, const struct charts *charts,
+                     const struct update_probe *probes, int samples, uint8_t *suspects);
+// Sets again[row] of rows to bake again.
 bool update_reach(struct host *host, const struct charts *charts, const struct update_probe *probes,
                   int samples, uint8_t *again);
 
