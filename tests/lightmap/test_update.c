@@ -395,6 +395,40 @@ TEST(update_is_the_same_for_any_number_of_threads)
     finish(&all);
 }
 
+static bool stop_in_the_middle(void *user, const struct bake_progress *progress)
+{
+    bool *stopped = user;
+    *stopped |= progress->done > 0.3;
+    return !*stopped;
+}
+
+TEST(interrupted_update_continues_to_the_same_bytes)
+{
+    struct hall hall = HALL;
+    struct baked first, second, whole;
+    char checkpoint[600];
+    bool stopped = false;
+    hall.crate.x += 0.7f;
+    const char *folder = write_folder(&HALL, "update-stopped");
+    snprintf(checkpoint, sizeof checkpoint, "%s.checkpoint", folder);
+    CHECK(plan_update(&first, &hall, folder));
+    CHECK(!bake_run(first.bake, &(struct bake_run_options){ .checkpoint = checkpoint,
+                                                            .progress = stop_in_the_middle,
+                                                            .user = &stopped,
+                                                            .threads = 1 }));
+    CHECK(stopped && test_host()->failure == FAIL_CANCELLED);
+    CHECK(access(checkpoint, F_OK) == 0);
+    CHECK(plan_update(&second, &hall, folder));
+    CHECK(bake_run(second.bake, &(struct bake_run_options){ .checkpoint = checkpoint }));
+    bake_update(&whole, &hall, folder);
+    const struct tensors *x = bake_tensors(second.bake), *y = bake_tensors(whole.bake);
+    for (size_t i = 0; i < y->count; i++)
+        CHECK(memcmp(x->at[i].data, y->at[i].data, y->at[i].bytes) == 0);
+    finish(&first);
+    finish(&second);
+    finish(&whole);
+}
+
 // ---- folders that cannot be updated
 
 TEST(other_sky_is_refused_in_one_sentence)
