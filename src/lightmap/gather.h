@@ -35,6 +35,9 @@ bool gather_list_triangles(struct gather_scene *scene);
 // texel: of both sides of the charts.
 void gather_find_points(const struct gather_scene *scene, uint32_t texel,
                         struct gather_points *out);
+// The same where none of its points is inside geometry, without the rays that would tell.
+void gather_find_open_points(const struct gather_scene *scene, uint32_t texel,
+                             struct gather_points *out);
 // The trace scene's surface at a point: white, diffuse, without normal map.
 struct surface gather_surface(const struct gather_scene *scene, const struct gather_point *point,
                               bool back);

@@ -126,10 +126,10 @@ static bool is_point_inside(const struct gather_scene *s, const struct gather_po
                      INSIDE_RAYS);
 }
 
-static void add_point(const struct gather_scene *s, const struct gather_point *point,
+static void add_point(const struct gather_scene *s, const struct gather_point *point, bool known,
                       struct gather_points *out)
 {
-    if (!is_point_inside(s, point, out->back)) out->at[out->count++] = *point;
+    if (known || !is_point_inside(s, point, out->back)) out->at[out->count++] = *point;
 }
 
 // The triangle at a share of the chart's area.
@@ -144,17 +144,19 @@ static uint32_t triangle_at(const struct charts *charts, const struct chart *cha
 
 // All corners of a single-texel chart are at one place: its points are spread over its surface.
 static void find_scattered_points(const struct gather_scene *s, const struct chart *chart,
-                                  struct gather_points *out)
+                                  bool known, struct gather_points *out)
 {
     for (uint32_t k = 0; k < GATHER_POINTS; k++) {
         const vec2s at = sample_triangle(sobol_2d(k, pcg_hash(out->pixel) | 1u));
         const float share = ((float)k + 0.5f) / GATHER_POINTS;
         add_point(s, &(struct gather_point){ triangle_at(s->charts, chart, share), at.x, at.y },
-                  out);
+                  known, out);
     }
 }
 
-void gather_find_points(const struct gather_scene *s, uint32_t texel, struct gather_points *out)
+// known: none is inside geometry.
+static void find_points(const struct gather_scene *s, uint32_t texel, bool known,
+                        struct gather_points *out)
 {
     const struct chart_texel *t = chart_texel_of(s->charts, texel);
     const struct chart *chart = &s->charts->charts[s->charts->triangles[t->triangle].chart];
@@ -163,7 +165,7 @@ void gather_find_points(const struct gather_scene *s, uint32_t texel, struct gat
     out->pixel = chart_front(s->charts, texel);
     out->back = chart_is_back(s->charts, texel);
     if (chart->single_texel) {
-        find_scattered_points(s, chart, out);
+        find_scattered_points(s, chart, known, out);
         return;
     }
     for (uint32_t k = 0; k < GATHER_POINTS; k++) {
@@ -174,8 +176,19 @@ void gather_find_points(const struct gather_scene *s, uint32_t texel, struct gat
                            &point))
             continue;
         covered = true;
-        add_point(s, &point, out);
+        add_point(s, &point, known, out);
     }
     if (!covered) // a sliver
-        add_point(s, &(struct gather_point){ t->triangle, t->u, t->v }, out);
+        add_point(s, &(struct gather_point){ t->triangle, t->u, t->v }, known, out);
+}
+
+void gather_find_points(const struct gather_scene *s, uint32_t texel, struct gather_points *out)
+{
+    find_points(s, texel, false, out);
+}
+
+void gather_find_open_points(const struct gather_scene *s, uint32_t texel,
+                             struct gather_points *out)
+{
+    find_points(s, texel, true, out);
 }

@@ -112,12 +112,26 @@ static void add_estimate(const struct job *job, const struct gather_points *poin
     out->variance += weight * (0.5f * noise * noise * UPDATE_HALF_PATHS - out->variance);
 }
 
+// Points of a front whose number is that of the earlier bake are the same: if all were outside
+// geometry, and no change is near, all are.
+static void find_points(const struct job *job, uint32_t texel, struct gather_points *out)
+{
+    const bool known =
+        job->match.row_was[texel] == texel && !chart_is_back(&job->charts, texel) &&
+        job->was.rest[4 * (size_t)texel + 3] == 1.0f &&
+        update_near_change(&job->match, job->charts.texels[texel].position) == UPDATE_FAR;
+    if (known)
+        gather_find_open_points(&job->scene, texel, out);
+    else
+        gather_find_points(&job->scene, texel, out);
+}
+
 static void probe(const struct bake_task *task, uint32_t texel, uint64_t row)
 {
     const struct job *job = task->job;
     struct update_probe *out = bake_row(task, 1, row);
     struct gather_points points;
-    gather_find_points(&job->scene, texel, &points);
+    find_points(job, texel, &points);
     if (points.count > 0) {
         const vec3s punctual = gather_punctual(&job->scene, &points);
         memcpy(bake_row(task, 0, row), punctual.raw, sizeof punctual.raw);
@@ -163,7 +177,7 @@ static void probe_more(const struct bake_task *task, uint32_t texel, struct upda
 {
     const struct job *job = task->job;
     struct gather_points points;
-    gather_find_points(&job->scene, texel, &points);
+    find_points(job, texel, &points);
     for (int i = 1; points.count > 0 && i < UPDATE_PAIRS; i++)
         add_estimate(job, &points, i, task->bake_seed, out);
 }
@@ -206,7 +220,7 @@ static void gather(const struct bake_task *task, uint32_t texel, uint64_t row)
 {
     const struct job *job = task->job;
     struct gather_points points;
-    gather_find_points(&job->scene, texel, &points);
+    find_points(job, texel, &points);
     if (points.count == 0) return;
     const vec3s rest = gather_paths(&job->scene, &points, job->how.samples, task->bake_seed);
     float *out = bake_row(task, 0, row);
