@@ -187,8 +187,8 @@ struct ag_bake_update_info {
     int instances_changed;
     bool lights_changed; ///< punctual lights
     double seconds;      ///< of the bake, as in ag_bake_info
-    /// Estimated for a bake of all texels from the time of those that were baked again; NaN: too
-    /// few.
+    /// Estimated for a bake of all texels as if each took as long as those that were baked again,
+    /// which is too long where these have the longer paths; NaN: too few.
     double full_seconds;
     uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
