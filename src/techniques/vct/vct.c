@@ -270,8 +270,8 @@ static void begin_view(struct vct *vct, const struct frame_view *view)
 {
     select_view(vct, view->number);
     if (vct->options.temporal)
-        vct_temporal_begin(vct->temporal, view, vct->options.frames, vct->options.clamp,
-                           vct->settles);
+        vct_temporal_begin(vct->temporal, view, vct_block(&vct->options), vct->options.frames,
+                           vct->options.clamp, vct->settles);
     place_small_emitters(vct, view);
 }
 
@@ -297,6 +297,14 @@ static void vct_update(void *state, struct gpu_cmd *cmd, const struct frame_view
     vct_record_light(vct, cmd, view, bounced);
 }
 
+static float longest_side_m(const struct vct_grid *grid)
+{
+    int cells = grid->cells[0];
+    for (int axis = 1; axis < 3; axis++)
+        if (grid->cells[axis] > cells) cells = grid->cells[axis];
+    return (float)cells * grid->cell_m;
+}
+
 static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct vct *vct = state;
@@ -311,11 +319,10 @@ static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view
         resume_view(vct, view);
     vct_record_cones(vct, cmd, view);
     if (vct->options.temporal)
-        vct_temporal_record(vct->temporal, vct->accumulate, cmd, view, vct_result(vct, view));
+        vct_temporal_record(vct->temporal, &vct->history, cmd, view, vct_result(vct, view));
     if (vct_denoises(&vct->options))
-        vct_temporal_denoise(vct->temporal, vct->denoise, cmd, view,
-                             (uint32_t)vct->options.interleave * vct_step(&vct->options),
-                             vct_result(vct, view));
+        vct_temporal_denoise(vct->temporal, &vct->history, cmd, view,
+                             longest_side_m(&vct->clips[0].grid), vct_result(vct, view));
     if (vct->options.specular) record_specular(vct, cmd, view);
 }
 

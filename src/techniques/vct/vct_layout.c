@@ -39,6 +39,11 @@ uint32_t vct_step(const struct vct_options *options)
     return options->half_resolution ? 2 : 1;
 }
 
+uint32_t vct_block(const struct vct_options *options)
+{
+    return (uint32_t)options->interleave * vct_step(options);
+}
+
 // ---- Voxel sets ---------------------------------------------------------------------------------
 
 static uint32_t voxel_count(const struct vct_options *options)

@@ -15,6 +15,8 @@ bool vct_has_rays(const struct vct_options *options);
 bool vct_has_svo(const struct vct_options *options);
 // Pixels of the frame per pixel that traces cones, in x and y.
 uint32_t vct_step(const struct vct_options *options);
+// Pixels of the frame along a side of a block that shares one set of cones.
+uint32_t vct_block(const struct vct_options *options);
 
 // Voxel sets.
 uint32_t vct_capacity(const struct vct_options *options); // occupied faces of voxels

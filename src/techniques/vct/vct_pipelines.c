@@ -26,6 +26,7 @@ enum {
     HALF_RESOLUTION = 1 << 11,
     RAYS = 1 << 12,
     MAP = 1 << 13,
+    CLAMP = 1 << 14,
 };
 // Constants of variants for light that most scenes lack.
 enum { MORE_LIGHT = SMALL_EMITTERS | MAP };
@@ -48,6 +49,7 @@ static void fill_constants(const struct vct_options *options, struct gpu_constan
         { VCT_CONSTANT_EACH_PIXEL, false },
         { VCT_CONSTANT_RAYS, true },
         { VCT_CONSTANT_MAP, true },
+        { VCT_CONSTANT_CLAMP, true },
     };
     memcpy(out, of_bit, sizeof of_bit);
 }
@@ -129,36 +131,48 @@ static void add_light(const struct vct_options *o, struct gpu_objects *out)
                 PIPELINE(mip, "mip", &shader_vct_volume_mip_comp, kind));
 }
 
+static void add_history(const struct vct_options *o, struct gpu_objects *out)
+{
+    const bool denoises = vct_denoises(o), clamps = o->clamp > 0.0f;
+    const uint32_t kind = denoises ? (uint32_t)RAYS : 0;
+    GPU_ADD(out, 0,
+            PIPELINE(history.first, "temporal_first", &shader_vct_cones_temporal_first_comp, kind),
+            PIPELINE(history.keep, "temporal", clamps ? NULL : &shader_vct_cones_temporal_keep_comp,
+                     kind),
+            PIPELINE(history.follow, "temporal_follow", &shader_vct_cones_temporal_follow_comp,
+                     kind | (clamps ? (uint32_t)CLAMP : 0)),
+            PIPELINE(history.denoise[0], "denoise",
+                     denoises ? &shader_vct_cones_denoise_straight_comp : NULL, 0),
+            PIPELINE(history.denoise[1], "denoise_diagonal",
+                     denoises ? &shader_vct_cones_denoise_diagonal_comp : NULL, 0));
+}
+
 void vct_add_pipelines(const struct vct_options *o, struct gpu_objects *out)
 {
     const uint32_t kind = o->occlusion ? OCCLUSION : 0,
                    half = o->half_resolution ? HALF_RESOLUTION : 0,
                    block = vct_block_level(o) == 2 ? LARGE_BLOCKS : 0;
-    const bool rays = vct_has_rays(o), lit = !o->occlusion, denoises = vct_denoises(o);
+    const bool rays = vct_has_rays(o), lit = !o->occlusion;
     fill_constants(o, out->constants);
     add_voxelize(o, out);
     add_light(o, out);
-    GPU_ADD(
-        out, 0, PIPELINE(count, "count", &shader_vct_voxelize_count_comp, 0),
-        PIPELINE(scan, "scan", &shader_vct_voxelize_scan_comp, 0),
-        PIPELINE(list, "list", &shader_vct_voxelize_list_comp, 0),
-        PIPELINE(zero, "zero", &shader_vct_voxelize_zero_comp, 0),
-        PIPELINE(surfaces, "surfaces", &shader_vct_voxelize_surfaces_comp, 0),
-        PIPELINE(texel_lists, "texels", &shader_vct_volume_texels_comp, 0),
-        PIPELINE(planes, "planes", rays ? &shader_vct_rays_planes_comp : NULL, 0),
-        PIPELINE(blocks, "blocks", rays ? &shader_vct_rays_blocks_comp : NULL, 0),
-        PIPELINE(parts, "parts", lit ? &shader_vct_lighting_parts_comp : NULL, block),
-        PIPELINE(inject[0], "inject_unlit", &shader_vct_lighting_inject_comp, UNLIT),
-        PIPELINE(inject[1], "inject", lit ? &shader_vct_lighting_inject_comp : NULL, 0),
-        PIPELINE(edges, "edges", &shader_vct_cones_edges_comp, CLIPS),
-        PIPELINE(gather_rows, "gather_rows", &shader_vct_cones_gather_comp, kind),
-        PIPELINE(gather_columns, "gather_columns", &shader_vct_cones_gather_comp,
-                 kind | COLUMNS | half),
-        PIPELINE(blur, "blur", &shader_vct_cones_blur_comp, CLIPS),
-        PIPELINE(upsample, "upsample", half ? &shader_vct_cones_upsample_comp : NULL, kind | CLIPS),
-        PIPELINE(accumulate, "temporal", o->temporal ? &shader_vct_cones_temporal_comp : NULL,
-                 denoises ? (uint32_t)RAYS : 0),
-        PIPELINE(denoise[0], "denoise", denoises ? &shader_vct_cones_denoise_within_comp : NULL, 0),
-        PIPELINE(denoise[1], "denoise_across",
-                 denoises ? &shader_vct_cones_denoise_across_comp : NULL, 0));
+    GPU_ADD(out, 0, PIPELINE(count, "count", &shader_vct_voxelize_count_comp, 0),
+            PIPELINE(scan, "scan", &shader_vct_voxelize_scan_comp, 0),
+            PIPELINE(list, "list", &shader_vct_voxelize_list_comp, 0),
+            PIPELINE(zero, "zero", &shader_vct_voxelize_zero_comp, 0),
+            PIPELINE(surfaces, "surfaces", &shader_vct_voxelize_surfaces_comp, 0),
+            PIPELINE(texel_lists, "texels", &shader_vct_volume_texels_comp, 0),
+            PIPELINE(planes, "planes", rays ? &shader_vct_rays_planes_comp : NULL, 0),
+            PIPELINE(blocks, "blocks", rays ? &shader_vct_rays_blocks_comp : NULL, 0),
+            PIPELINE(parts, "parts", lit ? &shader_vct_lighting_parts_comp : NULL, block),
+            PIPELINE(inject[0], "inject_unlit", &shader_vct_lighting_inject_comp, UNLIT),
+            PIPELINE(inject[1], "inject", lit ? &shader_vct_lighting_inject_comp : NULL, 0),
+            PIPELINE(edges, "edges", &shader_vct_cones_edges_comp, CLIPS),
+            PIPELINE(gather_rows, "gather_rows", &shader_vct_cones_gather_comp, kind),
+            PIPELINE(gather_columns, "gather_columns", &shader_vct_cones_gather_comp,
+                     kind | COLUMNS | half),
+            PIPELINE(blur, "blur", &shader_vct_cones_blur_comp, CLIPS),
+            PIPELINE(upsample, "upsample", half ? &shader_vct_cones_upsample_comp : NULL,
+                     kind | CLIPS));
+    if (o->temporal) add_history(o, out);
 }

@@ -130,6 +130,6 @@ void vct_add_pixels(const struct vct_options *o, int view, uint32_t width, uint3
     }
     for (size_t i = 0; o->temporal && i < 2; i++)
         GPU_ADD(out, base + i * sizeof(gpu_image), HISTORY("history", light, GPU_RGBA32F),
-                HISTORY("history_surface", surface, GPU_RG32F), HISTORY("now", now, GPU_RGBA16F),
+                HISTORY("history_surface", surface, GPU_RGBA32F), HISTORY("now", now, GPU_RGBA16F),
                 HISTORY("change", change, GPU_RGBA16F));
 }

@@ -65,7 +65,8 @@ struct vct {
     gpu_pipeline inject[2];                        // without and with lights
     gpu_pipeline cones[2], bounce[2], specular[2]; // by vct_has_more_light
     gpu_pipeline lobe_average, reflect;
-    gpu_pipeline edges, gather_rows, gather_columns, blur, upsample, accumulate, denoise[2], debug;
+    gpu_pipeline edges, gather_rows, gather_columns, blur, upsample, debug;
+    struct vct_temporal_pipelines history;
 
     // Voxels and the light volume.
     struct vct_small_emitters small_emitters;

@@ -112,3 +112,45 @@ TEST_GPU(rays_have_little_noise_after_eight_frames)
     free(eighth), free(settled);
     vct_fixture_finish(&fixture);
 }
+
+// Errors after 1, 2, 4, 8 and 16 frames against the mean of 200 later ones, and that of one frame
+// that is not filtered.
+enum { COUNTS = 5 };
+static void errors_by_frames(struct gpu *gpu, uint32_t size, double errors[COUNTS], double *alone)
+{
+    static const char *const OPTIONS[] = { "resolution=64,trace=rays",
+                                           "resolution=64,trace=rays,temporal=true" };
+    const size_t count = (size_t)size * size * 3;
+    float *e[COUNTS + 1] = { NULL }, *settled = NULL;
+    for (int filtered = 0; filtered < 2; filtered++) {
+        struct vct_fixture fixture;
+        vct_fixture_room(&fixture, gpu);
+        fixture.frame_fixture.width = fixture.frame_fixture.height = size;
+        vct_fixture_open(&fixture, OPTIONS[filtered]);
+        if (!filtered) e[COUNTS] = vct_fixture_irradiance_after(&fixture, 1);
+        for (int i = 0; filtered && i < COUNTS; i++)
+            e[i] = vct_fixture_irradiance_after(&fixture, i == 0 ? 1 : 1 << (i - 1));
+        if (filtered) settled = vct_fixture_irradiance_after(&fixture, 200);
+        vct_fixture_finish(&fixture);
+    }
+    for (int i = 0; i < COUNTS; i++) errors[i] = vct_fixture_difference(e[i], settled, count);
+    *alone = vct_fixture_difference(e[COUNTS], settled, count);
+    for (int i = 0; i <= COUNTS; i++) free(e[i]);
+    free(settled);
+}
+
+// Small images, too: there a filter as wide as noise of one frame needs averages light and shadow.
+TEST_GPU(the_error_of_rays_falls_with_the_number_of_frames)
+{
+    static const uint32_t SIZES[] = { 48, 96, 160 };
+    for (size_t k = 0; k < sizeof SIZES / sizeof SIZES[0]; k++) {
+        double errors[COUNTS], alone;
+        errors_by_frames(gpu, SIZES[k], errors, &alone);
+        print_message("%ux%u: a frame alone %.2f %%; after 1, 2, 4, 8, 16 frames", SIZES[k],
+                      SIZES[k], 100.0 * alone);
+        for (int i = 0; i < COUNTS; i++) print_message(" %.2f", 100.0 * errors[i]);
+        print_message(" %%\n");
+        CHECK(errors[0] < 0.95 * alone);
+        for (int i = 1; i < COUNTS; i++) CHECK(errors[i] < 0.97 * errors[i - 1]);
+    }
+}

@@ -60,6 +60,7 @@ struct vct_specular_params {
 struct vct_denoise_push {
     int32_t stride;   // of the taps, px
     float step_per_m; // width of that many pixels at a distance of 1 m
+    float radius_m;   // beyond which light is another
 };
 
 // How the history follows a change of light: see cones/temporal.c.
@@ -73,14 +74,16 @@ struct vct_denoise_push {
 // s = d, or 1 in orthographic views; world space, m.
 struct vct_history_params {
     vec3s right, down, corner, forward;
-    float pixel;       // width of a pixel: times s
-    float perspective; // 1; 0: orthographic
-    float most;        // maximum weight of the history, frames
-    float clamp;       // standard deviations; 0: off
-    float scale;       // radiance scale of this frame over that of the previous one
-    uint32_t known;    // bool: the history is valid
-    uint32_t follow;   // VCT_KEEP, …
-    float added;       // weight of this frame where pixels do not move, frames
+    float pixel;           // width of a pixel: times s
+    float perspective;     // 1; 0: orthographic
+    float most;            // maximum weight of the history, frames
+    float clamp;           // standard deviations; 0: off
+    float scale;           // radiance scale of this frame over that of the previous one
+    uint32_t known;        // bool: the history is valid
+    uint32_t follow;       // VCT_KEEP, …
+    uint32_t change_known; // bool: the previous frame has stored its change
+    int32_t block;         // px along a side that share one set of cones or rays
+    float added;           // weight of this frame where pixels do not move, frames
     // Maximum weight of the history of reflections, frames: of mirrors, and of rough surfaces.
     float most_of_mirror, most_of_lobe;
 };
@@ -91,7 +94,7 @@ _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 28 * 4,
 _Static_assert(sizeof(struct vct_small_emitter) == (2 + 9 * VCT_EMITTER_POINTS) * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_specular_params) == 9 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_history_params) == 22 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_history_params) == 24 * 4, "layout is shared with GLSL");
 #endif
 
 #endif

@@ -2,14 +2,14 @@
 // between them: a filter by variance (after Schied et al. 2017, SVGF). The history is not filtered,
 // so that a still image converges to what its pixels see.
 //
-// Pixels of one block share a set of rays, and its noise: the taps of the second pass are a block
-// apart. Those of the first one, within a block, take away the lattice that gathering leaves.
-// VCT_ACROSS: 0, the first pass; 1, the second one.
+// Two passes of four taps each: along rows and columns, and along diagonals (VCT_DIAGONAL). They
+// average 25 pixels together.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
 #define FRAME_CONSTANTS_BINDING 0
+#define FRAME_CONSTANTS_COPIED
 #include "core/half.glsl"
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
@@ -20,16 +20,15 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 1) uniform sampler2D light;   // irradiance, accumulated frames
 layout(set = 0, binding = 2) uniform sampler2D surface; // as in temporal.comp
-layout(set = 0, binding = 3) uniform sampler2D change;  // alpha: deviation of one frame
-layout(set = 0, binding = 4) uniform writeonly image2D irradiance;
+layout(set = 0, binding = 3) uniform writeonly image2D irradiance;
 
 layout(push_constant, scalar) uniform push_block
 {
     vct_denoise_push push;
 };
 
-// Taps: the nine around, or every other one of 25, as on a chessboard.
-const int REACH = 1 + VCT_ACROSS, EVERY = 1 + VCT_ACROSS;
+// Steps to the four taps: along rows and columns, or diagonals.
+const ivec2 ACROSS = ivec2(1, VCT_DIAGONAL), DOWN = ivec2(-VCT_DIAGONAL, 1);
 const float DEVIATIONS = 4.0;    // of the mean, in which two pixels differ by noise alone
 const float CONVERGED = 512.0;   // frames: their noise does not show
 const float PER_DISTANCE = 0.05; // distance from the plane over that along it
@@ -60,52 +59,44 @@ float at_step(along_normal a, ivec2 by, float distance_m)
     return dot(a.o, weights) + distance_m * dot(a.r, weights);
 }
 
-// Deviation of a pixel's mean of some frames.
-float deviation_of(ivec2 pixel, float frames)
-{
-    return texelFetch(change, pixel, 0).a * inversesqrt(max(frames, 1.0));
-}
-
 // A pixel that has met a small bright surface by chance has too large a deviation, one that has not
 // has too small a one: the larger of two counts.
-vec3 denoised(ivec2 pixel, vec4 here, vec2 stored)
+vec3 denoised(ivec2 pixel, vec4 here, vec4 own)
 {
-    float deviation = deviation_of(pixel, here.w);
-    vec3 n = unpacked_normal(stored.y);
-    vec2 size = vec2(frame.width, frame.height);
-    along_normal a = along(n, frame_uv(uvec2(pixel)), float(push.stride) / size);
-    float plane = at_step(a, ivec2(0), stored.x);
-    float level = total(here.rgb),
-          per_m = 1.0 / (PER_DISTANCE * push.step_per_m * mix(1.0, stored.x, frame.viewer.w));
+    vec3 n = unpacked_normal(own.y);
+    ivec2 last = ivec2(frame.width, frame.height) - 1;
+    int stride = push.stride;
+    along_normal a =
+        along(n, frame_uv(uvec2(pixel)), float(stride) / vec2(frame.width, frame.height));
+    float plane = at_step(a, ivec2(0), own.x);
+    float level = total(here.rgb), step_m = push.step_per_m * mix(1.0, own.x, frame.viewer.w),
+          per_m = 1.0 / (PER_DISTANCE * step_m), far = step_m / push.radius_m,
+          near = max(1.0 - far * far * float(1 + VCT_DIAGONAL), 0.0);
     vec3 sum = here.w * here.rgb;
     float weights = here.w;
-    for (int y = -REACH; y <= REACH; y++)
-        for (int x = (y & EVERY - 1) - REACH; x <= REACH; x += EVERY) {
-            ivec2 by = ivec2(x, y), at = pixel + push.stride * by;
-            if (by == ivec2(0) || any(lessThan(at, ivec2(0))) ||
-                any(greaterThanEqual(at, ivec2(size))))
-                continue;
-            vec2 there = texelFetch(surface, at, 0).rg;
-            if (there.x <= 0.0) continue;
-            vec4 tap = texelFetch(light, at, 0);
-            float off_plane = abs(at_step(a, by, there.x) - plane);
-            float most = DEVIATIONS * max(deviation, deviation_of(at, tap.w));
-            float unlike = abs(total(tap.rgb) - level) / max(most, 1e-12);
-            float weight = tap.w * normal_similarity(n, unpacked_normal(there.y)) *
-                           max(1.0 - off_plane * per_m, 0.0) * max(1.0 - unlike, 0.0);
-            sum += weight * tap.rgb;
-            weights += weight;
-        }
+    for (int i = 0; i < 4; i++) {
+        ivec2 by = (i < 2 ? -1 : 1) * ((i & 1) == 0 ? ACROSS : DOWN);
+        ivec2 at = pixel + stride * by, inside = clamp(at, ivec2(0), last);
+        vec4 there = texelFetch(surface, inside, 0), tap = texelFetch(light, inside, 0);
+        float off_plane = abs(at_step(a, by, there.x) - plane);
+        float most = DEVIATIONS * max(own.w, there.w);
+        float unlike = abs(total(tap.rgb) - level) / max(most, 1e-12);
+        float weight = tap.w * near * normal_similarity(n, unpacked_normal(there.y)) *
+                       max(1.0 - off_plane * per_m, 0.0) * max(1.0 - unlike, 0.0);
+        if (at != inside || there.x <= 0.0) weight = 0.0;
+        sum += weight * tap.rgb;
+        weights += weight;
+    }
     return sum / weights;
 }
 
 void main()
 {
+    frame = frame_block;
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
-    vec4 here = texelFetch(light, pixel, 0);
-    vec2 stored = texelFetch(surface, pixel, 0).rg;
+    vec4 here = texelFetch(light, pixel, 0), own = texelFetch(surface, pixel, 0);
     vec3 result = here.rgb;
-    if (stored.x > 0.0 && here.w < CONVERGED) result = denoised(pixel, here, stored);
+    if (own.x > 0.0 && here.w < CONVERGED) result = denoised(pixel, here, own);
     imageStore(irradiance, pixel, vec4(result, here.w));
 }

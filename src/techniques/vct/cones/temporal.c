@@ -23,6 +23,7 @@
 
 #include <math.h>
 
+static const float RADIUS = 0.07f;         // of the filter, over the longest side of the scene
 static const float STILL_FRAMES = 4096.0f; // maximum weight while nothing changes
 // Maxima of reflections, whose history does not follow changes of light.
 static const float STILL_LOBE_FRAMES = 64.0f, MOVED_LOBE_FRAMES = 4.0f, MIRROR_FRAMES = 1.0f;
@@ -71,8 +72,8 @@ static void follow(struct vct_temporal *t, bool moves, bool settles)
     t->params.added = !t->whole ? 1.0f / (float)VCT_ROTATION_FRAMES : first ? 1.0f : 0.0f;
 }
 
-void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, int32_t most,
-                        float clamp, bool settles)
+void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, uint32_t block,
+                        int32_t most, float clamp, bool settles)
 {
     kept_update(&t->kept, view, view->light_hash);
     const bool known = t->kept.follows && !view->camera_cut;
@@ -80,7 +81,12 @@ void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, i
     t->still = known && !moves && !settles && frame_camera_equals(&t->camera, &view->camera)
                    ? t->still + 1
                    : 0;
-    t->params = (struct vct_history_params){ .known = known, .clamp = clamp };
+    t->params = (struct vct_history_params){
+        .known = known,
+        .change_known = t->params.follow != VCT_KEEP,
+        .clamp = clamp,
+        .block = (int32_t)block,
+    };
     t->params.scale = t->unlit ? 1.0f : view->constants->previous_scale_ratio;
     t->params.most = history_weight(t->still, most);
     const float lobe = fminf((float)most, moves || settles ? MOVED_LOBE_FRAMES : (float)most);
@@ -131,12 +137,21 @@ gpu_image vct_temporal_now(const struct vct_temporal *t)
     return t->now[t->newest];
 }
 
-void vct_temporal_record(struct vct_temporal *t, gpu_pipeline filter, struct gpu_cmd *cmd,
-                         const struct frame_view *view, gpu_image result)
+// `follow` also clamps.
+static gpu_pipeline pipeline_of(const struct vct_temporal *t,
+                                const struct vct_temporal_pipelines *pipelines)
+{
+    if (!t->params.known) return pipelines->first;
+    return t->params.follow != VCT_KEEP || t->params.clamp > 0.0f ? pipelines->follow
+                                                                  : pipelines->keep;
+}
+
+void vct_temporal_record(struct vct_temporal *t, const struct vct_temporal_pipelines *pipelines,
+                         struct gpu_cmd *cmd, const struct frame_view *view, gpu_image result)
 {
     const int newest = t->newest, previous = 1 - newest;
     gpu_scope_begin(cmd, "temporal");
-    gpu_dispatch(cmd, filter,
+    gpu_dispatch(cmd, pipeline_of(t, pipelines),
                  GPU_BIND(view->constants_binding,
                           gpu_transient(cmd, "vct_history", &t->params, sizeof t->params),
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
@@ -156,29 +171,32 @@ void vct_temporal_record(struct vct_temporal *t, gpu_pipeline filter, struct gpu
     gpu_scope_end(cmd);
 }
 
-static void record_pass(const struct vct_temporal *t, gpu_pipeline filter, struct gpu_cmd *cmd,
-                        const struct frame_view *view, uint32_t stride, gpu_image from,
-                        gpu_image to)
+static void record_pass(const struct vct_temporal *t, gpu_pipeline pass, struct gpu_cmd *cmd,
+                        const struct frame_view *view, int32_t stride, float scene_m,
+                        gpu_image from, gpu_image to)
 {
     const float pixel = frame_camera_pixel(&view->camera, view->width, view->height);
-    const struct vct_denoise_push push = { (int32_t)stride, (float)stride * pixel };
-    gpu_dispatch(cmd, filter,
+    const struct vct_denoise_push push = { stride, (float)stride * pixel, RADIUS * scene_m };
+    gpu_dispatch(cmd, pass,
                  GPU_BIND(view->constants_binding, { .name = "light", .image = from },
                           { .name = "surface", .image = t->surface[t->newest] },
-                          { .name = "change", .image = t->change[t->newest] },
                           { .name = "irradiance", .image = to }),
                  &push, sizeof push, gpu_groups(view->width, VCT_LOCAL_2D),
                  gpu_groups(view->height, VCT_LOCAL_2D), 1);
 }
 
-// Between the passes the light is in an image that the next frame begins to write.
-void vct_temporal_denoise(const struct vct_temporal *t, const gpu_pipeline filters[2],
-                          struct gpu_cmd *cmd, const struct frame_view *view, uint32_t block,
-                          gpu_image result)
+// Strides of 0.8 and 1.2 blocks: pixels of a block share the noise of its rays, and the taps have
+// other places in their blocks, so that the mean shows no lattice of them. Between the passes the
+// light is in an image that the next frame begins to write.
+void vct_temporal_denoise(const struct vct_temporal *t,
+                          const struct vct_temporal_pipelines *pipelines, struct gpu_cmd *cmd,
+                          const struct frame_view *view, float scene_m, gpu_image result)
 {
-    const gpu_image between = t->now[1 - t->newest];
+    const int32_t block = t->params.block, fifth = (block + 4) / 5;
+    const gpu_image between = t->light[1 - t->newest];
     gpu_scope_begin(cmd, "denoise");
-    record_pass(t, filters[0], cmd, view, (block + 1) / 2, t->light[t->newest], between);
-    record_pass(t, filters[1], cmd, view, block, between, result);
+    record_pass(t, pipelines->denoise[0], cmd, view, block > 1 ? block - fifth : 1, scene_m,
+                t->light[t->newest], between);
+    record_pass(t, pipelines->denoise[1], cmd, view, block + fifth, scene_m, between, result);
     gpu_scope_end(cmd);
 }

@@ -8,6 +8,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define FRAME_CONSTANTS_BINDING 0
+#define FRAME_CONSTANTS_COPIED
 #include "core/half.glsl"
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
@@ -19,23 +20,25 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 1, scalar) uniform vct_history
 {
-    vct_history_params set;
+    vct_history_params set_block;
 };
+vct_history_params set; // a copy that main begins with, as FRAME_CONSTANTS_COPIED
 layout(set = 0, binding = 2) uniform sampler2D depth;
 layout(set = 0, binding = 3) uniform sampler2D normal;
 layout(set = 0, binding = 4) uniform sampler2D motion;
 layout(set = 0, binding = 5) uniform sampler2D now;
 layout(set = 0, binding = 6) uniform sampler2D last_light; // irradiance, accumulated frames
-// Distance along the view axis, 0: none; packed normal.
+// Distance along the view axis, 0: none; packed normal; deviation of the sum of colours of one
+// frame alone from the mean; that of the mean.
 layout(set = 0, binding = 7) uniform sampler2D last_surface;
 layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D light;
-layout(set = 0, binding = 9, rg32f) uniform writeonly image2D surface;
+layout(set = 0, binding = 9) uniform writeonly image2D surface;
 layout(set = 0, binding = 10) uniform writeonly image2D irradiance;
 layout(set = 0, binding = 11) uniform sampler2D last_now;
 layout(set = 0, binding = 12) uniform sampler2D last_change;
-// Change; deviation of one frame alone from the mean, of the sum of colours.
 layout(set = 0, binding = 13, rgba16f) uniform writeonly image2D change;
 layout(constant_id = VCT_CONSTANT_RAYS) const bool VCT_RAYS = false;
+layout(constant_id = VCT_CONSTANT_CLAMP) const bool VCT_CLAMP = false;
 #include "techniques/vct/cones/history.glsl"
 
 // Relative deviation of one frame from the mean over rotations: measured in a room with all
@@ -44,35 +47,37 @@ const float FRAME_NOISE = 0.025;
 // Weight of a difference in a moving mean where pixels move: pixels that trace other cones of a
 // block differ without a change of light.
 const float MOVED_SHARE = 0.25;
-const float LATER_BOUNCE = 0.5;    // change of light by a bounce over that of the bounce before
-const float FIRST_DEVIATION = 0.3; // of the first frame, over its light
-const float DEVIATION_FRAMES = 16.0;
-const int RADIUS = 2; // of the neighbourhood of the clamp, px
+const float LATER_BOUNCE = 0.5; // change of light by a bounce over that of the bounce before
+const int RADIUS = 2;           // of the neighbourhood of the clamp, px
 
 struct history_sample {
-    vec4 light;  // irradiance, weight in frames; 0 frames: rejected
-    vec3 now;    // of the previous frame alone
-    vec4 change; // last known change of it; deviation
+    vec4 light;      // irradiance, weight in frames; 0 frames: rejected
+    vec3 now;        // of the previous frame alone
+    vec3 change;     // last known change of it
+    float deviation; // of one frame
 };
+const history_sample NO_HISTORY = history_sample(vec4(0.0), vec3(0.0), vec3(0.0), 0.0);
 
 history_sample sample_history(vec2 history_pixel, float distance_m, vec3 n)
 {
     vec4 expected = history_expected(history_pixel, distance_m);
     float weights = 0.0;
-    history_sample sum = history_sample(vec4(0.0), vec3(0.0), vec4(0.0));
+    history_sample sum = NO_HISTORY;
     for (int i = 0; i < 4; i++) {
         ivec2 at = reproject_tap(history_pixel, i);
         float weight = history_weight(history_pixel, i, expected, n);
         if (weight <= 0.0) continue;
         sum.light += weight * texelFetch(last_light, at, 0);
-        if (set.follow != VCT_KEEP) sum.now += weight * texelFetch(last_now, at, 0).rgb;
-        if (VCT_RAYS || set.follow != VCT_KEEP)
-            sum.change += weight * texelFetch(last_change, at, 0);
+        if (VCT_RAYS) sum.deviation += weight * texelFetch(last_surface, at, 0).b;
+        if (VCT_FOLLOWS != 0) {
+            sum.now += weight * texelFetch(last_now, at, 0).rgb;
+            if (set.change_known != 0u) sum.change += weight * texelFetch(last_change, at, 0).rgb;
+        }
         weights += weight;
     }
     float w = weights > HISTORY_LEAST ? 1.0 / weights : 0.0, scale = set.scale * w;
     return history_sample(vec4(scale, scale, scale, w) * sum.light, scale * sum.now,
-                          scale * sum.change);
+                          scale * sum.change, scale * sum.deviation);
 }
 
 float total(vec3 v)
@@ -105,7 +110,7 @@ float less_certain(float w, vec3 before, vec3 after)
 // The history after the change of light since the previous frame. `change`: of one frame alone.
 vec4 follow(history_sample history, vec3 now, bool moves, out vec3 change)
 {
-    change = history.change.rgb;
+    change = history.change;
     if (set.follow == VCT_FOLLOW_KNOWN) {
         change = mix(change, now - history.now, moves ? MOVED_SHARE : 1.0);
         return followed(history.light, history.now, max(history.now + change, 0.0));
@@ -117,21 +122,11 @@ vec4 follow(history_sample history, vec3 now, bool moves, out vec3 change)
     return vec4(light.rgb, less_certain(light.w, history.now, expected));
 }
 
-// Standard deviation of one frame: a moving mean of squares, of at most DEVIATION_FRAMES frames.
-// Two frames differ by twice the variance, a frame and the mean of w by 1 + 1/w of it.
-float deviation_after(history_sample history, vec4 old, vec3 now, float added)
-{
-    if (old.w <= 0.0) return FIRST_DEVIATION * total(now);
-    float difference = total(now) - total(old.rgb), before = history.change.a;
-    float square = difference * difference * old.w / (old.w + 1.0);
-    float share = added / (min(old.w, DEVIATION_FRAMES) + added);
-    return sqrt(mix(before * before, square, share));
-}
-
 vec3 position(ivec2 pixel, float z)
 {
     return frame_world_position(frame_uv(uvec2(pixel)), z);
 }
+#include "techniques/vct/cones/deviation.glsl"
 
 // Variance clamping: limits the history to mean ± set.clamp standard deviations of this frame's
 // neighbours on the same surface.
@@ -162,6 +157,8 @@ vec3 clamped(vec3 history, ivec2 pixel, vec3 here, vec3 n, float tolerance_m)
 
 void main()
 {
+    frame = frame_block;
+    set = set_block;
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
     float z = texelFetch(depth, pixel, 0).r;
@@ -173,30 +170,36 @@ void main()
         float distance_m = frame_view_distance(z);
         vec4 moved = texelFetch(motion, pixel, 0);
         float distance_before = reproject_distance(moved, distance_m);
-        history_sample history = history_sample(vec4(0.0), vec3(0.0), vec4(0.0));
-        if (set.known != 0u && distance_before > 0.0)
+        history_sample history = NO_HISTORY;
+        if (VCT_KNOWN != 0 && distance_before > 0.0)
             history =
                 sample_history(reproject_place(moved, pixel, vec2(frame.width, frame.height),
                                                vec2(frame.jitter_step_x, frame.jitter_step_y)),
                                distance_before, n);
-        if (set.clamp > 0.0 && history.light.w > 0.0)
+        if (VCT_CLAMP && history.light.w > 0.0)
             history.light.rgb =
                 clamped(history.light.rgb, pixel, position(pixel, z), n,
                         HISTORY_TOLERANCE_PX * set.pixel * previous_scale(distance_m));
         bool moves = moved.xyz != vec3(0.0);
         vec4 old = vec4(history.light.rgb, min(history.light.w, set.most));
         float added = 1.0; // frames
-        if (set.follow != VCT_KEEP && old.w > 0.0) {
-            old = follow(history_sample(old, history.now, history.change), mean, moves, known);
+        if (VCT_FOLLOWS != 0 && set.follow != VCT_KEEP && old.w > 0.0) {
+            history.light = old;
+            old = follow(history, mean, moves, known);
             if (!moves) added = set.added;
         }
-        if (VCT_RAYS) deviation = deviation_after(history, old, mean, added);
+        if (VCT_RAYS) {
+            deviation =
+                VCT_KNOWN != 0
+                    ? deviation_after(history.deviation, total(old.rgb), old.w, total(mean), added)
+                    : spatial_deviation(pixel, position(pixel, z), n, distance_m, total(mean));
+        }
         mean = (old.w * old.rgb + added * mean) / (old.w + added);
         frames = min(old.w + added, set.most);
         stored = vec2(distance_m, packed_normal(n));
     }
     imageStore(light, pixel, vec4(mean, frames));
-    imageStore(surface, pixel, vec4(stored, 0.0, 0.0));
-    imageStore(change, pixel, vec4(clamp(known, -HALF_MAX, HALF_MAX), min(deviation, HALF_MAX)));
+    imageStore(surface, pixel, vec4(stored, deviation, deviation * inversesqrt(max(frames, 1.0))));
+    if (VCT_FOLLOWS != 0) imageStore(change, pixel, vec4(clamp(known, -HALF_MAX, HALF_MAX), 0.0));
     if (!VCT_RAYS) imageStore(irradiance, pixel, vec4(mean, 1.0));
 }
