@@ -23,7 +23,10 @@
 
 #include <math.h>
 
-static const float RADIUS = 0.07f;         // of the filter, over the longest side of the scene
+// Radius of the filter, over the longest side of the scene: beyond it light is another, however few
+// pixels are between. After a change of light few frames are left of a mean whose deviation is
+// known.
+static const float RADIUS = 0.07f, CHANGED_RADIUS = 0.14f;
 static const float STILL_FRAMES = 4096.0f; // maximum weight while nothing changes
 // Maxima of reflections, whose history does not follow changes of light.
 static const float STILL_LOBE_FRAMES = 64.0f, MOVED_LOBE_FRAMES = 4.0f, MIRROR_FRAMES = 1.0f;
@@ -176,7 +179,8 @@ static void record_pass(const struct vct_temporal *t, gpu_pipeline pass, struct 
                         gpu_image from, gpu_image to)
 {
     const float pixel = frame_camera_pixel(&view->camera, view->width, view->height);
-    const struct vct_denoise_push push = { stride, (float)stride * pixel, RADIUS * scene_m };
+    const float radius = t->params.follow == VCT_KEEP ? RADIUS : CHANGED_RADIUS;
+    const struct vct_denoise_push push = { stride, (float)stride * pixel, radius * scene_m };
     gpu_dispatch(cmd, pass,
                  GPU_BIND(view->constants_binding, { .name = "light", .image = from },
                           { .name = "surface", .image = t->surface[t->newest] },
