@@ -455,7 +455,7 @@ static int samples_of(const char *options)
 }
 
 // 0: not stated.
-static float noise_of(const char *options)
+static float bound_of(const char *options)
 {
     const char *value = value_of(options, NOISE);
     const long units = value ? strtol(value, NULL, 10) : 0;
@@ -467,7 +467,7 @@ static bool take_origin(struct host *host, const char *path, const struct bake_o
 {
     const bool lightmap = strcmp(origin->technique, LIGHTMAP_NAME) == 0;
     if (lightmap) out->lightmap_samples = samples_of(origin->options);
-    if (lightmap) out->lightmap_noise = noise_of(origin->options);
+    if (lightmap) out->lightmap_noise = bound_of(origin->options);
     if (lightmap && out->lightmap_samples == 0)
         return host_fail(host, FAIL_FORMAT, "cannot use %s: it does not state its samples", path);
     if (strlen(origin->gi) >= sizeof out->gi ||

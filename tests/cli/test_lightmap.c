@@ -391,6 +391,9 @@ TEST(updates_that_cannot_be_are_wrong_usage)
     r = run_expect(2, "bake @cornell --gi radiosity --update --lightmap", maps, NULL);
     check_one_error_line(r);
     CHECK(strstr(r->err, "add --spp N"));
+    r = run_expect(2, "bake @cornell --spp auto:noise=5 --update --lightmap x", NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "--spp N"));
     r = run_expect(2, BAKE " --update --shard 0/2 --lightmap", maps, "-o", part, NULL);
     check_one_error_line(r);
     CHECK(strstr(r->err, "cannot use --update with --shard"));

@@ -129,6 +129,10 @@ static enum status check_update(const struct arguments *a)
     if (!a->has_spp)
         return wrong_usage(
             "cannot use --update: only a light map by paths is updated; add --spp N");
+    if (a->spp_noise > 0.0)
+        return wrong_usage(
+            "cannot use --update with --spp auto: an update has one number of paths; "
+            "use --spp N");
     return DONE;
 }
 
