@@ -71,7 +71,7 @@ static double mean_of(const struct noise_sums *sums)
     return sum / (double)sums->paths;
 }
 
-// Of the mean over all paths.
+// The variance of the mean over all paths.
 static double variance_of(const struct noise_sums *sums)
 {
     const double mean = mean_of(sums), paths = (double)sums->paths / NOISE_GROUPS;

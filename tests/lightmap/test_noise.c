@@ -131,7 +131,7 @@ static double luminance_of(const float *rest, uint32_t texel)
     return (double)luminance(vec3_of(row[0], row[1], row[2]));
 }
 
-// Of two maps: half the mean squared difference over the squared mean.
+// Half the mean squared difference of two maps over the squared mean.
 static double measured_noise(const struct baked *b, const struct noise_unit *unit)
 {
     const float *rest[2] = { tensor_of(b->bake[0], LIGHTMAP_REST),
