@@ -4,7 +4,7 @@
 #include "api/objects.h"
 
 #include "bake/bake.h"
-#include "lightmap/update.h"
+#include "lightmap/update/update.h"
 #include "techniques/gi.h"
 
 struct ag_bake {

@@ -7,7 +7,7 @@
 #include "image/ktx2.h"
 #include "lightmap/attach.h"
 #include "lightmap/materials.h"
-#include "lightmap/record.h"
+#include "lightmap/update/record.h"
 #include "lightmap/texture.h"
 
 #include <stdio.h>

@@ -2,7 +2,7 @@
 // bake.
 #include "framework/test.h"
 
-#include "lightmap/update.h"
+#include "lightmap/update/update.h"
 #include "lightmap/write.h"
 
 #include <math.h>

@@ -9,7 +9,7 @@
 #pragma once
 
 #include "lightmap/gather.h"
-#include "lightmap/record.h"
+#include "lightmap/update/record.h"
 #include "scene/statics.h"
 
 // ---- match.c

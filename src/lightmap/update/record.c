@@ -1,5 +1,5 @@
 // A record of a scene and its charts.
-#include "lightmap/record.h"
+#include "lightmap/update/record.h"
 
 #include "bake/scene_key.h"
 

@@ -1,6 +1,6 @@
 // The bake of an update: estimates of the change in all texels, the choice of those that are baked
 // again, and their paths. Others keep the light of the earlier bake.
-#include "lightmap/update.h"
+#include "lightmap/update/update.h"
 
 #include "bake/scene_key.h"
 #include "core/rng.h"

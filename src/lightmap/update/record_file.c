@@ -1,5 +1,5 @@
 // The file of a record: a safetensors file.
-#include "lightmap/record.h"
+#include "lightmap/update/record.h"
 
 #include "bake/safetensors.h"
 #include "core/c_locale.h"

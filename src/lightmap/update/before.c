@@ -1,6 +1,6 @@
 // The scene of an earlier bake: the scene of now, with the instances that have changed as the
 // folder's copy has them.
-#include "lightmap/update.h"
+#include "lightmap/update/update.h"
 
 #include "lightmap/write.h"
 

@@ -4,7 +4,7 @@
 //
 // A cell is baked again where its mean has changed by more than the noise of a full bake: by the
 // standard error of the mean of BLOCK texels, or by a hundredth where that is more.
-#include "lightmap/update.h"
+#include "lightmap/update/update.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // Tables of lights in which equal random numbers choose equal lights of both scenes.
-#include "lightmap/update.h"
+#include "lightmap/update/update.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // Which instances and charts of two scenes are equal, by the hashes of their records.
-#include "lightmap/update.h"
+#include "lightmap/update/update.h"
 
 #include <stdlib.h>
 #include <string.h>
