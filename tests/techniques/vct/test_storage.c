@@ -293,8 +293,9 @@ TEST_GPU(memory_estimate_of_storages_matches_the_allocation)
 {
     for (int resolution = 16; resolution <= 256; resolution *= 2)
         for (int i = 0; i < 2; i++) {
-            char text[64];
-            snprintf(text, sizeof text, "resolution=%d,storage=%s", resolution, storages[i]);
+            char text[96];
+            snprintf(text, sizeof text, "resolution=%d,storage=%s,trace=%s", resolution,
+                     storages[i], i == 0 ? "rays,temporal=true" : "cones,temporal=false");
             const double estimated = estimate(text);
             print_message("%d voxels, %s: %.1f MiB\n", resolution, storages[i],
                           estimated / 1048576.0);
