@@ -19,9 +19,10 @@ struct ag_lightmap;
 struct ag_lightmap_desc {
     bool indirect_only; ///< without direct light of punctual lights, which engines compute in each
                         ///< frame; default false
-    bool denoise;       ///< each chart for itself, with Open Image Denoise; default false
-    bool no_light;      ///< info and positions alone: no ray is traced, and neither a frame nor the
-                        ///< GPU is needed; ag_lightmap_read and _write are refused; default false
+    bool denoise;  ///< each chart for itself: with Open Image Denoise, if it is built in; else by a
+                   ///< filter of the light of paths, and a warning for other light; default false
+    bool no_light; ///< info and positions alone: no ray is traced, and neither a frame nor the
+                   ///< GPU is needed; ag_lightmap_read and _write are refused; default false
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 /// Thread: any.

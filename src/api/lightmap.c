@@ -84,7 +84,8 @@ static enum ag_result begin(const char *function, struct ag_scene *scene,
 static enum ag_result done(struct ag_lightmap *l, const struct ag_lightmap_desc *desc, bool ok,
                            struct ag_lightmap **out)
 {
-    ok = ok && (!desc->denoise || desc->no_light || lightmap_denoise(&l->map));
+    const bool filtered = l->facts.samples > 0 && !lightmap_has_denoiser();
+    ok = ok && (!desc->denoise || desc->no_light || filtered || lightmap_denoise(&l->map));
     const enum ag_result result = api_done(l->context, ok);
     if (ok)
         *out = l;
@@ -110,7 +111,9 @@ enum ag_result ag_lightmap_from_bake(const struct ag_bake *bake,
     l->facts.samples = bake->lightmap_samples;
     bool ok = make_map(l, &bake->spec, bake->term, &bake->pose, bake->change.charts);
     if (!desc->no_light)
-        ok = ok && lightmap_set_paths(&l->map, bake_tensors(bake->bake), !desc->indirect_only) &&
+        ok = ok &&
+             lightmap_set_paths(&l->map, bake_tensors(bake->bake), !desc->indirect_only,
+                                desc->denoise && !lightmap_has_denoiser()) &&
              lightmap_noise_read(&l->map, bake_tensors(bake->bake), bake->lightmap_samples,
                                  bake->lightmap_noise, &l->noise) &&
              api_update_record(bake, &l->map.charts, &l->record);

@@ -95,7 +95,8 @@ static void take_mean(const struct bake_task *task, uint32_t texel, uint64_t row
         (const struct noise_sums *)bake_task_input(task, wave->sums_before)->data + texel;
     float *out = bake_row(task, 0, row);
     for (int c = 0; c < 3 && sums->paths > 0.0f; c++) out[c] = sums->light[c] / sums->paths;
-    out[3] = ((const float *)bake_task_input(task, "texels/shares")->data)[texel];
+    out[LIGHTMAP_SHARE] = ((const float *)bake_task_input(task, "texels/shares")->data)[texel];
+    if (sums->paths > 0.0f) out[LIGHTMAP_VARIANCE] = (float)noise_variance(sums);
 }
 
 static bool run_means(const struct bake_task *task)
@@ -188,7 +189,7 @@ static bool add_results(struct bake_plan *plan, const struct wave *last, uint64_
                                       .run = run_means,
                                       .argument = last,
                                       BAKE_OUTPUTS(BAKE_F32(BAKE_ROWS, LIGHTMAP_REST, BAKE_SAVED,
-                                                            texels, 4)) };
+                                                            texels, LIGHTMAP_COLUMNS)) };
     const struct bake_stage noise = { .name = "noise",
                                       .wave = at,
                                       .task_count = 1,

@@ -73,6 +73,11 @@ static bool denoise_chart(const struct denoiser *d, int side, const struct chart
     return ok;
 }
 
+bool lightmap_has_denoiser(void)
+{
+    return true;
+}
+
 bool lightmap_denoise(struct lightmap *map)
 {
     struct denoiser d = { .map = map, .device = oidnNewDevice(OIDN_DEVICE_TYPE_CPU) };
@@ -91,6 +96,11 @@ bool lightmap_denoise(struct lightmap *map)
     return ok;
 }
 #else
+bool lightmap_has_denoiser(void)
+{
+    return false;
+}
+
 bool lightmap_denoise(struct lightmap *map)
 {
     host_log(map->host, LOG_WARNING,

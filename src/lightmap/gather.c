@@ -5,6 +5,8 @@
 #include "core/rng.h"
 #include "trace/next_event.h"
 
+#include <math.h>
+
 // Reflections of the sun in narrower lobes than texels resolve would be single bright texels.
 static const float MIN_PUNCTUAL_ROUGHNESS = 0.4f;
 
@@ -92,15 +94,36 @@ static void add_paths(const struct paths *paths, uint32_t first, uint32_t end, d
     }
 }
 
+enum { VARIANCE_GROUPS = 8 };
+
+static double luminance_of(const double light[3])
+{
+    return (double)luminance(vec3_of((float)light[0], (float)light[1], (float)light[2]));
+}
+
 vec3s gather_paths(const struct gather_scene *s, const struct gather_points *points, int samples,
-                   uint64_t seed)
+                   uint64_t seed, float *variance)
 {
     struct paths paths;
-    double sum[3] = { 0.0, 0.0, 0.0 };
+    double sum[3] = { 0.0, 0.0, 0.0 }, squares = 0.0;
     if (points->count == 0 || samples < 1) return vec3_of(0, 0, 0);
     init_paths(&paths, s, points, seed);
-    add_paths(&paths, 0, (uint32_t)samples, sum);
+    const int groups = samples < VARIANCE_GROUPS ? samples : VARIANCE_GROUPS;
+    for (int g = 0, first = 0; g < groups; g++) {
+        double part[3] = { 0.0, 0.0, 0.0 };
+        const int end = (int)((int64_t)samples * (g + 1) / groups);
+        add_paths(&paths, (uint32_t)first, (uint32_t)end, part);
+        for (int c = 0; c < 3; c++) sum[c] += part[c];
+        const double mean = luminance_of(part) / (end - first);
+        squares += (end - first) * mean * mean;
+        first = end;
+    }
     for (int c = 0; c < 3; c++) sum[c] /= (double)samples;
+    // One group says nothing: a variance as large as its square.
+    const double mean = luminance_of(sum);
+    const double spread =
+        groups > 1 ? (squares / samples - mean * mean) / (groups - 1) : mean * mean;
+    if (variance) *variance = (float)fmax(spread, 0.0);
     return vec3_of((float)sum[0], (float)sum[1], (float)sum[2]);
 }
 
@@ -116,7 +139,7 @@ void gather_grouped_paths(const struct gather_scene *s, const struct gather_poin
         double sum[3] = { 0.0, 0.0, 0.0 };
         paths.pixel = points->pixel | g << 28;
         add_paths(&paths, before / NOISE_GROUPS, after / NOISE_GROUPS, sum);
-        sums->group[g] += luminance(vec3_of((float)sum[0], (float)sum[1], (float)sum[2]));
+        sums->group[g] += (float)luminance_of(sum);
         for (int c = 0; c < 3; c++) all[c] += sum[c];
     }
     for (int c = 0; c < 3; c++) sums->light[c] += (float)all[c];

@@ -46,9 +46,11 @@ struct surface gather_surface(const struct gather_scene *scene, const struct gat
 
 // Irradiance by punctual lights: the mean over the points.
 vec3s gather_punctual(const struct gather_scene *scene, const struct gather_points *points);
-// Irradiance by emissive surfaces, the sky and all bounces: the mean of `samples` paths.
+// Irradiance by emissive surfaces, the sky and all bounces: the mean of `samples` paths. variance
+// (may be NULL): of its luminance, lux², from groups of successive paths; somewhat too large, since
+// a group is stratified less than all.
 vec3s gather_paths(const struct gather_scene *scene, const struct gather_points *points,
-                   int samples, uint64_t seed);
+                   int samples, uint64_t seed, float *variance);
 // Adds paths `before` to `after` − 1 of the texel, in groups: multiples of NOISE_GROUPS.
 void gather_grouped_paths(const struct gather_scene *scene, const struct gather_points *points,
                           uint32_t before, uint32_t after, uint64_t seed, struct noise_sums *sums);

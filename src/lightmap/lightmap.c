@@ -2,6 +2,7 @@
 #include "lightmap/lightmap.h"
 
 #include "core/parallel.h"
+#include "lightmap/filter.h"
 #include "lightmap/gather.h"
 #include "scene/statics.h"
 
@@ -79,24 +80,40 @@ static void add_rows(struct lightmap *map, const float *punctual, const float *r
 {
     for (uint32_t i = 0; i < map->charts.side_texel_count; i++) {
         float *out = texel_at(map, i);
-        hidden[i] = !(rest[4 * (size_t)i + 3] > 0.0f);
+        hidden[i] = !(rest[LIGHTMAP_COLUMNS * (size_t)i + LIGHTMAP_SHARE] > 0.0f);
         for (size_t c = 0; c < 3; c++)
-            out[c] = rest[4 * (size_t)i + c] + (punctual ? punctual[3 * (size_t)i + c] : 0.0f);
+            out[c] = rest[LIGHTMAP_COLUMNS * (size_t)i + c] +
+                     (punctual ? punctual[3 * (size_t)i + c] : 0.0f);
     }
 }
 
-bool lightmap_set_paths(struct lightmap *map, const struct tensors *bake, bool punctual)
+// Owned by the caller; NULL without memory.
+static float *filtered(const struct lightmap *map, const float *rest)
+{
+    const size_t rows = map->charts.side_texel_count;
+    float *light = host_alloc(map->host, rows, LIGHTMAP_COLUMNS * sizeof *light);
+    if (!light) return NULL;
+    memcpy(light, rest, rows * LIGHTMAP_COLUMNS * sizeof *light);
+    if (lightmap_filter(&map->charts, light)) return light;
+    host_free(map->host, light);
+    return NULL;
+}
+
+bool lightmap_set_paths(struct lightmap *map, const struct tensors *bake, bool punctual,
+                        bool filter)
 {
     const uint64_t rows = map->charts.side_texel_count;
     const float *lights = tensors_expect(map->host, bake, LIGHTMAP_PUNCTUAL, TENSOR_F32, 2,
                                          (const uint64_t[]){ rows, 3 });
     const float *rest = tensors_expect(map->host, bake, LIGHTMAP_REST, TENSOR_F32, 2,
-                                       (const uint64_t[]){ rows, 4 });
+                                       (const uint64_t[]){ rows, LIGHTMAP_COLUMNS });
     bool *hidden = lights && rest ? host_alloc(map->host, rows, sizeof *hidden) : NULL;
-    if (!hidden) return false;
-    add_rows(map, punctual ? lights : NULL, rest, hidden);
-    const bool ok = fill(map, hidden);
+    float *smooth = hidden && filter ? filtered(map, rest) : NULL;
+    bool ok = hidden && (smooth || !filter);
+    if (ok) add_rows(map, punctual ? lights : NULL, smooth ? smooth : rest, hidden);
+    ok = ok && fill(map, hidden);
     host_free(map->host, hidden);
+    host_free(map->host, smooth);
     return ok;
 }
 

@@ -10,7 +10,10 @@
 // ---- stages.c: light by the path tracer
 
 #define LIGHTMAP_PUNCTUAL "texels/punctual" // F32 [texels of both sides][3], lux
-#define LIGHTMAP_REST     "texels/rest" // F32 [texels of both sides][4], lux; share of open points
+// F32 [texels of both sides][LIGHTMAP_COLUMNS], lux; share of open points; variance of the
+// luminance, lux².
+#define LIGHTMAP_REST "texels/rest"
+enum { LIGHTMAP_SHARE = 3, LIGHTMAP_VARIANCE, LIGHTMAP_COLUMNS };
 // With a bound of noise: F32 [units of texels][3], noise, paths of a texel, texels (noise.h).
 #define LIGHTMAP_NOISE "charts/noise"
 
@@ -27,7 +30,7 @@ struct lightmap_bake {
 };
 // In the identity of the bake.
 #define LIGHTMAP_NAME "lightmap"
-enum { LIGHTMAP_VERSION = 3 };
+enum { LIGHTMAP_VERSION = 4 };
 bool lightmap_add_stages(struct bake_plan *plan, const struct lightmap_bake *how);
 
 // ---- lightmap.c
@@ -47,8 +50,10 @@ void lightmap_finish(struct lightmap *map);
 // World positions of a side's texels, m; NaN where there is none. *out is zero before.
 bool lightmap_positions(const struct lightmap *map, enum lightmap_side side, struct image *out);
 
-// punctual: with direct light of punctual lights. FAIL_FORMAT: the tensors are not of these charts.
-bool lightmap_set_paths(struct lightmap *map, const struct tensors *bake, bool punctual);
+// punctual: with direct light of punctual lights. filter: see filter.h. FAIL_FORMAT: the tensors
+// are not of these charts.
+bool lightmap_set_paths(struct lightmap *map, const struct tensors *bake, bool punctual,
+                        bool filter);
 // Noise of a map by paths.
 struct lightmap_noise {
     float paths;   // of a texel, in the mean

@@ -71,8 +71,7 @@ static double mean_of(const struct noise_sums *sums)
     return sum / (double)sums->paths;
 }
 
-// The variance of the mean over all paths.
-static double variance_of(const struct noise_sums *sums)
+double noise_variance(const struct noise_sums *sums)
 {
     const double mean = mean_of(sums), paths = (double)sums->paths / NOISE_GROUPS;
     double squares = 0.0;
@@ -91,7 +90,7 @@ struct noise_state noise_of(const struct noise_unit *unit, const struct noise_su
     uint32_t count = 0;
     for (uint32_t i = unit->first; i < unit->first + unit->count; i++) {
         if (!(sums[i].paths > 0.0f)) continue;
-        variance += variance_of(&sums[i]);
+        variance += noise_variance(&sums[i]);
         light += mean_of(&sums[i]);
         state.paths = sums[i].paths;
         count++;

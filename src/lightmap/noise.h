@@ -31,6 +31,8 @@ void noise_units_finish(struct noise_units *units, struct host *host);
 // The unit of a texel.
 uint32_t noise_unit_of(const struct noise_units *units, uint32_t texel);
 
+// The variance of the mean of a texel's paths, of luminance, lux².
+double noise_variance(const struct noise_sums *sums);
 struct noise_state {
     float noise; // 0…; of the unit's mean light, or of the least light
     float paths; // per texel, so far

@@ -35,11 +35,12 @@ static void gather(const struct bake_task *task, uint32_t texel, uint64_t row)
     gather_find_points(&job->scene, texel, &points);
     if (points.count == 0) return;
     const vec3s punctual = gather_punctual(&job->scene, &points);
-    const vec3s rest = gather_paths(&job->scene, &points, job->how.samples, task->bake_seed);
     float *out = bake_row(task, 1, row);
+    const vec3s rest = gather_paths(&job->scene, &points, job->how.samples, task->bake_seed,
+                                    &out[LIGHTMAP_VARIANCE]);
     memcpy(bake_row(task, 0, row), punctual.raw, sizeof punctual.raw);
     memcpy(out, rest.raw, sizeof rest.raw);
-    out[3] = (float)points.count / GATHER_POINTS;
+    out[LIGHTMAP_SHARE] = (float)points.count / GATHER_POINTS;
 }
 
 static bool run(const struct bake_task *task)
@@ -71,14 +72,15 @@ static bool add_stage(struct bake_plan *plan, int samples, uint64_t texels)
 {
     const size_t count = lightmap_task_count(texels, (uint64_t)samples);
     return bake_plan_add(
-        plan, &(struct bake_stage){
-                  .name = "paths",
-                  .task_count = count,
-                  .run = run,
-                  BAKE_OUTPUTS(BAKE_F32(BAKE_ROWS, LIGHTMAP_PUNCTUAL, BAKE_SAVED, texels, 3),
-                               BAKE_F32(BAKE_ROWS, LIGHTMAP_REST, BAKE_SAVED, texels, 4)),
-                  .rays = (double)texels * samples * LIGHTMAP_RAYS_PER_PATH / (double)count,
-                  .texels = (double)texels / (double)count });
+        plan,
+        &(struct bake_stage){
+            .name = "paths",
+            .task_count = count,
+            .run = run,
+            BAKE_OUTPUTS(BAKE_F32(BAKE_ROWS, LIGHTMAP_PUNCTUAL, BAKE_SAVED, texels, 3),
+                         BAKE_F32(BAKE_ROWS, LIGHTMAP_REST, BAKE_SAVED, texels, LIGHTMAP_COLUMNS)),
+            .rays = (double)texels * samples * LIGHTMAP_RAYS_PER_PATH / (double)count,
+            .texels = (double)texels / (double)count });
 }
 
 static bool plan_job(struct lightmap_job *job, struct host *host, const struct lightmap_bake *how,

@@ -58,7 +58,7 @@ static void make_map(struct baked *b, bool punctual)
     lightmap_finish(&b->map);
     CHECK(make_charts(&b->pose, NULL, test_host(), &charts));
     CHECK(lightmap_init(&b->map, &charts, b->scene));
-    CHECK(lightmap_set_paths(&b->map, bake_tensors(b->bake), punctual));
+    CHECK(lightmap_set_paths(&b->map, bake_tensors(b->bake), punctual, false));
 }
 
 static void close_scene(struct baked *b)
@@ -186,7 +186,7 @@ static bool traced_at(const struct gather_scene *scene, uint32_t triangle, vec2s
                                           .count = 1,
                                           .pixel = seed };
     *out = glms_vec3_add(gather_punctual(scene, &points),
-                         gather_paths(scene, &points, 4 * SAMPLES, 7));
+                         gather_paths(scene, &points, 4 * SAMPLES, 7, NULL));
     return luminance(*out) > 0.0f;
 }
 

@@ -127,7 +127,7 @@ static const float *tensor_of(const struct bake *bake, const char *name)
 
 static double luminance_of(const float *rest, uint32_t texel)
 {
-    const float *row = rest + 4 * (size_t)texel;
+    const float *row = rest + LIGHTMAP_COLUMNS * (size_t)texel;
     return (double)luminance(vec3_of(row[0], row[1], row[2]));
 }
 
@@ -139,7 +139,7 @@ static double measured_noise(const struct baked *b, const struct noise_unit *uni
     double squares = 0.0, light = 0.0;
     uint32_t count = 0;
     for (uint32_t i = unit->first; i < unit->first + unit->count; i++) {
-        if (!(rest[0][4 * (size_t)i + 3] > 0.0f)) continue;
+        if (!(rest[0][LIGHTMAP_COLUMNS * (size_t)i + 3] > 0.0f)) continue;
         const double a = luminance_of(rest[0], i), c = luminance_of(rest[1], i);
         squares += 0.5 * (a - c) * (a - c);
         light += 0.5 * (a + c);
@@ -180,7 +180,7 @@ TEST(mean_light_is_that_of_one_number_of_paths)
     const float *a = tensor_of(b.bake[0], LIGHTMAP_REST), *c = tensor_of(same, LIGHTMAP_REST);
     double sum[2] = { 0.0, 0.0 };
     for (uint32_t i = 0; i < b.charts.side_texel_count; i++) {
-        CHECK(a[4 * (size_t)i + 3] == c[4 * (size_t)i + 3]);
+        CHECK(a[LIGHTMAP_COLUMNS * (size_t)i + 3] == c[LIGHTMAP_COLUMNS * (size_t)i + 3]);
         sum[0] += luminance_of(a, i);
         sum[1] += luminance_of(c, i);
     }

@@ -1,5 +1,6 @@
 ag_test(lightmap/lightmap USES lightmap)
 ag_test(lightmap/noise USES lightmap)
+ag_test(lightmap/filter USES lightmap)
 ag_test(lightmap/gltf_copy USES lightmap)
 ag_test(lightmap/materials USES lightmap)
 ag_test(lightmap/update USES lightmap)

@@ -110,8 +110,9 @@ bool lightmap_record_add_charts(struct lightmap_record *r, const struct charts *
 
 static bool copy_rest(struct lightmap_record *r, const float *rest)
 {
-    r->rest = host_alloc(r->host, r->row_count, 4 * sizeof *r->rest);
-    if (r->rest && r->row_count > 0) memcpy(r->rest, rest, r->row_count * 4 * sizeof *r->rest);
+    r->rest = host_alloc(r->host, r->row_count, LIGHTMAP_COLUMNS * sizeof *r->rest);
+    if (r->rest && r->row_count > 0)
+        memcpy(r->rest, rest, r->row_count * LIGHTMAP_COLUMNS * sizeof *r->rest);
     return r->rest;
 }
 

@@ -37,7 +37,8 @@ struct lightmap_record {
     uint32_t chart_count;
     struct record_place *places; // [texel_count] of the texels of one side
     uint32_t texel_count;
-    float *rest; // [row_count][4] LIGHTMAP_REST; NULL: the record describes a scene alone
+    float *rest; // [row_count][LIGHTMAP_COLUMNS] LIGHTMAP_REST; NULL: the record describes a scene
+                 // alone
     uint32_t row_count;
     struct hash128 content; // of a record that was read
 };

@@ -28,7 +28,7 @@ static const struct {
     { "lights", TENSOR_F32, LIGHT_FLOATS },
     { "charts", TENSOR_U32, CHART_WORDS }, // hash; size, texels, first of backs
     { "texels/place", TENSOR_U16, 2 },
-    { LIGHTMAP_REST, TENSOR_F32, 4 },
+    { LIGHTMAP_REST, TENSOR_F32, LIGHTMAP_COLUMNS },
 };
 enum { HASHES, BOUNDS, LIGHTS, CHARTS, PLACES, REST };
 
@@ -226,7 +226,7 @@ static bool take(struct lightmap_record *r, const char *path, const void *const 
     r->lights = host_alloc(host, r->light_count, sizeof *r->lights);
     r->charts = host_alloc(host, r->chart_count, sizeof *r->charts);
     r->places = host_alloc(host, r->texel_count, sizeof *r->places);
-    r->rest = host_alloc(host, r->row_count, 4 * sizeof *r->rest);
+    r->rest = host_alloc(host, r->row_count, LIGHTMAP_COLUMNS * sizeof *r->rest);
     if (!r->instances || !r->lights || !r->charts || !r->places || !r->rest) return false;
     for (uint32_t i = 0; i < r->instance_count; i++)
         unpack_instance(&r->instances[i],
@@ -241,7 +241,8 @@ static bool take(struct lightmap_record *r, const char *path, const void *const 
             return fail(host, path, "a chart has texels that there are not");
     }
     if (r->texel_count > 0) memcpy(r->places, data[PLACES], r->texel_count * sizeof *r->places);
-    if (r->row_count > 0) memcpy(r->rest, data[REST], (size_t)r->row_count * 4 * sizeof *r->rest);
+    if (r->row_count > 0)
+        memcpy(r->rest, data[REST], (size_t)r->row_count * LIGHTMAP_COLUMNS * sizeof *r->rest);
     return true;
 }
 

@@ -89,8 +89,8 @@ static struct pair trace_pair(const struct job *job, const struct gather_points 
     struct gather_points few = { .pixel = points->pixel, .back = points->back };
     for (; few.count < UPDATE_HALF_PATHS; few.count++)
         few.at[few.count] = points->at[(first + few.count) % points->count];
-    return (struct pair){ gather_paths(&job->probe_before, &few, UPDATE_HALF_PATHS, seed),
-                          gather_paths(&job->probe_now, &few, UPDATE_HALF_PATHS, seed) };
+    return (struct pair){ gather_paths(&job->probe_before, &few, UPDATE_HALF_PATHS, seed, NULL),
+                          gather_paths(&job->probe_now, &few, UPDATE_HALF_PATHS, seed, NULL) };
 }
 
 // Adds the `index`-th pair of halves, whose random numbers differ: their difference is the noise.
@@ -118,7 +118,7 @@ static void find_points(const struct job *job, uint32_t texel, struct gather_poi
 {
     const bool known =
         job->match.row_was[texel] == texel && !chart_is_back(&job->charts, texel) &&
-        job->was.rest[4 * (size_t)texel + 3] == 1.0f &&
+        job->was.rest[LIGHTMAP_COLUMNS * (size_t)texel + LIGHTMAP_SHARE] == 1.0f &&
         update_near_change(&job->match, job->charts.texels[texel].position) == UPDATE_FAR;
     if (known)
         gather_find_open_points(&job->scene, texel, out);
@@ -222,10 +222,11 @@ static void gather(const struct bake_task *task, uint32_t texel, uint64_t row)
     struct gather_points points;
     find_points(job, texel, &points);
     if (points.count == 0) return;
-    const vec3s rest = gather_paths(&job->scene, &points, job->how.samples, task->bake_seed);
     float *out = bake_row(task, 0, row);
+    const vec3s rest = gather_paths(&job->scene, &points, job->how.samples, task->bake_seed,
+                                    &out[LIGHTMAP_VARIANCE]);
     memcpy(out, rest.raw, sizeof rest.raw);
-    out[3] = (float)points.count / GATHER_POINTS;
+    out[LIGHTMAP_SHARE] = (float)points.count / GATHER_POINTS;
 }
 
 static bool run_paths(const struct bake_task *task)
@@ -237,8 +238,9 @@ static bool run_paths(const struct bake_task *task)
     const uint8_t *marks = again->data;
     for (uint64_t i = 0; i < count && first + i < job->charts.side_texel_count; i++)
         if (!marks[first + i])
-            memcpy(bake_row(task, 0, i), job->was.rest + 4 * (size_t)job->match.row_was[first + i],
-                   4 * sizeof(float));
+            memcpy(bake_row(task, 0, i),
+                   job->was.rest + LIGHTMAP_COLUMNS * (size_t)job->match.row_was[first + i],
+                   LIGHTMAP_COLUMNS * sizeof(float));
     const unsigned before = embree_flush_denormals();
     bool ok = true;
     for (uint64_t i = 0; ok && i < count && first + i < job->charts.side_texel_count; i++) {
@@ -311,8 +313,8 @@ static bool add_paths(struct bake_plan *plan, uint64_t rows, int samples)
     const uint64_t wanted = (rows * (uint64_t)samples + PATHS_PER_TASK - 1) / PATHS_PER_TASK;
     const size_t count = (size_t)(wanted < rows ? wanted : rows);
     const double rays = (double)rows * samples * RAYS_PER_PATH * ASSUMED_SHARE;
-    const struct bake_output out = { LIGHTMAP_REST, TENSOR_F32, 2,
-                                     { rows, 4 },   BAKE_ROWS,  BAKE_SAVED };
+    const struct bake_output out = { LIGHTMAP_REST, TENSOR_F32, 2, { rows, LIGHTMAP_COLUMNS },
+                                     BAKE_ROWS,     BAKE_SAVED };
     return bake_plan_add(plan, &(struct bake_stage){ .name = "paths",
                                                      .wave = WAVE_PATHS,
                                                      .task_count = count,
