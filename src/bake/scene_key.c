@@ -67,6 +67,16 @@ struct hash128 scene_key_add_attributes(struct hash128 key, const struct scene *
     return add_array(key, mesh->tangents, count, sizeof *mesh->tangents);
 }
 
+struct hash128 scene_key_add_light(struct hash128 key, const struct world_light *light)
+{
+    const float values[] = { light->position.x,  light->position.y,  light->position.z,
+                             light->direction.x, light->direction.y, light->direction.z,
+                             light->intensity.x, light->intensity.y, light->intensity.z,
+                             light->cos_inner,   light->cos_outer,   light->range_m };
+    const int type = (int)light->type;
+    return hash128_add(hash128_add(key, &type, sizeof type), values, sizeof values);
+}
+
 static struct hash128 add_surface(struct hash128 key, const struct scene *scene, int instance)
 {
     return scene_key_add_material(scene_key_add_attributes(key, scene, instance), scene,

@@ -23,44 +23,56 @@ struct wave {
     const char *sums_before; // NULL in the first
 };
 
+// Inputs of the tasks of a wave; NULL in the first.
+struct inputs {
+    const struct lightmap_job *job;
+    const struct noise_sums *sums; // of the wave before
+    const uint32_t *counts;        // of the units
+    const float *shares;
+};
+
+static const char SHARES[] = "texels/shares";
+
 // ---- paths
 
-static uint32_t paths_after(const struct bake_task *task, uint32_t texel)
+static void gather_first(void *user, const struct bake_task *task, uint32_t texel, uint64_t row)
 {
-    const struct wave *wave = task->argument;
-    const struct lightmap_job *job = task->job;
-    if (!wave->sums_before) return FIRST_PATHS;
-    const uint32_t *counts = bake_task_input(task, wave->counts)->data;
-    return counts[noise_unit_of(&job->units, texel)];
-}
-
-static void gather(const struct bake_task *task, uint32_t texel, uint64_t row)
-{
-    const struct wave *wave = task->argument;
-    const struct lightmap_job *job = task->job;
-    struct noise_sums sums = { 0 };
-    if (wave->sums_before)
-        sums = ((const struct noise_sums *)bake_task_input(task, wave->sums_before)->data)[texel];
-    const uint32_t before = (uint32_t)sums.paths, after = paths_after(task, texel);
-    struct gather_points points = { 0 };
-    if (after > before && (before > 0 || !wave->sums_before))
-        gather_find_points(&job->scene, texel, &points);
-    if (points.count > 0)
-        gather_grouped_paths(&job->scene, &points, before, after, task->bake_seed, &sums);
-    memcpy(bake_row(task, 0, row), &sums, sizeof sums);
-    if (wave->sums_before) return;
-    const vec3s punctual = gather_punctual(&job->scene, &points);
+    const struct inputs *in = user;
+    struct noise_sums *sums = bake_row(task, 0, row);
+    struct gather_points points;
+    gather_find_points(&in->job->scene, texel, &points);
+    gather_grouped_paths(&in->job->scene, &points, 0, FIRST_PATHS, task->bake_seed, sums);
+    const vec3s punctual = gather_punctual(&in->job->scene, &points);
     memcpy(bake_row(task, 1, row), punctual.raw, sizeof punctual.raw);
     *(float *)bake_row(task, 2, row) = (float)points.count / GATHER_POINTS;
+}
+
+static void gather_more(void *user, const struct bake_task *task, uint32_t texel, uint64_t row)
+{
+    const struct inputs *in = user;
+    struct noise_sums *sums = bake_row(task, 0, row);
+    *sums = in->sums[texel];
+    const uint32_t before = (uint32_t)sums->paths,
+                   after = in->counts[noise_unit_of(&in->job->units, texel)];
+    if (before == 0 || after <= before) return;
+    struct gather_points points;
+    gather_find_points(&in->job->scene, texel, &points);
+    gather_grouped_paths(&in->job->scene, &points, before, after, task->bake_seed, sums);
 }
 
 static bool run_paths(const struct bake_task *task)
 {
     const struct wave *wave = task->argument;
-    if (wave->sums_before &&
-        (!bake_task_input(task, wave->sums_before) || !bake_task_input(task, wave->counts)))
-        return false;
-    return lightmap_run_rows(task, gather);
+    const struct lightmap_job *job = task->job;
+    struct inputs in = { .job = job };
+    const uint32_t texels = job->charts.side_texel_count;
+    if (!wave->sums_before) return lightmap_run_rows(task, texels, gather_first, &in);
+    const struct tensor *sums = bake_task_input(task, wave->sums_before),
+                        *counts = bake_task_input(task, wave->counts);
+    if (!sums || !counts) return false;
+    in.sums = sums->data;
+    in.counts = counts->data;
+    return lightmap_run_rows(task, texels, gather_more, &in);
 }
 
 // ---- numbers of paths
@@ -88,22 +100,26 @@ static bool run_counts(const struct bake_task *task)
 
 // ---- results
 
-static void take_mean(const struct bake_task *task, uint32_t texel, uint64_t row)
+static void take_mean(void *user, const struct bake_task *task, uint32_t texel, uint64_t row)
 {
-    const struct wave *wave = task->argument;
-    const struct noise_sums *sums =
-        (const struct noise_sums *)bake_task_input(task, wave->sums_before)->data + texel;
+    const struct inputs *in = user;
+    const struct noise_sums *sums = &in->sums[texel];
     float *out = bake_row(task, 0, row);
-    for (int c = 0; c < 3 && sums->paths > 0.0f; c++) out[c] = sums->light[c] / sums->paths;
-    out[LIGHTMAP_SHARE] = ((const float *)bake_task_input(task, "texels/shares")->data)[texel];
-    if (sums->paths > 0.0f) out[LIGHTMAP_VARIANCE] = (float)noise_variance(sums);
+    out[LIGHTMAP_SHARE] = in->shares[texel];
+    if (!(sums->paths > 0.0f)) return;
+    for (int c = 0; c < 3; c++) out[c] = sums->light[c] / sums->paths;
+    out[LIGHTMAP_VARIANCE] = (float)noise_variance(sums);
 }
 
 static bool run_means(const struct bake_task *task)
 {
     const struct wave *wave = task->argument;
-    return bake_task_input(task, wave->sums_before) && bake_task_input(task, "texels/shares") &&
-           lightmap_run_rows(task, take_mean);
+    const struct lightmap_job *job = task->job;
+    const struct tensor *sums = bake_task_input(task, wave->sums_before),
+                        *shares = bake_task_input(task, SHARES);
+    if (!sums || !shares) return false;
+    struct inputs in = { .job = job, .sums = sums->data, .shares = shares->data };
+    return lightmap_run_rows(task, job->charts.side_texel_count, take_mean, &in);
 }
 
 static bool run_noise(const struct bake_task *task)
@@ -150,7 +166,7 @@ static bool add_paths(struct bake_plan *plan, const struct wave *wave, uint64_t 
     const struct bake_output out[] = {
         BAKE_F32(BAKE_ROWS, wave->sums, at + 2, texels, COLUMNS),
         BAKE_F32(BAKE_ROWS, LIGHTMAP_PUNCTUAL, BAKE_SAVED, texels, 3),
-        BAKE_F32(BAKE_ROWS, "texels/shares", 2 * MORE_WAVES + 1, texels, 1),
+        BAKE_F32(BAKE_ROWS, SHARES, 2 * MORE_WAVES + 1, texels, 1),
     };
     return bake_plan_add(
         plan, &(struct bake_stage){

@@ -87,6 +87,7 @@ static float surface_weight(const struct filter *f, uint32_t texel, uint32_t oth
 // 1 where two means differ by no more than the noise of both.
 static float likeness(float difference, float variance, float deviations)
 {
+    variance = fmaxf(variance, 0.0f);
     const float beyond = difference * difference - variance;
     if (!(beyond > 0.0f)) return 1.0f;
     return variance > 0.0f ? expf(-beyond / (deviations * deviations * variance)) : 0.0f;
@@ -108,6 +109,7 @@ static void filter_texel(void *user, size_t i)
     struct filter *f = user;
     const uint32_t texel = (uint32_t)i;
     float sum[3] = { 0, 0, 0 }, weights = 0.0f;
+    memcpy(f->out + CHANNELS * i, f->light + CHANNELS * i, CHANNELS * sizeof *f->out);
     if (!is_open(f, texel)) return;
     for (int dy = -RADIUS; dy <= RADIUS; dy++)
         for (int dx = -RADIUS; dx <= RADIUS; dx++) {
@@ -123,20 +125,16 @@ static void filter_texel(void *user, size_t i)
     for (int c = 0; c < 3; c++) f->out[CHANNELS * i + (size_t)c] = sum[c] / weights;
 }
 
-bool lightmap_filter(const struct charts *charts, float *light)
+bool lightmap_filter(const struct charts *charts, const float *light, float *out)
 {
     const size_t rows = charts->side_texel_count;
-    struct host *host = charts->host;
-    float *memory =
-        host_alloc(host, rows, (CHANNELS + 2) * sizeof *memory); // light, patch, variance
-    if (!memory) return false;
-    float *patch = memory + CHANNELS * rows;
+    float *patch = host_alloc(charts->host, rows, 2 * sizeof *patch); // and its variance
+    if (!patch) return false;
     struct filter f = {
-        .charts = charts, .light = memory, .out = light, .patch = patch, .variance = patch + rows
+        .charts = charts, .light = light, .out = out, .patch = patch, .variance = patch + rows
     };
-    memcpy(memory, light, rows * CHANNELS * sizeof *light);
     parallel_for(rows, 256, find_patch, &f);
     parallel_for(rows, 64, filter_texel, &f);
-    host_free(host, memory);
+    host_free(charts->host, patch);
     return true;
 }

@@ -9,6 +9,6 @@
 
 #include "lightmap/lightmap.h"
 
-// light: [side_texel_count][LIGHTMAP_COLUMNS], a LIGHTMAP_REST. Texels without open points are
-// neither read nor written. False without memory.
-bool lightmap_filter(const struct charts *charts, float *light);
+// light, out: [side_texel_count][LIGHTMAP_COLUMNS], a LIGHTMAP_REST. Texels without open points,
+// and the last columns, are copied. False without memory.
+bool lightmap_filter(const struct charts *charts, const float *light, float *out);

@@ -92,9 +92,7 @@ static float *filtered(const struct lightmap *map, const float *rest)
 {
     const size_t rows = map->charts.side_texel_count;
     float *light = host_alloc(map->host, rows, LIGHTMAP_COLUMNS * sizeof *light);
-    if (!light) return NULL;
-    memcpy(light, rest, rows * LIGHTMAP_COLUMNS * sizeof *light);
-    if (lightmap_filter(&map->charts, light)) return light;
+    if (light && lightmap_filter(&map->charts, rest, light)) return light;
     host_free(map->host, light);
     return NULL;
 }

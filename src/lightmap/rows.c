@@ -1,16 +1,18 @@
-// Tasks whose rows are texels.
-#include "lightmap/stages.h"
+#include "lightmap/rows.h"
 
-bool lightmap_run_rows(const struct bake_task *task,
-                       void (*gather)(const struct bake_task *task, uint32_t texel, uint64_t row))
+#include "lightmap/lightmap.h"
+
+#include <string.h>
+
+bool lightmap_run_rows(const struct bake_task *task, uint64_t texels, lightmap_row *each,
+                       void *user)
 {
-    const struct lightmap_job *job = task->job;
     uint64_t count, first = bake_task_rows(task, 0, &count);
     const unsigned before = embree_flush_denormals();
     bool ok = true;
-    for (uint64_t i = 0; ok && i < count && first + i < job->charts.side_texel_count; i++) {
+    for (uint64_t i = 0; ok && i < count && first + i < texels; i++) {
         ok = !bake_task_cancelled(task);
-        if (ok) gather(task, (uint32_t)(first + i), i);
+        if (ok) each(user, task, (uint32_t)(first + i), i);
     }
     embree_restore_denormals(before);
     return ok;
@@ -23,4 +25,12 @@ size_t lightmap_task_count(uint64_t texels, uint64_t paths_of_texel)
 {
     const uint64_t tasks = (texels * paths_of_texel + PATHS_PER_TASK - 1) / PATHS_PER_TASK;
     return (size_t)(tasks < texels ? tasks : texels);
+}
+
+void lightmap_gather_row(const struct gather_scene *scene, const struct gather_points *points,
+                         int samples, uint64_t seed, float *row)
+{
+    const vec3s light = gather_paths(scene, points, samples, seed, &row[LIGHTMAP_VARIANCE]);
+    memcpy(row, light.raw, sizeof light.raw);
+    row[LIGHTMAP_SHARE] = (float)points->count / GATHER_POINTS;
 }

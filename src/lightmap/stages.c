@@ -28,24 +28,22 @@ static void destroy(void *argument)
 
 // ---- one number of paths for all texels
 
-static void gather(const struct bake_task *task, uint32_t texel, uint64_t row)
+static void gather(void *user, const struct bake_task *task, uint32_t texel, uint64_t row)
 {
-    const struct lightmap_job *job = task->job;
+    const struct lightmap_job *job = user;
     struct gather_points points;
     gather_find_points(&job->scene, texel, &points);
     if (points.count == 0) return;
     const vec3s punctual = gather_punctual(&job->scene, &points);
-    float *out = bake_row(task, 1, row);
-    const vec3s rest = gather_paths(&job->scene, &points, job->how.samples, task->bake_seed,
-                                    &out[LIGHTMAP_VARIANCE]);
     memcpy(bake_row(task, 0, row), punctual.raw, sizeof punctual.raw);
-    memcpy(out, rest.raw, sizeof rest.raw);
-    out[LIGHTMAP_SHARE] = (float)points.count / GATHER_POINTS;
+    lightmap_gather_row(&job->scene, &points, job->how.samples, task->bake_seed,
+                        bake_row(task, 1, row));
 }
 
 static bool run(const struct bake_task *task)
 {
-    return lightmap_run_rows(task, gather);
+    const struct lightmap_job *job = task->job;
+    return lightmap_run_rows(task, job->charts.side_texel_count, gather, (void *)job);
 }
 
 // ---- dependencies of the light
@@ -58,12 +56,7 @@ static struct hash128 key_of(const struct scene_pose *pose)
     for (int i = 0; i < pose_light_count(pose); i++) {
         if (i < pose->scene->light_count && pose->scene->lights[i].off) continue;
         const struct world_light light = pose_light(pose, i);
-        const float values[] = { light.position.x,  light.position.y,  light.position.z,
-                                 light.direction.x, light.direction.y, light.direction.z,
-                                 light.intensity.x, light.intensity.y, light.intensity.z,
-                                 light.cos_inner,   light.cos_outer,   light.range_m };
-        const int type = (int)light.type;
-        key = hash128_add(hash128_add(key, &type, sizeof type), values, sizeof values);
+        key = scene_key_add_light(key, &light);
     }
     return key;
 }

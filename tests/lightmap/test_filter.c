@@ -1,19 +1,12 @@
 // The filter of light by paths: noise falls, means and edges stay.
-#include "framework/test.h"
+#include "lightmap/lightmap_fixture.h"
 
 #include "lightmap/filter.h"
 
 #include <math.h>
 #include <string.h>
 
-static bool make_charts(const struct scene_pose *statics, const void *options, struct host *host,
-                        struct charts *out)
-{
-    (void)options;
-    return charts_init(out, host, statics,
-                       &(struct charts_options){
-                           .texels_per_m = 1e3f, .max_texels = 1 << 18, .surface_texels = 4096 });
-}
+static const int TEXELS = 4096;
 
 struct maps {
     struct scene *scene;
@@ -27,7 +20,7 @@ static void open_scene(struct maps *m, const char *name)
     *m = (struct maps){ .scene = scene_load(test_host(), name) };
     assert_non_null(m->scene);
     CHECK(pose_init(&m->pose, m->scene, -1, 0));
-    CHECK(make_charts(&m->pose, NULL, test_host(), &m->charts));
+    CHECK(fixture_charts(&m->pose, &TEXELS, test_host(), &m->charts));
     m->count = (size_t)m->charts.side_texel_count * LIGHTMAP_COLUMNS;
 }
 
@@ -38,30 +31,16 @@ static void close_scene(struct maps *m)
     scene_destroy(m->scene);
 }
 
+// A copy of the rows. Owned by the caller.
 static float *bake(const struct maps *m, int samples, uint64_t seed)
 {
-    const struct bake_identity identity = {
-        .technique = LIGHTMAP_NAME, .version = 1, .options = "", .program = "test", .seed = seed
-    };
-    const struct lightmap_bake how = { .pose = &m->pose,
-                                       .samples = samples,
-                                       .charts = make_charts };
-    struct bake *bake = bake_create(test_host(), &identity);
-    CHECK(bake && lightmap_add_stages(bake_plan_of(bake), &how));
-    CHECK(bake_run(bake, &(struct bake_run_options){ .threads = 0 }));
-    const struct tensor *rest = tensors_find(bake_tensors(bake), LIGHTMAP_REST);
+    struct bake *bake = fixture_bake(&(struct fixture_bake){
+        .pose = &m->pose, .texels = TEXELS, .samples = samples, .seed = seed });
     float *light = host_alloc(test_host(), m->count, sizeof *light);
     assert_non_null(light);
-    assert_int_equal(rest->bytes, m->count * sizeof *light);
-    memcpy(light, rest->data, rest->bytes);
+    memcpy(light, fixture_tensor(bake, LIGHTMAP_REST), m->count * sizeof *light);
     bake_destroy(bake);
     return light;
-}
-
-static double luminance_at(const float *light, size_t texel)
-{
-    const float *row = light + LIGHTMAP_COLUMNS * texel;
-    return (double)luminance(vec3_of(row[0], row[1], row[2]));
 }
 
 // Mean squared difference over the squared mean.
@@ -69,7 +48,7 @@ static double error_of(const struct maps *m, const float *light, const float *re
 {
     double squares = 0.0, sum = 0.0;
     for (size_t i = 0; i < m->charts.side_texel_count; i++) {
-        const double a = luminance_at(light, i), b = luminance_at(reference, i);
+        const double a = fixture_luminance(light, i), b = fixture_luminance(reference, i);
         squares += (a - b) * (a - b);
         sum += b;
     }
@@ -79,7 +58,7 @@ static double error_of(const struct maps *m, const float *light, const float *re
 static double mean_of(const struct maps *m, const float *light)
 {
     double sum = 0.0;
-    for (size_t i = 0; i < m->charts.side_texel_count; i++) sum += luminance_at(light, i);
+    for (size_t i = 0; i < m->charts.side_texel_count; i++) sum += fixture_luminance(light, i);
     return sum / m->charts.side_texel_count;
 }
 
@@ -87,8 +66,9 @@ TEST(filter_takes_two_thirds_of_the_error_of_paths_and_keeps_the_mean)
 {
     struct maps m;
     open_scene(&m, "@cornell");
-    float *reference = bake(&m, 1024, 2), *noisy = bake(&m, 32, 1), *smooth = bake(&m, 32, 1);
-    CHECK(lightmap_filter(&m.charts, smooth));
+    float *reference = bake(&m, 1024, 2), *noisy = bake(&m, 32, 1),
+          *smooth = host_alloc(test_host(), m.count, sizeof *smooth);
+    CHECK(smooth && lightmap_filter(&m.charts, noisy, smooth));
     const double before = error_of(&m, noisy, reference), after = error_of(&m, smooth, reference);
     print_message("error %.5f, filtered %.5f; mean %.4f of the noisy one\n", before, after,
                   mean_of(&m, smooth) / mean_of(&m, noisy));
@@ -107,7 +87,7 @@ TEST(variance_of_texels_is_that_of_bakes_with_other_seeds)
     float *a = bake(&m, 64, 1), *b = bake(&m, 64, 2);
     double stated = 0.0, measured = 0.0;
     for (size_t i = 0; i < m.charts.side_texel_count; i++) {
-        const double difference = luminance_at(a, i) - luminance_at(b, i);
+        const double difference = fixture_luminance(a, i) - fixture_luminance(b, i);
         stated += (double)a[LIGHTMAP_COLUMNS * i + LIGHTMAP_VARIANCE];
         measured += 0.5 * difference * difference;
     }
@@ -128,10 +108,12 @@ TEST(light_without_variance_stays_with_its_edges)
         for (int c = 0; c < 3; c++) row[c] = i % 3 == 0 ? 100.0f : 1.0f;
         row[LIGHTMAP_VARIANCE] = 0.0f;
     }
-    CHECK(lightmap_filter(&m.charts, light));
+    float *out = host_alloc(test_host(), m.count, sizeof *out);
+    CHECK(out && lightmap_filter(&m.charts, light, out));
     for (size_t i = 0; i < m.charts.side_texel_count; i++)
-        if (light[LIGHTMAP_COLUMNS * i + LIGHTMAP_SHARE] > 0.0f)
-            CHECK_RELATIVE(light[LIGHTMAP_COLUMNS * i], i % 3 == 0 ? 100.0 : 1.0, 1e-4);
+        if (out[LIGHTMAP_COLUMNS * i + LIGHTMAP_SHARE] > 0.0f)
+            CHECK_RELATIVE(out[LIGHTMAP_COLUMNS * i], i % 3 == 0 ? 100.0 : 1.0, 1e-4);
     host_free(test_host(), light);
+    host_free(test_host(), out);
     close_scene(&m);
 }

@@ -1,6 +1,6 @@
 // Light maps by the path tracer: the bake's bytes, and lookups as another engine would make them,
 // through the files alone.
-#include "framework/test.h"
+#include "lightmap/lightmap_fixture.h"
 
 #include "lightmap/gather.h"
 #include "lightmap/write.h"
@@ -14,16 +14,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { TEXELS = 1024, SAMPLES = 64 };
-
-static bool make_charts(const struct scene_pose *statics, const void *options, struct host *host,
-                        struct charts *out)
-{
-    (void)options;
-    return charts_init(out, host, statics,
-                       &(struct charts_options){
-                           .texels_per_m = 1e3f, .max_texels = 1 << 18, .surface_texels = TEXELS });
-}
+enum { SAMPLES = 64 };
+static const int TEXELS = 1024;
 
 struct baked {
     struct scene *scene;
@@ -34,14 +26,8 @@ struct baked {
 
 static struct bake *bake_of(const struct scene_pose *pose, int threads)
 {
-    const struct bake_identity identity = {
-        .technique = LIGHTMAP_NAME, .version = 1, .options = "", .program = "test"
-    };
-    const struct lightmap_bake how = { .pose = pose, .samples = SAMPLES, .charts = make_charts };
-    struct bake *bake = bake_create(test_host(), &identity);
-    CHECK(bake && lightmap_add_stages(bake_plan_of(bake), &how));
-    CHECK(bake_run(bake, &(struct bake_run_options){ .threads = threads }));
-    return bake;
+    return fixture_bake(&(struct fixture_bake){
+        .pose = pose, .texels = TEXELS, .samples = SAMPLES, .threads = threads });
 }
 
 static void open_scene(struct baked *b, const char *name)
@@ -56,7 +42,7 @@ static void make_map(struct baked *b, bool punctual)
 {
     struct charts charts;
     lightmap_finish(&b->map);
-    CHECK(make_charts(&b->pose, NULL, test_host(), &charts));
+    CHECK(fixture_charts(&b->pose, &TEXELS, test_host(), &charts));
     CHECK(lightmap_init(&b->map, &charts, b->scene));
     CHECK(lightmap_set_paths(&b->map, bake_tensors(b->bake), punctual, false));
 }
@@ -258,7 +244,7 @@ TEST(scene_without_static_triangles_is_refused_in_one_sentence)
     struct baked b = { .scene = scene_create(test_host(), "empty") };
     struct charts charts;
     CHECK(pose_init(&b.pose, b.scene, -1, 0));
-    CHECK(make_charts(&b.pose, NULL, test_host(), &charts));
+    CHECK(fixture_charts(&b.pose, &TEXELS, test_host(), &charts));
     CHECK(!lightmap_init(&b.map, &charts, b.scene));
     CHECK_STRING(test_last_message(), "light map of empty: the scene has no static triangles");
     close_scene(&b);

@@ -1,23 +1,14 @@
 // Light maps by paths until the noise of each chart is at a bound.
-#include "framework/test.h"
+#include "lightmap/lightmap_fixture.h"
 
-#include "lightmap/lightmap.h"
 #include "lightmap/noise.h"
 
 #include <math.h>
 #include <string.h>
 
 static const float BOUND = 0.06f;
-enum { TEXELS = 2048, MOST = 4096 };
-
-static bool make_charts(const struct scene_pose *statics, const void *options, struct host *host,
-                        struct charts *out)
-{
-    (void)options;
-    return charts_init(out, host, statics,
-                       &(struct charts_options){
-                           .texels_per_m = 1e3f, .max_texels = 1 << 18, .surface_texels = TEXELS });
-}
+enum { MOST = 4096 };
+static const int TEXELS = 2048;
 
 // ---- units and estimates
 
@@ -87,16 +78,12 @@ struct baked {
 static struct bake *bake_of(const struct scene_pose *pose, float noise, int samples, uint64_t seed,
                             int threads)
 {
-    const struct bake_identity identity = {
-        .technique = LIGHTMAP_NAME, .version = 1, .options = "", .program = "test", .seed = seed
-    };
-    const struct lightmap_bake how = {
-        .pose = pose, .samples = samples, .noise = noise, .charts = make_charts
-    };
-    struct bake *bake = bake_create(test_host(), &identity);
-    CHECK(bake && lightmap_add_stages(bake_plan_of(bake), &how));
-    CHECK(bake_run(bake, &(struct bake_run_options){ .threads = threads }));
-    return bake;
+    return fixture_bake(&(struct fixture_bake){ .pose = pose,
+                                                .texels = TEXELS,
+                                                .samples = samples,
+                                                .noise = noise,
+                                                .seed = seed,
+                                                .threads = threads });
 }
 
 static void open_scene(struct baked *b, const char *name, float noise, int samples)
@@ -105,7 +92,7 @@ static void open_scene(struct baked *b, const char *name, float noise, int sampl
     assert_non_null(b->scene);
     CHECK(pose_init(&b->pose, b->scene, -1, 0));
     for (int i = 0; i < 2; i++) b->bake[i] = bake_of(&b->pose, noise, samples, (uint64_t)i + 1, 0);
-    CHECK(make_charts(&b->pose, NULL, test_host(), &b->charts));
+    CHECK(fixture_charts(&b->pose, &TEXELS, test_host(), &b->charts));
     CHECK(noise_units_init(&b->units, &b->charts));
 }
 
@@ -118,29 +105,16 @@ static void close_scene(struct baked *b)
     scene_destroy(b->scene);
 }
 
-static const float *tensor_of(const struct bake *bake, const char *name)
-{
-    const struct tensor *tensor = tensors_find(bake_tensors(bake), name);
-    assert_non_null(tensor);
-    return tensor->data;
-}
-
-static double luminance_of(const float *rest, uint32_t texel)
-{
-    const float *row = rest + LIGHTMAP_COLUMNS * (size_t)texel;
-    return (double)luminance(vec3_of(row[0], row[1], row[2]));
-}
-
 // Half the mean squared difference of two maps over the squared mean.
 static double measured_noise(const struct baked *b, const struct noise_unit *unit)
 {
-    const float *rest[2] = { tensor_of(b->bake[0], LIGHTMAP_REST),
-                             tensor_of(b->bake[1], LIGHTMAP_REST) };
+    const float *rest[2] = { fixture_tensor(b->bake[0], LIGHTMAP_REST),
+                             fixture_tensor(b->bake[1], LIGHTMAP_REST) };
     double squares = 0.0, light = 0.0;
     uint32_t count = 0;
     for (uint32_t i = unit->first; i < unit->first + unit->count; i++) {
         if (!(rest[0][LIGHTMAP_COLUMNS * (size_t)i + 3] > 0.0f)) continue;
-        const double a = luminance_of(rest[0], i), c = luminance_of(rest[1], i);
+        const double a = fixture_luminance(rest[0], i), c = fixture_luminance(rest[1], i);
         squares += 0.5 * (a - c) * (a - c);
         light += 0.5 * (a + c);
         count++;
@@ -152,7 +126,7 @@ TEST(noise_of_each_chart_is_at_the_bound)
 {
     struct baked b;
     open_scene(&b, "@cornell", BOUND, MOST);
-    const float *rows = tensor_of(b.bake[0], LIGHTMAP_NOISE);
+    const float *rows = fixture_tensor(b.bake[0], LIGHTMAP_NOISE);
     int large = 0;
     double least = 1.0, most = 0.0;
     for (uint32_t u = 0; u < b.units.count; u++) {
@@ -177,15 +151,17 @@ TEST(mean_light_is_that_of_one_number_of_paths)
     struct baked b;
     open_scene(&b, "@cornell", BOUND, MOST);
     struct bake *same = bake_of(&b.pose, 0.0f, 256, 9, 0);
-    const float *a = tensor_of(b.bake[0], LIGHTMAP_REST), *c = tensor_of(same, LIGHTMAP_REST);
+    const float *a = fixture_tensor(b.bake[0], LIGHTMAP_REST),
+                *c = fixture_tensor(same, LIGHTMAP_REST);
     double sum[2] = { 0.0, 0.0 };
     for (uint32_t i = 0; i < b.charts.side_texel_count; i++) {
         CHECK(a[LIGHTMAP_COLUMNS * (size_t)i + 3] == c[LIGHTMAP_COLUMNS * (size_t)i + 3]);
-        sum[0] += luminance_of(a, i);
-        sum[1] += luminance_of(c, i);
+        sum[0] += fixture_luminance(a, i);
+        sum[1] += fixture_luminance(c, i);
     }
     CHECK_RELATIVE(sum[0], sum[1], 0.005);
-    CHECK(memcmp(tensor_of(b.bake[0], LIGHTMAP_PUNCTUAL), tensor_of(same, LIGHTMAP_PUNCTUAL),
+    CHECK(memcmp(fixture_tensor(b.bake[0], LIGHTMAP_PUNCTUAL),
+                 fixture_tensor(same, LIGHTMAP_PUNCTUAL),
                  3 * sizeof(float) * b.charts.side_texel_count) == 0);
     bake_destroy(same);
     close_scene(&b);
@@ -210,11 +186,11 @@ TEST(paths_of_a_texel_end_at_the_most)
     struct lightmap map;
     struct lightmap_noise noise;
     open_scene(&b, "@cornell", 0.001f, 50);
-    const float *rows = tensor_of(b.bake[0], LIGHTMAP_NOISE);
+    const float *rows = fixture_tensor(b.bake[0], LIGHTMAP_NOISE);
     for (uint32_t u = 0; u < b.units.count; u++) CHECK(rows[3 * u + 1] <= 50.0f);
     const int units = (int)b.units.count;
     struct charts charts;
-    CHECK(make_charts(&b.pose, NULL, test_host(), &charts));
+    CHECK(fixture_charts(&b.pose, &TEXELS, test_host(), &charts));
     CHECK(lightmap_init(&map, &charts, b.scene));
     CHECK(lightmap_noise_read(&map, bake_tensors(b.bake[0]), 50, 0.001f, &noise));
     CHECK(noise.above > units / 2 && noise.above <= units);

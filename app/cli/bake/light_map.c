@@ -264,8 +264,8 @@ static void say_noise(const struct ag_lightmap_info *info)
     if (!isfinite(info->noise)) return;
     char noisy[128] = "";
     if (info->noisy_charts > 0)
-        snprintf(noisy, sizeof noisy, "; %d charts with the most paths are above the bound",
-                 info->noisy_charts);
+        snprintf(noisy, sizeof noisy, "; %d chart%s with the most paths above the bound",
+                 info->noisy_charts, info->noisy_charts == 1 ? "" : "s");
     note("noise %.2g %% of a chart's light at most; %.0f paths per texel in the mean%s",
          100.0 * (double)info->noise, (double)info->paths, noisy);
 }

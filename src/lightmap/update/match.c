@@ -82,7 +82,7 @@ static bool match_instances(struct update_match *m, const struct lightmap_record
             match_instance(m, was, &now->instances[i], i, pass == 0, entries, count);
     for (uint32_t i = 0; i < now->instance_count; i++)
         m->changed += now->instances[i].triangles > 0 && !m->same[i];
-    // A moved one is there twice: as it was, and as it is.
+    // A moved instance is both gone and added.
     uint32_t gone = 0, added = 0;
     for (uint32_t i = 0; i < now->instance_count; i++)
         added += now->instances[i].triangles > 0 && m->was[i] == UPDATE_NONE;

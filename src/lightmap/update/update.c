@@ -4,6 +4,7 @@
 
 #include "bake/scene_key.h"
 #include "core/rng.h"
+#include "lightmap/rows.h"
 
 #include <string.h>
 
@@ -126,9 +127,9 @@ static void find_points(const struct job *job, uint32_t texel, struct gather_poi
         gather_find_points(&job->scene, texel, out);
 }
 
-static void probe(const struct bake_task *task, uint32_t texel, uint64_t row)
+static void probe(void *user, const struct bake_task *task, uint32_t texel, uint64_t row)
 {
-    const struct job *job = task->job;
+    const struct job *job = user;
     struct update_probe *out = bake_row(task, 1, row);
     struct gather_points points;
     find_points(job, texel, &points);
@@ -143,24 +144,10 @@ static void probe(const struct bake_task *task, uint32_t texel, uint64_t row)
     add_estimate(job, &points, 0, task->bake_seed, out);
 }
 
-static bool run_rows(const struct bake_task *task,
-                     void (*each)(const struct bake_task *task, uint32_t texel, uint64_t row))
-{
-    const struct job *job = task->job;
-    uint64_t count, first = bake_task_rows(task, 0, &count);
-    const unsigned before = embree_flush_denormals();
-    bool ok = true;
-    for (uint64_t i = 0; ok && i < count && first + i < job->charts.side_texel_count; i++) {
-        ok = !bake_task_cancelled(task);
-        if (ok) each(task, (uint32_t)(first + i), i);
-    }
-    embree_restore_denormals(before);
-    return ok;
-}
-
 static bool run_probes(const struct bake_task *task)
 {
-    return run_rows(task, probe);
+    const struct job *job = task->job;
+    return lightmap_run_rows(task, job->charts.side_texel_count, probe, (void *)job);
 }
 
 // ---- waves 1 and 2: more estimates where a few paths have changed
@@ -173,13 +160,23 @@ static bool run_suspects(const struct bake_task *task)
            update_suspects(task->host, &job->charts, probes->data, job->how.samples, task->out[0]);
 }
 
-static void probe_more(const struct bake_task *task, uint32_t texel, struct update_probe *out)
+// Inputs of the tasks of a wave.
+struct wave {
+    const struct job *job;
+    const struct update_probe *probes;
+    const uint8_t *marks;
+};
+
+static void probe_more(void *user, const struct bake_task *task, uint32_t texel, uint64_t row)
 {
-    const struct job *job = task->job;
+    const struct wave *wave = user;
+    struct update_probe *out = bake_row(task, 0, row);
     struct gather_points points;
-    find_points(job, texel, &points);
+    *out = wave->probes[texel];
+    if (!wave->marks[texel] || out->touched > 0.0f) return;
+    find_points(wave->job, texel, &points);
     for (int i = 1; points.count > 0 && i < UPDATE_PAIRS; i++)
-        add_estimate(job, &points, i, task->bake_seed, out);
+        add_estimate(wave->job, &points, i, task->bake_seed, out);
 }
 
 static bool run_more_probes(const struct bake_task *task)
@@ -187,21 +184,9 @@ static bool run_more_probes(const struct bake_task *task)
     const struct job *job = task->job;
     const struct tensor *first = bake_task_input(task, FIRST_PROBES),
                         *suspects = bake_task_input(task, SUSPECTS);
-    uint64_t count, at = bake_task_rows(task, 0, &count);
     if (!first || !suspects) return false;
-    const struct update_probe *probes = first->data;
-    const uint8_t *marks = suspects->data;
-    const unsigned before = embree_flush_denormals();
-    bool ok = true;
-    for (uint64_t i = 0; ok && i < count && at + i < job->charts.side_texel_count; i++) {
-        struct update_probe *out = bake_row(task, 0, i);
-        ok = !bake_task_cancelled(task);
-        *out = probes[at + i];
-        if (ok && marks[at + i] && !(out->touched > 0.0f))
-            probe_more(task, (uint32_t)(at + i), out);
-    }
-    embree_restore_denormals(before);
-    return ok;
+    struct wave wave = { job, first->data, suspects->data };
+    return lightmap_run_rows(task, job->charts.side_texel_count, probe_more, &wave);
 }
 
 // ---- wave 3: what is baked again
@@ -216,45 +201,33 @@ static bool run_reach(const struct bake_task *task)
 
 // ---- wave 4: the light of emitters, the sky and all bounces
 
-static void gather(const struct bake_task *task, uint32_t texel, uint64_t row)
+static void gather(void *user, const struct bake_task *task, uint32_t texel, uint64_t row)
 {
-    const struct job *job = task->job;
-    struct gather_points points;
-    find_points(job, texel, &points);
-    if (points.count == 0) return;
+    const struct wave *wave = user;
+    const struct job *job = wave->job;
     float *out = bake_row(task, 0, row);
-    const vec3s rest = gather_paths(&job->scene, &points, job->how.samples, task->bake_seed,
-                                    &out[LIGHTMAP_VARIANCE]);
-    memcpy(out, rest.raw, sizeof rest.raw);
-    out[LIGHTMAP_SHARE] = (float)points.count / GATHER_POINTS;
+    struct gather_points points;
+    if (!wave->marks[texel]) {
+        memcpy(out, job->was.rest + LIGHTMAP_COLUMNS * (size_t)job->match.row_was[texel],
+               LIGHTMAP_COLUMNS * sizeof *out);
+        return;
+    }
+    find_points(job, texel, &points);
+    if (points.count > 0)
+        lightmap_gather_row(&job->scene, &points, job->how.samples, task->bake_seed, out);
 }
 
 static bool run_paths(const struct bake_task *task)
 {
     const struct job *job = task->job;
     const struct tensor *again = bake_task_input(task, LIGHTMAP_AGAIN);
-    uint64_t count, first = bake_task_rows(task, 0, &count);
-    if (!again) return false;
-    const uint8_t *marks = again->data;
-    for (uint64_t i = 0; i < count && first + i < job->charts.side_texel_count; i++)
-        if (!marks[first + i])
-            memcpy(bake_row(task, 0, i),
-                   job->was.rest + LIGHTMAP_COLUMNS * (size_t)job->match.row_was[first + i],
-                   LIGHTMAP_COLUMNS * sizeof(float));
-    const unsigned before = embree_flush_denormals();
-    bool ok = true;
-    for (uint64_t i = 0; ok && i < count && first + i < job->charts.side_texel_count; i++) {
-        if (!marks[first + i]) continue;
-        ok = !bake_task_cancelled(task);
-        if (ok) gather(task, (uint32_t)(first + i), i);
-    }
-    embree_restore_denormals(before);
-    return ok;
+    struct wave wave = { .job = job, .marks = again ? again->data : NULL };
+    return again && lightmap_run_rows(task, job->charts.side_texel_count, gather, &wave);
 }
 
 // ---- the plan
 
-enum { ROWS_PER_PROBE_TASK = 256, PATHS_PER_TASK = 16384, RAYS_PER_PATH = 8, RAYS_OF_POINTS = 100 };
+enum { ROWS_PER_PROBE_TASK = 256, RAYS_OF_POINTS = 100 };
 enum { WAVE_FIRST, WAVE_SUSPECTS, WAVE_MORE, WAVE_REACH, WAVE_PATHS };
 // The share of texels that estimates of time assume.
 static const double ASSUMED_SHARE = 0.2;
@@ -262,7 +235,7 @@ static const double ASSUMED_SHARE = 0.2;
 static bool add_probes(struct bake_plan *plan, uint64_t rows)
 {
     const size_t count = (size_t)((rows + ROWS_PER_PROBE_TASK - 1) / ROWS_PER_PROBE_TASK);
-    const double rays = 4 * UPDATE_HALF_PATHS * RAYS_PER_PATH + RAYS_OF_POINTS;
+    const double rays = 4 * UPDATE_HALF_PATHS * LIGHTMAP_RAYS_PER_PATH + RAYS_OF_POINTS;
     const struct bake_output out[] = {
         { LIGHTMAP_PUNCTUAL, TENSOR_F32, 2, { rows, 3 }, BAKE_ROWS, BAKE_SAVED },
         { FIRST_PROBES, TENSOR_F32, 2, { rows, UPDATE_PROBE_FLOATS }, BAKE_ROWS, WAVE_MORE },
@@ -280,7 +253,8 @@ static bool add_probes(struct bake_plan *plan, uint64_t rows)
 static bool add_more_probes(struct bake_plan *plan, uint64_t rows)
 {
     const size_t count = (size_t)((rows + ROWS_PER_PROBE_TASK - 1) / ROWS_PER_PROBE_TASK);
-    const double rays = 4 * (UPDATE_PAIRS - 1) * UPDATE_HALF_PATHS * RAYS_PER_PATH + RAYS_OF_POINTS;
+    const double rays =
+        4 * (UPDATE_PAIRS - 1) * UPDATE_HALF_PATHS * LIGHTMAP_RAYS_PER_PATH + RAYS_OF_POINTS;
     const struct bake_output out = { PROBES,    TENSOR_F32, 2, { rows, UPDATE_PROBE_FLOATS },
                                      BAKE_ROWS, WAVE_REACH };
     return bake_plan_add(
@@ -310,9 +284,8 @@ static bool add_marks(struct bake_plan *plan, uint64_t rows, const char *stage, 
 
 static bool add_paths(struct bake_plan *plan, uint64_t rows, int samples)
 {
-    const uint64_t wanted = (rows * (uint64_t)samples + PATHS_PER_TASK - 1) / PATHS_PER_TASK;
-    const size_t count = (size_t)(wanted < rows ? wanted : rows);
-    const double rays = (double)rows * samples * RAYS_PER_PATH * ASSUMED_SHARE;
+    const size_t count = lightmap_task_count(rows, (uint64_t)samples);
+    const double rays = (double)rows * samples * LIGHTMAP_RAYS_PER_PATH * ASSUMED_SHARE;
     const struct bake_output out = { LIGHTMAP_REST, TENSOR_F32, 2, { rows, LIGHTMAP_COLUMNS },
                                      BAKE_ROWS,     BAKE_SAVED };
     return bake_plan_add(plan, &(struct bake_stage){ .name = "paths",
@@ -336,14 +309,7 @@ static struct hash128 key_of(const struct job *job)
         key = hash128_add(key, &now->instances[i].shape, sizeof(struct hash128));
         key = hash128_add(key, &now->instances[i].surface, sizeof(struct hash128));
     }
-    for (uint32_t i = 0; i < now->light_count; i++) {
-        const struct world_light *l = &now->lights[i];
-        const float values[] = { (float)l->type, l->position.x,  l->position.y,  l->position.z,
-                                 l->direction.x, l->direction.y, l->direction.z, l->intensity.x,
-                                 l->intensity.y, l->intensity.z, l->cos_inner,   l->cos_outer,
-                                 l->range_m };
-        key = hash128_add(key, values, sizeof values);
-    }
+    for (uint32_t i = 0; i < now->light_count; i++) key = scene_key_add_light(key, &now->lights[i]);
     return key;
 }
 

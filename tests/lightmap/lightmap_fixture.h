@@ -1,0 +1,23 @@
+// Light maps by paths of scenes, with charts of a number of texels.
+#pragma once
+
+#include "framework/test.h"
+
+#include "lightmap/lightmap.h"
+
+// lightmap_bake.charts; options: const int *, texels of surfaces.
+bool fixture_charts(const struct scene_pose *statics, const void *options, struct host *host,
+                    struct charts *out);
+
+struct fixture_bake {
+    const struct scene_pose *pose;
+    int texels, samples;
+    float noise;
+    uint64_t seed;
+    int threads; // 0: all cores
+};
+// Complete.
+struct bake *fixture_bake(const struct fixture_bake *of);
+const float *fixture_tensor(const struct bake *bake, const char *name);
+// Luminance of a row of LIGHTMAP_REST, lux.
+double fixture_luminance(const float *rest, size_t texel);
