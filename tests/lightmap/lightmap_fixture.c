@@ -3,11 +3,11 @@
 bool fixture_charts(const struct scene_pose *statics, const void *options, struct host *host,
                     struct charts *out)
 {
-    return charts_init(
-        out, host, statics,
-        &(struct charts_options){ .texels_per_m = 1e3f,
-                                  .max_texels = 1 << 18,
-                                  .surface_texels = (uint32_t)*(const int *)options });
+    const int *texels = options;
+    const struct charts_options how = { .texels_per_m = 1e3f,
+                                        .max_texels = 1 << 18,
+                                        .surface_texels = (uint32_t)*texels };
+    return charts_init(out, host, statics, &how);
 }
 
 struct bake *fixture_bake(const struct fixture_bake *of)
