@@ -58,40 +58,63 @@ static enum status parse_option(const struct command *command, int count, char *
     return wrong_usage("wrong value %s %s: %s", option.name, value, why);
 }
 
-// The value of tonemap in a list of frame options; false: it has none.
-static bool listed_curve(const char *options, char out[16])
+// The value of an option in a list of frame options; false: it has none.
+static bool listed_value(const char *options, const char *name, char out[16])
 {
-    static const char key[] = "tonemap=";
+    const size_t length = strlen(name);
     for (; options; options = strchr(options, ',') ? strchr(options, ',') + 1 : NULL) {
-        if (strncmp(options, key, sizeof key - 1) != 0) continue;
-        options += sizeof key - 1;
+        if (strncmp(options, name, length) != 0 || options[length] != '=') continue;
+        options += length + 1;
         snprintf(out, 16, "%.*s", (int)strcspn(options, ","), options);
         return true;
     }
     return false;
 }
 
-static enum status choose_curve(struct arguments *a)
+// An option of the command line that is a frame option, too, and its values.
+struct display_option {
+    const char *option, *name, *names;
+};
+
+// `given` is its value on the command line, or NULL; *value changes if it is a frame option.
+static enum status choose_display(struct arguments *a, const struct display_option *of,
+                                  const char *given, int *value)
 {
     char listed[16];
-    const bool is_listed = listed_curve(a->frame_options, listed);
-    if (a->curve && is_listed)
-        return wrong_usage("cannot use --tonemap with --frame-options tonemap=%s: choose one",
-                           listed);
-    const int curve = is_listed ? value_index(TONEMAP_NAMES, listed) : -1;
-    if (curve >= 0) a->tonemap = (enum ag_tonemap)curve; // the library refuses others
-    if (!a->curve) return DONE;
-    const char *others = a->frame_options ? a->frame_options : "";
-    const int wrote = snprintf(a->curve_options, sizeof a->curve_options, "%s%stonemap=%s", others,
-                               *others ? "," : "", a->curve);
-    if (wrote >= (int)sizeof a->curve_options)
+    const bool is_listed = listed_value(a->frame_options, of->name, listed);
+    if (given && is_listed)
+        return wrong_usage("cannot use %s with --frame-options %s=%s: choose one", of->option,
+                           of->name, listed);
+    const int chosen = is_listed ? value_index(of->names, listed) : -1;
+    if (chosen >= 0) *value = chosen; // the library refuses others
+    if (!given) return DONE;
+    const size_t used = strlen(a->display_options);
+    const int wrote = snprintf(a->display_options + used, sizeof a->display_options - used,
+                               "%s%s=%s", used > 0 ? "," : "", of->name, given);
+    if (wrote >= (int)(sizeof a->display_options - used))
         return wrong_usage("cannot use --frame-options: the list is too long");
     return DONE;
 }
 
+static enum status choose_displays(struct arguments *a)
+{
+    static const struct display_option curves = { "--tonemap", "tonemap", TONEMAP_NAMES };
+    static const struct display_option rules = { "--exposure", "metering", METERING_NAMES };
+    int curve = (int)a->tonemap, rule = (int)a->metering;
+    if (a->frame_options && (a->curve || a->rule) &&
+        snprintf(a->display_options, sizeof a->display_options, "%s", a->frame_options) >=
+            (int)sizeof a->display_options)
+        return wrong_usage("cannot use --frame-options: the list is too long");
+    enum status status = choose_display(a, &curves, a->curve, &curve);
+    if (status == DONE) status = choose_display(a, &rules, a->rule, &rule);
+    a->tonemap = (enum ag_tonemap)curve;
+    a->metering = (enum ag_metering)rule;
+    return status;
+}
+
 const char *arguments_frame_options(const struct arguments *a)
 {
-    return a->curve_options[0] ? a->curve_options : a->frame_options;
+    return a->display_options[0] ? a->display_options : a->frame_options;
 }
 
 static enum status check_together(const struct command *command, const struct arguments *a)
@@ -168,7 +191,7 @@ enum status arguments_parse(const struct command *command, int count, char **wor
         }
     }
     enum status status = check_together(command, out);
-    return status == DONE ? choose_curve(out) : status;
+    return status == DONE ? choose_displays(out) : status;
 }
 
 // ---- the command line again

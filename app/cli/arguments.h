@@ -24,6 +24,8 @@ enum command_bit {
 #define METRIC_NAMES "mae mse relmse ssim flip flip_hdr"
 // In the order of ag_tonemap.
 #define TONEMAP_NAMES "neutral agx linear"
+// In the order of ag_metering.
+#define METERING_NAMES "mean highlights"
 // In the order of the bits of enum ag_lightmap_format.
 #define LIGHTMAP_FORMAT_NAMES "exr ktx2 png"
 enum { COMMAND_SIZE = 16384, FRAME_OPTIONS_SIZE = 2048 };
@@ -47,9 +49,11 @@ struct arguments {
     uint64_t seed;
     bool has_exposure;
     float exposure_ev;
+    const char *rule; // the value of --exposure where it is no number; NULL: none
+    enum ag_metering metering;
     const char *curve; // the value of --tonemap; NULL: none
     enum ag_tonemap tonemap;
-    char curve_options[FRAME_OPTIONS_SIZE]; // see arguments_frame_options
+    char display_options[FRAME_OPTIONS_SIZE]; // see arguments_frame_options
     // time and camera
     const char *camera, *animation;
     bool has_eye, has_target, has_fov;

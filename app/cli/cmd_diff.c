@@ -24,7 +24,8 @@ static enum status check_png_usage(const struct arguments *a)
     if (a->mask_layer[0])
         return wrong_usage("cannot use --mask %s: %s has no layers", a->mask_layer,
                            a->positional[1]);
-    if (a->has_exposure) return wrong_usage("cannot use --exposure: a .png is already exposed");
+    if (a->has_exposure || a->rule)
+        return wrong_usage("cannot use --exposure: a .png is already exposed");
     if (a->metric == AG_DIFFERENCE_FLIP_HDR)
         return wrong_usage("cannot use --metric flip_hdr: it needs radiance (.exr files)");
     return DONE;
@@ -134,8 +135,9 @@ static enum status load_pair(struct session *session, struct pair *pair)
     pair->desc.mask = pair->mask;
     pair->desc.ignore_not_finite = arguments->ignore_nan;
     pair->desc.radiance = has_extension(arguments->positional[1], "exr");
-    pair->desc.ev =
-        arguments->has_exposure ? arguments->exposure_ev : ag_image_auto_exposure(pair->b);
+    pair->desc.ev = arguments->has_exposure
+                        ? arguments->exposure_ev
+                        : ag_image_metered_exposure(pair->b, arguments->metering);
     return DONE;
 }
 

@@ -30,7 +30,7 @@ enum ag_result image_exposure(const struct session *session, const struct ag_ima
         for (size_t k = 0; k < 3; k++) metered->pixels[4 * i + k] = rgb[k];
         metered->pixels[4 * i + 3] = depth->pixels[i * (size_t)depth->channels] > 0.0f;
     }
-    *ev = ag_image_auto_exposure(metered);
+    *ev = ag_image_metered_exposure(metered, session->arguments->metering);
     ag_image_destroy(session->context, metered);
     return AG_OK;
 }

@@ -53,6 +53,7 @@ struct viewer {
     char gi[METHOD_SPEC], other_gi[METHOD_SPEC]; // running
     char frame_options[VIEWER_OPTIONS];          // "": those of the command line
     enum ag_tonemap tonemap;
+    enum ag_metering metering; // with auto_exposure
     bool split;
     float split_at; // 0…1 of the region
     bool side_by_side;

@@ -115,6 +115,7 @@ static void set_defaults(struct viewer *v)
     v->auto_exposure = !desc->has_exposure;
     v->exposure_ev = desc->exposure_ev;
     v->tonemap = desc->tonemap;
+    v->metering = desc->metering;
     v->time_s = desc->time_s;
     ag_device_get_info(v->device, &v->device_info);
     v->scale = desc->scale > 0 ? desc->scale : v->device_info.software ? 0.5f : 1.0f;

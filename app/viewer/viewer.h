@@ -21,16 +21,17 @@ struct viewer_desc {
     double time_s;
     bool has_exposure;
     float exposure_ev;
-    enum ag_tonemap tonemap; // that of frame_options
-    int width, height;       // of the window
-    float scale;             // of the image's width and height; 0: chosen by the device
-    const char *split;       // a GI spec or "reference" to compare with; NULL: none
-    const char *session;     // a file to begin with, see session_file.h; NULL: none
-    const char *script;      // a file, see script/script.h; NULL: none
-    const char *screenshot;  // a .png of the last frame's window; NULL: none
-    int frames;              // ends after N; 0: when the window is closed
-    bool validate;           // with the validation layers
-    int recent_count;        // scenes that were opened lately, the newest first
+    enum ag_tonemap tonemap;   // that of frame_options
+    enum ag_metering metering; // likewise
+    int width, height;         // of the window
+    float scale;               // of the image's width and height; 0: chosen by the device
+    const char *split;         // a GI spec or "reference" to compare with; NULL: none
+    const char *session;       // a file to begin with, see session_file.h; NULL: none
+    const char *script;        // a file, see script/script.h; NULL: none
+    const char *screenshot;    // a .png of the last frame's window; NULL: none
+    int frames;                // ends after N; 0: when the window is closed
+    bool validate;             // with the validation layers
+    int recent_count;          // scenes that were opened lately, the newest first
     const char *recent[VIEWER_RECENT];
     void *user; // of the functions
     // Writes the newest frame of a renderer as afterglow render does; false: see the last error.

@@ -70,6 +70,15 @@ AG_API enum ag_result ag_image_tonemap(struct ag_context *context, const struct 
 /// percentile, to middle grey. A fourth channel is alpha; pixels with alpha 0 are ignored.
 /// Thread: any.
 AG_API float ag_image_auto_exposure(const struct ag_image *radiance);
+/// Rules of automatic exposure, docs/units.md.
+enum ag_metering {
+    AG_METERING_MEAN, ///< as ag_image_auto_exposure
+    /// Likewise, but as much darker, at most 3 EV, as exposes the 98th percentile of lit pixels
+    /// to 1: sunlit floors and the surroundings of lights keep their texture.
+    AG_METERING_HIGHLIGHTS,
+};
+/// The EV of a radiance image by a rule; of none of them: AG_METERING_MEAN. Thread: any.
+AG_API float ag_image_metered_exposure(const struct ag_image *radiance, enum ag_metering metering);
 /// Places two images of equal height side by side, with `gap` black columns between them.
 /// Thread: the context's.
 AG_API enum ag_result ag_image_side_by_side(struct ag_context *context, const struct ag_image *a,

@@ -212,9 +212,14 @@ enum ag_result ag_image_tonemap(struct ag_context *context, const struct ag_imag
 
 float ag_image_auto_exposure(const struct ag_image *radiance)
 {
+    return ag_image_metered_exposure(radiance, AG_METERING_MEAN);
+}
+
+float ag_image_metered_exposure(const struct ag_image *radiance, enum ag_metering metering)
+{
     if (!is_whole(radiance) || radiance->channels < 3) return 0.0f;
     struct image view = view_of(radiance);
-    return auto_exposure(&view);
+    return auto_exposure(&view, (enum exposure_metering)metering);
 }
 
 enum ag_result ag_image_side_by_side(struct ag_context *context, const struct ag_image *a,

@@ -407,12 +407,16 @@ static void composite(struct frame *f, struct gpu_cmd *cmd, uint32_t variant)
 
 static void record_exposure(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input)
 {
-    const float share = frame_exposure_share(f, input->auto_exposure);
+    const struct exposure_push push = {
+        .fallback = f->fallback_luminance,
+        .share = frame_exposure_share(f, input->auto_exposure),
+        .metering = (uint32_t)f->common->options.metering,
+    };
     gpu_scope_begin(cmd, "exposure");
     if (input->auto_exposure) {
         exposure_record_clear(&f->exposure, cmd);
         composite(f, cmd, frame_meter_variant(f->composite_variant));
-        exposure_record_auto(&f->exposure, cmd, f->constants_binding, f->fallback_luminance, share);
+        exposure_record_auto(&f->exposure, cmd, f->constants_binding, &push);
     } else {
         exposure_record_fixed(&f->exposure, cmd, input->exposure_ev);
     }

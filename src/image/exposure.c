@@ -71,7 +71,18 @@ static int middle_of(int begin, int stride, int size)
     return middle < size ? middle : size - 1;
 }
 
-float auto_exposure(const struct image *radiance)
+// log2 of the luminance that becomes middle grey.
+static double metered_log2(const struct histogram *h, enum exposure_metering metering)
+{
+    const double mean = mean_log2(h);
+    if (metering != METERING_HIGHLIGHTS) return mean;
+    // Exposed to 1 by middle grey: the luminance of highlights times the latter.
+    const double bright = (double)bin_log2(percentile_bin(h, EXPOSURE_HIGHLIGHTS)) +
+                          log2((double)EXPOSURE_MIDDLE_GREY);
+    return fmin(fmax(mean, bright), mean + (double)EXPOSURE_HIGHLIGHTS_LOSS);
+}
+
+float auto_exposure(const struct image *radiance, enum exposure_metering metering)
 {
     struct histogram h;
     memset(&h, 0, sizeof h);
@@ -81,9 +92,9 @@ float auto_exposure(const struct image *radiance)
         for (int x = 0; x < width; x += stride)
             count_pixel(&h, radiance, middle_of(x, stride, width), middle_of(y, stride, height));
     if (h.lit_count == 0) return 0.0f;
-    // exposure_scale(EV) · mean = middle grey, solved for EV. Rounded so that twice the light adds
-    // exactly 1.
-    double solved = mean_log2(&h) - log2(1.2 * (double)EXPOSURE_MIDDLE_GREY);
+    // exposure_scale(EV) · metered = middle grey, solved for EV. Rounded so that twice the light
+    // adds exactly 1.
+    double solved = metered_log2(&h, metering) - log2(1.2 * (double)EXPOSURE_MIDDLE_GREY);
     float ev = (float)(round(solved * EXPOSURE_EV_STEPS) / EXPOSURE_EV_STEPS);
     return fmaxf(-EXPOSURE_EV_LIMIT, fminf(EXPOSURE_EV_LIMIT, ev));
 }

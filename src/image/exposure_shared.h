@@ -15,8 +15,17 @@
 #define EXPOSURE_LOW  0.1f
 #define EXPOSURE_HIGH 0.9f
 
+// Metering by highlights: this percentile of the lit pixels is exposed to 1 at most. LOSS, EV: the
+// image is at most that much darker than by its mean.
+#define EXPOSURE_HIGHLIGHTS      0.98f
+#define EXPOSURE_HIGHLIGHTS_LOSS 3.0f
+
 #define EXPOSURE_MIDDLE_GREY 0.18f
 #define EXPOSURE_EV_STEPS    65536  // per EV
 #define EXPOSURE_EV_LIMIT    100.0f // keeps exposure_scale a normal float
+
+// Values of enum exposure_metering.
+#define EXPOSURE_METERING_MEAN       0
+#define EXPOSURE_METERING_HIGHLIGHTS 1
 
 #endif

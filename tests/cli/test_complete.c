@@ -45,6 +45,7 @@ TEST(lists_and_scenes_go_on_after_commas)
     CHECK(offers("__complete render --frame-options", "shadow_size=1024,",
                  "shadow_size=1024,keep_maps="));
     CHECK(offers("__complete reference --tonemap", "a", "agx"));
+    CHECK(offers("__complete render --exposure", "h", "highlights"));
     CHECK(offers("__complete info", "@maze:", "@maze:blocks="));
     CHECK(offers("__complete info", "@maze:blocks=3,", "@maze:blocks=3,seed="));
     CHECK(offers("__complete info", "@cornell:light=", "@cornell:light=point"));

@@ -60,6 +60,41 @@ TEST(a_frame_option_is_the_same_curve)
     CHECK(files_are_equal(a, b));
 }
 
+// By highlights: darker, for the ceiling at the light. A frame option does the same.
+static double exposure_of(const char *words)
+{
+    json_t *result =
+        run_json(run_expect(0, words, "--json", "--quiet", "-o", path_of("metered.exr"), NULL));
+    const double ev = json_number_value(json_object_get(result, "exposure_ev"));
+    json_decref(result);
+    return ev;
+}
+
+TEST(highlights_are_metered_in_images_of_both)
+{
+    require_device();
+#define LIT "@cornell:light=point --size 48x36 "
+    const double mean = exposure_of("render " LIT "--exposure mean");
+    const double bright = exposure_of("render " LIT "--exposure highlights");
+    CHECK(bright > mean + 0.2 && bright <= mean + 3.001);
+    CHECK(exposure_of("render " LIT) == mean);
+    CHECK(exposure_of("render " LIT "--frame-options metering=highlights") == bright);
+    CHECK(exposure_of("reference " LIT "--spp 4 --exposure highlights") >
+          exposure_of("reference " LIT "--spp 4") + 0.2);
+}
+
+TEST(wrong_rules_of_exposure_are_refused)
+{
+    require_device();
+    const struct run *r = run_expect(2, "render @cornell --exposure bright", NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "mean highlights"));
+    r = run_expect(2, "render @cornell --exposure mean --frame-options", "metering=highlights",
+                   NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "choose one"));
+}
+
 TEST(wrong_curves_are_refused)
 {
     require_device();

@@ -87,7 +87,7 @@ TEST_GPU(without_a_technique_the_image_is_direct_light)
 }
 
 // The EV that the CPU finds in the color layer.
-static float cpu_exposure(struct frame_fixture *s)
+static float cpu_exposure(struct frame_fixture *s, enum exposure_metering metering)
 {
     float *color = fixture_read(s, READ_COLOR), *depth = fixture_read(s, READ_DEPTH);
     struct image image;
@@ -96,7 +96,7 @@ static float cpu_exposure(struct frame_fixture *s)
         memcpy(image.pixels + 4 * p, color + 3 * p, 3 * sizeof *color);
         image.pixels[4 * p + 3] = depth[p] > 0 ? 1 : 0;
     }
-    float ev = auto_exposure(&image);
+    float ev = auto_exposure(&image, metering);
     image_finish(&image, test_host());
     free(color), free(depth);
     return ev;
@@ -121,9 +121,29 @@ TEST_GPU(exposure_equals_the_cpus)
         fixture_render(&s);
         float ev;
         assert_true(frame_exposure(s.frame, &ev));
-        CHECK_NEAR(ev, cpu_exposure(&s), i == 3 ? 2e-3 : 1e-4); // the layer is of half floats
+        // the layer is of half floats
+        CHECK_NEAR(ev, cpu_exposure(&s, METERING_MEAN), i == 3 ? 2e-3 : 1e-4);
         fixture_finish(&s);
     }
+}
+
+// A floor and, close above a tenth of the visible part, a light: the rules differ.
+TEST_GPU(exposure_for_highlights_equals_the_cpus)
+{
+    struct frame_fixture s;
+    begin(&s, gpu);
+    s.width = 131, s.height = 77;
+    s.options.metering = METERING_HIGHLIGHTS;
+    s.input.light_count = 0;
+    fixture_add_point(&s, vec3_of(0.3f, 0.1f, 0), vec3_of(100, 100, 100));
+    fixture_look(&s, vec3_of(0, 2, 0.1f), vec3_of(0, 0, 0));
+    fixture_open(&s);
+    fixture_render(&s);
+    float ev;
+    assert_true(frame_exposure(s.frame, &ev));
+    CHECK_NEAR(ev, cpu_exposure(&s, METERING_HIGHLIGHTS), 1e-4);
+    CHECK(ev > cpu_exposure(&s, METERING_MEAN) + 0.5f);
+    fixture_finish(&s);
 }
 
 // Without punctual lights only the technique lights the image.

@@ -56,6 +56,11 @@ static void offer_curves(const struct value *v)
     offer_list(v, TONEMAP_NAMES);
 }
 
+static void offer_meterings(const struct value *v)
+{
+    offer_list(v, METERING_NAMES);
+}
+
 static const char *lightmap_format(int index)
 {
     static const char *const names[] = { "exr", "ktx2", "png" };
@@ -94,6 +99,7 @@ static const struct {
               { "--debug-view", offer_debug_views },
               { "--metric", offer_metrics },
               { "--tonemap", offer_curves },
+              { "--exposure", offer_meterings },
               { "--lightmap-format", offer_lightmap_formats },
               { "--light", offer_lights },
               { "--environment", offer_environments },

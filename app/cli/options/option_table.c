@@ -2,6 +2,7 @@
 #include "option_table.h"
 #include "cli/values.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -203,11 +204,14 @@ static bool set_environment(struct arguments *a, const char *value, const char *
 static bool set_exposure(struct arguments *a, const char *value, const char **why)
 {
     double ev = 0.0;
-    *why = "it must be an EV from -100 to 100";
-    bool ok = value_number(value, &ev) && ev >= -100.0 && ev <= 100.0;
-    a->has_exposure = true;
-    a->exposure_ev = (float)ev;
-    return ok;
+    const int rule = value_index(METERING_NAMES, value);
+    *why = "it must be an EV from -100 to 100, or one of: " METERING_NAMES;
+    a->has_exposure = rule < 0;
+    a->rule = rule < 0 ? NULL : value;
+    a->metering = rule < 0 ? AG_METERING_MEAN : (enum ag_metering)rule;
+    if (rule >= 0) return true;
+    a->exposure_ev = value_number(value, &ev) ? (float)ev : NAN;
+    return a->exposure_ev >= -100.0f && a->exposure_ev <= 100.0f;
 }
 
 static bool set_tonemap(struct arguments *a, const char *value, const char **why)

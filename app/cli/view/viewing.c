@@ -124,6 +124,7 @@ static void describe(struct viewing *viewing)
     desc->gi = a->gi;
     desc->frame_options = arguments_frame_options(a);
     desc->tonemap = a->tonemap;
+    desc->metering = a->metering;
     desc->device = a->device;
     desc->scene_words = viewing->words.scene;
     desc->light_words = viewing->words.light;

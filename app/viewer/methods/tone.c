@@ -11,35 +11,60 @@ const char *const viewer_curves[3] = {
     [AG_TONEMAP_LINEAR] = "linear",
 };
 
-int viewer_curve_of(const char *name)
+const char *const viewer_meterings[2] = {
+    [AG_METERING_MEAN] = "mean",
+    [AG_METERING_HIGHLIGHTS] = "highlights",
+};
+
+static int index_of(const char *const *names, size_t count, const char *name)
 {
-    for (int i = 0; i < (int)(sizeof viewer_curves / sizeof *viewer_curves); i++)
-        if (strcmp(name, viewer_curves[i]) == 0) return i;
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(name, names[i]) == 0) return (int)i;
     return -1;
 }
 
-// The options of the command line, with another curve. false: they are too long.
-static bool options_with(const char *given, const char *curve, char *out, size_t size)
+int viewer_curve_of(const char *name)
 {
-    static const char key[] = "tonemap=";
+    return index_of(viewer_curves, sizeof viewer_curves / sizeof *viewer_curves, name);
+}
+
+int viewer_metering_of(const char *name)
+{
+    return index_of(viewer_meterings, sizeof viewer_meterings / sizeof *viewer_meterings, name);
+}
+
+// Options of the frame that the viewer chooses.
+static bool is_chosen(const char *option)
+{
+    static const char *const keys[2] = { "tonemap=", "metering=" };
+    return strncmp(option, keys[0], strlen(keys[0])) == 0 ||
+           strncmp(option, keys[1], strlen(keys[1])) == 0;
+}
+
+// The options of the command line, with others of the display. false: they are too long.
+static bool options_with(const char *given, enum ag_tonemap curve, enum ag_metering metering,
+                         char *out, size_t size)
+{
     size_t used = 0;
     out[0] = '\0';
     while (given && *given) {
         const size_t length = strcspn(given, ",");
-        if (strncmp(given, key, sizeof key - 1) != 0)
+        if (!is_chosen(given))
             used += (size_t)snprintf(out + used, size - used, "%.*s,", (int)length, given);
         if (used >= size) return false;
         given += length + (given[length] == ',');
     }
-    return used + (size_t)snprintf(out + used, size - used, "%s%s", key, curve) < size;
+    return used + (size_t)snprintf(out + used, size - used, "tonemap=%s%s%s", viewer_curves[curve],
+                                   metering ? ",metering=" : "",
+                                   metering ? viewer_meterings[metering] : "") <
+           size;
 }
 
-bool viewer_set_tonemap(struct viewer *v, enum ag_tonemap curve)
+static bool set_display(struct viewer *v, enum ag_tonemap curve, enum ag_metering metering)
 {
     char options[sizeof v->frame_options];
-    if (curve == v->tonemap) return true;
-    if (!options_with(v->desc->frame_options, viewer_curves[curve], options, sizeof options)) {
-        viewer_warn(v, "cannot change the tone curve: the frame options are too long");
+    if (!options_with(v->desc->frame_options, curve, metering, options, sizeof options)) {
+        viewer_warn(v, "cannot change the display: the frame options are too long");
         return false;
     }
     if (!viewer_check(v, ag_renderer_set_frame_options(v->main.renderer, options)) ||
@@ -48,9 +73,20 @@ bool viewer_set_tonemap(struct viewer *v, enum ag_tonemap curve)
         return false;
     memcpy(v->frame_options, options, sizeof options);
     v->tonemap = curve;
+    v->metering = metering;
     viewer_touch(v);
-    if (v->truth) viewer_change(v); // its image is shown by the curve, too
+    if (v->truth) viewer_change(v); // its image is shown likewise
     return true;
+}
+
+bool viewer_set_tonemap(struct viewer *v, enum ag_tonemap curve)
+{
+    return curve == v->tonemap || set_display(v, curve, v->metering);
+}
+
+bool viewer_set_metering(struct viewer *v, enum ag_metering metering)
+{
+    return metering == v->metering || set_display(v, v->tonemap, metering);
 }
 
 const char *viewer_frame_options(const struct viewer *v)

@@ -49,10 +49,14 @@ static void edit_exposure(struct viewer *v)
         v->exposure_ev = finished.exposure_ev;
         viewer_touch(v);
     }
-    if (v->auto_exposure)
+    int metering = (int)v->metering;
+    if (v->auto_exposure) {
         ui_faint("EV %.2f at ISO 100", (double)finished.exposure_ev);
-    else if (ui_number("exposure (EV)", &v->exposure_ev, -6.0f, 22.0f, "%.2f", false))
+        if (ui_choice("metering", &metering, viewer_meterings, 2))
+            viewer_set_metering(v, (enum ag_metering)metering);
+    } else if (ui_number("exposure (EV)", &v->exposure_ev, -6.0f, 22.0f, "%.2f", false)) {
         viewer_touch(v);
+    }
     int curve = (int)v->tonemap;
     if (ui_choice("tone curve", &curve, viewer_curves, 3))
         viewer_set_tonemap(v, (enum ag_tonemap)curve);

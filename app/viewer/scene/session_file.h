@@ -8,6 +8,7 @@
 //                       "fov_deg", "distance": m, "speed": m/s}
 //   time_s              of the animation
 //   exposure_ev         null: automatic
+//   metering            of automatic exposure: mean or highlights
 //   tonemap             the tone curve
 //   layer, debug_view   shown; debug_view null: none
 //   scale, split_at, side_by_side, difference, budget_ms   as in the panels

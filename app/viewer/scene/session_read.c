@@ -35,7 +35,9 @@ static bool apply(struct session_values *s)
     v->scene_camera = s->scene_camera;
     v->auto_exposure = s->auto_exposure;
     v->exposure_ev = s->exposure_ev;
-    if (!viewer_set_tonemap(v, (enum ag_tonemap)s->tonemap)) return false;
+    if (!viewer_set_tonemap(v, (enum ag_tonemap)s->tonemap) ||
+        !viewer_set_metering(v, (enum ag_metering)s->metering))
+        return false;
     v->scale = s->scale;
     v->split_at = s->split_at;
     v->side_by_side = s->side_by_side;
@@ -63,6 +65,7 @@ static void take(struct viewer *v, struct session_values *out)
     out->budget_ms = v->budget_ms;
     out->layer = v->layer;
     out->tonemap = (int)v->tonemap;
+    out->metering = (int)v->metering;
     snprintf(out->gi, sizeof out->gi, "%s", v->gi);
     out->debug_view = v->debug_view;
     snprintf(out->other_gi, sizeof out->other_gi, "%s", v->split ? v->other_gi : "");

@@ -196,10 +196,12 @@ static bool read_shown(struct read *r, json_t *document)
     const char *layer = viewer_layers[r->s->layer], *gi = r->s->gi;
     const char *compare = r->s->reference ? "reference" : r->s->other_gi;
     const char *curve = viewer_curves[r->s->tonemap];
+    const char *metering = viewer_meterings[r->s->metering];
     const json_t *exposure = json_object_get(document, "exposure_ev");
     if (exposure) r->s->auto_exposure = json_is_null(exposure);
     if (!member_text(&r->m, document, "layer", &layer) ||
         !member_text(&r->m, document, "tonemap", &curve) ||
+        !member_text(&r->m, document, "metering", &metering) ||
         !member_text(&r->m, document, "gi", &gi) ||
         !member_text(&r->m, document, "debug_view", &r->s->debug_view) ||
         !member_text(&r->m, document, "compare", &compare))
@@ -216,6 +218,9 @@ static bool read_shown(struct read *r, json_t *document)
     r->s->tonemap = curve ? viewer_curve_of(curve) : -1;
     if (r->s->tonemap < 0)
         return member_wrong(&r->m, "unknown tone curve %.100s", curve ? curve : "null");
+    r->s->metering = metering ? viewer_metering_of(metering) : -1;
+    if (r->s->metering < 0)
+        return member_wrong(&r->m, "unknown metering %.100s", metering ? metering : "null");
     return member_number(&r->m, document, "time_s", 0.0, 1e9, &r->s->time_s) &&
            (r->s->auto_exposure ||
             member_float(&r->m, document, "exposure_ev", -20.0f, 40.0f, &r->s->exposure_ev)) &&
@@ -257,7 +262,7 @@ static bool read_all(struct read *r, json_t *document)
         "exposure_ev",       "layer",      "gi",         "compare",   "split_at",
         "side_by_side",      "debug_view", "difference", "budget_ms", "lights",
         "instances",         "scale",      "sky",        "materials", "path",
-        "environment",       "paint",      "tonemap"
+        "environment",       "paint",      "tonemap",    "metering"
     };
     if (!is_of_scene(r, document) || !KNOWN(r, document, names) || !read_shown(r, document) ||
         !read_camera(r, json_object_get(document, "camera")) ||

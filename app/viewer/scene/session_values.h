@@ -12,7 +12,7 @@ struct session_values {
     double time_s;
     bool auto_exposure, difference, reference, side_by_side;
     float exposure_ev, scale, split_at, budget_ms;
-    int layer, tonemap;
+    int layer, tonemap, metering;
     const char *debug_view;                      // NULL: none
     char gi[METHOD_SPEC], other_gi[METHOD_SPEC]; // other_gi: "": none
     struct edits edits;

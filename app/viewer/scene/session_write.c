@@ -147,6 +147,7 @@ static json_t *document_of(const struct viewer *v)
     put(document, "camera", camera_of(v));
     put(document, "time_s", json_real(v->time_s));
     put(document, "exposure_ev", v->auto_exposure ? json_null() : json_float(v->exposure_ev));
+    put(document, "metering", json_string(viewer_meterings[v->metering]));
     put(document, "tonemap", json_string(viewer_curves[v->tonemap]));
     put(document, "layer", json_string(viewer_layers[v->layer]));
     put(document, "debug_view", text_or_null(v->debug_view));

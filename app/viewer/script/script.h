@@ -13,8 +13,8 @@
 //   click LABEL                  moves the mouse to an element of the panels and clicks
 //   tab NAME                     shows View, Light, Method, Compare, Cost or Inspect
 //   size WxH                     of the window
-//   gi SPEC · split SPEC|reference|off · side on|off · layer NAME · exposure EV|auto
-//   tonemap neutral|agx|linear · scale F
+//   gi SPEC · split SPEC|reference|off · side on|off · layer NAME
+//   exposure EV|auto|mean|highlights · tonemap neutral|agx|linear · scale F
 //   camera NAME|given · look X,Y,Z X,Y,Z
 //   light N X                    switches light N on (1) or off (0), or removes it (remove)
 //   paint X,Y,Z NX,NY,NZ RADIUS R,G,B · paint clear

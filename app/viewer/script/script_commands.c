@@ -126,7 +126,10 @@ static bool run_layer(const struct words *w)
 
 static bool run_exposure(const struct words *w)
 {
-    w->v->auto_exposure = strcmp(w->rest, "auto") == 0;
+    const int metering = viewer_metering_of(w->rest);
+    w->v->auto_exposure = metering >= 0 || strcmp(w->rest, "auto") == 0;
+    if (metering >= 0 && !script_done(w, viewer_set_metering(w->v, (enum ag_metering)metering)))
+        return false;
     if (!w->v->auto_exposure) w->v->exposure_ev = strtof(w->rest, NULL);
     viewer_change(w->v);
     return true;

@@ -43,13 +43,12 @@ void exposure_record_clear(const struct exposure *e, struct gpu_cmd *cmd)
 }
 
 void exposure_record_auto(const struct exposure *e, struct gpu_cmd *cmd,
-                          struct gpu_binding constants, float fallback, float share)
+                          struct gpu_binding constants, const struct exposure_push *push)
 {
-    struct exposure_push push = { .fallback = fallback, .share = share };
     gpu_dispatch(cmd, e->finish,
                  GPU_BIND(constants, { "exposure_state", .buffer = e->state },
                           { "exposure_histogram", .buffer = e->histogram }),
-                 &push, sizeof push, 1, 1, 1);
+                 push, sizeof *push, 1, 1, 1);
 }
 
 bool exposure_read(struct exposure *e, float *ev)

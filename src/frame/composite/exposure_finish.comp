@@ -24,11 +24,11 @@ layout(push_constant, scalar) uniform push_block
 };
 
 const uint RUN = EXPOSURE_BINS / EXPOSURE_THREADS;
-const int LOW = 0, HIGH = 1;
+const int LOW = 0, HIGH = 1, HIGHLIGHTS = 2;
 
 shared uint counts[EXPOSURE_THREADS]; // of lit pixels, per run
 shared float sums[EXPOSURE_THREADS];  // of log2 luminances
-shared uint percentiles[2];           // bins
+shared uint percentiles[3];           // bins
 
 // log2 of the luminance in the middle of a bin.
 float bin_log2(uint bin)
@@ -74,6 +74,15 @@ float mean_log2(uint lit)
     return sum / float(lit + histogram.black);
 }
 
+// log2 of the luminance that becomes middle grey.
+float metered_log2(uint lit)
+{
+    float mean = mean_log2(lit);
+    if (push.metering != EXPOSURE_METERING_HIGHLIGHTS) return mean;
+    float bright = bin_log2(percentiles[HIGHLIGHTS]) + log2(EXPOSURE_MIDDLE_GREY);
+    return clamp(bright, mean, mean + EXPOSURE_HIGHLIGHTS_LOSS);
+}
+
 void main()
 {
     uint thread = gl_LocalInvocationID.x, first = thread * RUN;
@@ -84,14 +93,15 @@ void main()
     uint lit = sum_of_counts(EXPOSURE_THREADS), before = sum_of_counts(thread);
     find_percentile(LOW, EXPOSURE_LOW * float(lit), before, first);
     find_percentile(HIGH, EXPOSURE_HIGH * float(lit), before, first);
+    find_percentile(HIGHLIGHTS, EXPOSURE_HIGHLIGHTS * float(lit), before, first);
     barrier();
     sums[thread] = lit > 0 ? sum_of_run(first) : 0.0;
     barrier();
     if (thread != 0) return;
-    float mean = lit > 0 ? mean_log2(lit) : log2(max(push.fallback, 1e-30));
-    // exposure_scale(ev) · mean = middle grey, with the mean in physical units. Rounded so that
+    float metered = lit > 0 ? metered_log2(lit) : log2(max(push.fallback, 1e-30));
+    // exposure_scale(ev) · metered = middle grey, with metered in physical units. Rounded so that
     // twice the light adds exactly 1.
-    float scaled = mean - log2(1.2 * EXPOSURE_MIDDLE_GREY);
+    float scaled = metered - log2(1.2 * EXPOSURE_MIDDLE_GREY);
     scaled = round(scaled * EXPOSURE_EV_STEPS) / EXPOSURE_EV_STEPS;
     float ev = scaled - round(log2(frame.radiance_scale)); // the scale is a power of two
     bool any = lit > 0 || push.fallback > 0.0;

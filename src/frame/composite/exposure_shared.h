@@ -23,8 +23,9 @@ struct exposure_counts {
 };
 
 struct exposure_push {
-    float fallback; // scaled luminance that is metered if no visible surface is lit
-    float share;    // of this frame in the mean of EVs; 1: this frame alone
+    float fallback;    // scaled luminance that is metered if no visible surface is lit
+    float share;       // of this frame in the mean of EVs; 1: this frame alone
+    uint32_t metering; // enum exposure_metering
 };
 
 #endif

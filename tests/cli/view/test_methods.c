@@ -272,8 +272,9 @@ TEST(the_method_that_was_chosen_last_is_shown)
 TEST(the_command_of_a_method_renders_its_image)
 {
     require_display();
-    check_command("view @atrium --quiet --gi vct:resolution=32+vo" LEAST, "look 2,3,1 -4,1,0\n");
-    check_command(CORNELL " --gi vct:resolution=16 --size 700x790 --scale 0.1",
+    check_command("view @atrium --quiet --gi vct:resolution=32,temporal=false+vo" LEAST,
+                  "look 2,3,1 -4,1,0\n");
+    check_command(CORNELL " --gi vct:resolution=16,temporal=false --size 700x790 --scale 0.1",
                   "tab Method\nclick debug view\nwait 2\nclick radiance\nwait 2\n"
-                  "gi vct:resolution=32\n");
+                  "gi vct:resolution=32,temporal=false\n");
 }

@@ -65,6 +65,7 @@ TEST(the_command_of_a_view_renders_its_image)
     require_display();
     check_command(CORNELL LEAST " --gi lpv:dim=16", "");
     check_command(CORNELL LEAST " --tonemap linear", "tonemap agx\n");
+    check_command(CORNELL LEAST " --frame-options tonemap=agx", "exposure highlights\n");
     check_command("view @maze --quiet --gi ambient+gtao" SMALL,
                   "camera far\nexposure 9.3\nlayer irradiance\n");
 }
