@@ -3,8 +3,10 @@
 // tables of another one.
 //
 // A row's entry has a share w of the sphere and the mean m of its directions. Its light w B/π · 4π
-// has Y(m) in band 1; band 2, of second degree, falls with |m|³ where |m| is that of band 1, as in
-// a distribution by diffusion on the sphere.
+// has Y(m) in band 1. In band 2 it is a spherical cap, exact for a disk: caps of a half angle α
+// have |m| = (1 + cos α)/2 and the share cos α (1 + cos α)/2 = |m| (2|m| - 1) of the harmonics of
+// their axis, a half space none. Entries with less than that of |m| are no caps, but lie all
+// around.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -51,15 +53,16 @@ void add_entry(uvec3 word)
     vec3 light =
         4.0 * first.x * radiosity_unpack(texelFetch(radiosity_sent, light_map_at(word.x), 0).xy);
     float x = first.y, y = second.x, z = second.y, r = length(vec3(x, y, z));
+    float cap = r > 0.5 ? 2.0 - 1.0 / r : 0.0; // of x² + y² + z² = r²
     coefficients[0] += SH_Y0 * light;
     coefficients[1] += SH_Y1 * y * light;
     coefficients[2] += SH_Y1 * z * light;
     coefficients[3] += SH_Y1 * x * light;
-    coefficients[4] += r * SH_Y2_XY * x * y * light;
-    coefficients[5] += r * SH_Y2_XY * y * z * light;
-    coefficients[6] += r * SH_Y2_ZZ * (3.0 * z * z - r * r) * light;
-    coefficients[7] += r * SH_Y2_XY * x * z * light;
-    coefficients[8] += r * SH_Y2_XX_YY * (x * x - y * y) * light;
+    coefficients[4] += cap * SH_Y2_XY * x * y * light;
+    coefficients[5] += cap * SH_Y2_XY * y * z * light;
+    coefficients[6] += cap * SH_Y2_ZZ * (3.0 * z * z - r * r) * light;
+    coefficients[7] += cap * SH_Y2_XY * x * z * light;
+    coefficients[8] += cap * SH_Y2_XX_YY * (x * x - y * y) * light;
 }
 
 void main()
