@@ -66,7 +66,7 @@ refuse 'afterglow render --spp' --spp
 expect 'afterglow render @cornell --gi lp' lpv
 expect 'afterglow render @cornell --gi lpv:st' lpv:steps=
 expect 'afterglow render --gi lpv:steps=4,precis' lpv:steps=4,precision=
-expect 'afterglow render --gi lpv:quality=hi' lpv:quality=high
+expect 'afterglow render --gi vct:quality=hi' vct:quality=high
 expect 'afterglow render --gi lpv+v' lpv+vo
 expect 'afterglow render --gi lpv:steps=4+vo:rea' lpv:steps=4+vo:reach=
 expect 'afterglow render --gi=vct+hb' --gi=vct+hbao

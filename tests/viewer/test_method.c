@@ -16,7 +16,7 @@ TEST(techniques_without_options_and_bakes_are_lowered)
     check("lpv", "lpv:quality=low");
     check("lpv+vo", "lpv:quality=low+vo:quality=low");
     check("lpv:dim=32+vo", "lpv:dim=32+vo:quality=low");
-    check("lpv:quality=high", "lpv:quality=high");
+    check("vct:quality=high", "vct:quality=high");
     check("mrt+gtao", "mrt+gtao");
     check("", "");
     check("unknown", "unknown");

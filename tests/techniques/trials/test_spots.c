@@ -13,11 +13,10 @@
 
 TEST_GPU(a_small_sunlit_patch_lights_its_room)
 {
-    static const struct share_case cases[] = {
-        { "lpv", 0.85 },   { "lpv:quality=high", 0.85 }, { "holpv", 0.95 },
-        { "vct", 0.5 },    { "vct:trace=cones", 0.5 },   { RADIOSITY, 0.9 },
-        { ORT_FINE, 0.9 }, { MRT_FINE, 0.95 },           { DRT_FINE, 0.95 }
-    };
+    static const struct share_case cases[] = { { "lpv", 0.85 },    { "holpv", 0.95 },
+                                               { "vct", 0.5 },     { "vct:trace=cones", 0.5 },
+                                               { RADIOSITY, 0.9 }, { ORT_FINE, 0.9 },
+                                               { MRT_FINE, 0.95 }, { DRT_FINE, 0.95 } };
     share_trial(gpu, trial_small_patch, "small patch", -1, cases, sizeof cases / sizeof cases[0],
                 1.5);
 }
