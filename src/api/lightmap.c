@@ -2,7 +2,9 @@
 #include "api/bake_state.h"
 #include "api/renderer_state.h"
 
+#include "lightmap/close.h"
 #include "lightmap/denoise.h"
+#include "lightmap/tracing.h"
 #include "lightmap/write.h"
 #include "scene/statics.h"
 
@@ -13,6 +15,7 @@ struct ag_lightmap {
     struct ag_context *context;
     struct ag_scene *scene;
     struct lightmap map;
+    struct lightmap_tracing tracing; // while it is made
     struct lightmap_facts facts;
     struct lightmap_noise noise;
     bool no_light;
@@ -81,11 +84,27 @@ static enum ag_result begin(const char *function, struct ag_scene *scene,
     return AG_OK;
 }
 
+static bool denoise(struct ag_lightmap *l, const struct ag_lightmap_desc *desc)
+{
+    const bool filtered = l->facts.samples > 0 && !lightmap_has_denoiser();
+    return !desc->denoise || filtered || lightmap_denoise(&l->map);
+}
+
+static bool close_seams(struct ag_lightmap *l)
+{
+    struct seam_closing closing;
+    const bool ok =
+        seam_closing_init(&closing, &l->context->host, &l->map.charts, l->tracing.scene.trace) &&
+        lightmap_close(&l->map, &closing);
+    seam_closing_finish(&closing);
+    return ok;
+}
+
 static enum ag_result done(struct ag_lightmap *l, const struct ag_lightmap_desc *desc, bool ok,
                            struct ag_lightmap **out)
 {
-    const bool filtered = l->facts.samples > 0 && !lightmap_has_denoiser();
-    ok = ok && (!desc->denoise || desc->no_light || filtered || lightmap_denoise(&l->map));
+    if (!desc->no_light) ok = ok && denoise(l, desc) && close_seams(l);
+    lightmap_tracing_finish(&l->tracing);
     const enum ag_result result = api_done(l->context, ok);
     if (ok)
         *out = l;
@@ -111,7 +130,7 @@ enum ag_result ag_lightmap_from_bake(const struct ag_bake *bake,
     l->facts.samples = bake->lightmap_samples;
     bool ok = make_map(l, &bake->spec, bake->term, &bake->pose, bake->change.charts);
     if (!desc->no_light)
-        ok = ok &&
+        ok = ok && lightmap_tracing_init(&l->tracing, &bake->pose, &l->map.charts) &&
              lightmap_set_paths(&l->map, bake_tensors(bake->bake), !desc->indirect_only,
                                 desc->denoise && !lightmap_has_denoiser()) &&
              lightmap_noise_read(&l->map, bake_tensors(bake->bake), bake->lightmap_samples,
@@ -163,9 +182,10 @@ static bool set_layers(struct ag_lightmap *l, struct ag_renderer *r, gpu_image i
     if (l->no_light) return true;
     const size_t texels = (size_t)l->map.charts.width * l->map.charts.height;
     float *pixels = host_alloc(host, texels * 6, CHANNELS * sizeof *pixels);
-    const bool ok =
-        pixels && download(r, &l->map, image, pixels, &layers) &&
-        lightmap_set_layers(&l->map, &r->pose, &layers, l->facts.punctual && !has_direct_light(r));
+    const bool ok = pixels && download(r, &l->map, image, pixels, &layers) &&
+                    lightmap_tracing_init(&l->tracing, &r->pose, &l->map.charts) &&
+                    lightmap_set_layers(&l->map, &l->tracing, &layers,
+                                        l->facts.punctual && !has_direct_light(r));
     host_free(host, pixels);
     return ok;
 }

@@ -3,8 +3,7 @@
 
 #include "core/parallel.h"
 #include "lightmap/filter.h"
-#include "lightmap/gather.h"
-#include "scene/statics.h"
+#include "lightmap/tracing.h"
 
 #include <math.h>
 #include <string.h>
@@ -121,7 +120,7 @@ struct layers {
     struct lightmap *map;
     const struct lightmap_layers *from;
     bool punctual;
-    struct gather_scene scene;
+    const struct gather_scene *scene;
     bool *hidden;
 };
 
@@ -132,7 +131,7 @@ static vec3s light_along(const struct layers *l, uint32_t texel)
     const struct chart_texel *t = chart_texel_of(&l->map->charts, texel);
     const struct gather_point point = { t->triangle, t->u, t->v };
     const bool back = chart_is_back(&l->map->charts, texel);
-    const vec3s normal = gather_surface(&l->scene, &point, back).normal;
+    const vec3s normal = gather_surface(l->scene, &point, back).normal;
     const size_t pixel = (size_t)t->y * l->map->charts.width + t->x;
     vec3s out;
     for (int c = 0; c < 3; c++) {
@@ -149,30 +148,39 @@ static void set_texel(void *user, size_t i)
     const uint32_t texel = (uint32_t)i;
     struct gather_points points;
     const unsigned before = embree_flush_denormals();
-    gather_find_points(&l->scene, texel, &points);
+    gather_find_points(l->scene, texel, &points);
     // Charts that are completely inside geometry stay black, as by paths.
     vec3s light = points.count > 0 ? light_along(l, texel) : vec3_of(0, 0, 0);
-    if (l->punctual) light = glms_vec3_add(light, gather_punctual(&l->scene, &points));
+    if (l->punctual) light = glms_vec3_add(light, gather_punctual(l->scene, &points));
     memcpy(texel_at(l->map, texel), light.raw, sizeof light.raw);
     l->hidden[i] = points.count == 0;
     embree_restore_denormals(before);
 }
 
-bool lightmap_set_layers(struct lightmap *map, const struct scene_pose *pose,
+bool lightmap_set_layers(struct lightmap *map, const struct lightmap_tracing *tracing,
                          const struct lightmap_layers *from, bool punctual)
 {
     const size_t rows = map->charts.side_texel_count;
-    struct scene_statics statics;
-    struct layers l = { .map = map, .from = from, .punctual = punctual };
+    struct layers l = { .map = map, .from = from, .punctual = punctual, .scene = &tracing->scene };
     l.hidden = host_alloc(map->host, rows, sizeof *l.hidden);
-    bool ok = l.hidden && scene_statics_init(&statics, map->host, pose);
-    if (ok) {
-        ok = gather_scene_init(&l.scene, map->host, &statics.pose, &map->charts);
-        if (ok) parallel_for(rows, 64, set_texel, &l);
-        ok = ok && fill(map, l.hidden);
-        gather_scene_finish(&l.scene);
-        scene_statics_finish(&statics);
-    }
+    if (l.hidden) parallel_for(rows, 64, set_texel, &l);
+    const bool ok = l.hidden && fill(map, l.hidden);
     host_free(map->host, l.hidden);
     return ok;
+}
+
+// ---- rays
+
+bool lightmap_tracing_init(struct lightmap_tracing *out, const struct scene_pose *pose,
+                           const struct charts *charts)
+{
+    *out = (struct lightmap_tracing){ 0 };
+    if (!scene_statics_init(&out->statics, charts->host, pose)) return false;
+    return gather_scene_init(&out->scene, charts->host, &out->statics.pose, charts);
+}
+
+void lightmap_tracing_finish(struct lightmap_tracing *tracing)
+{
+    gather_scene_finish(&tracing->scene);
+    scene_statics_finish(&tracing->statics);
 }

@@ -69,5 +69,6 @@ struct lightmap_layers {
     const float *at[LIGHTMAP_SIDES][3]; // [height][width][4]
     float scale;
 };
-bool lightmap_set_layers(struct lightmap *map, const struct scene_pose *pose,
+struct lightmap_tracing;
+bool lightmap_set_layers(struct lightmap *map, const struct lightmap_tracing *tracing,
                          const struct lightmap_layers *layers, bool punctual);

@@ -9,9 +9,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Differences of noise that lookups can represent poorly remain with √λ/2 of it at most.
-static const double LAMBDA = 0.005;
-
 enum { MOST_LOCAL = 96, STEPS = 64 };
 
 // ---- points
@@ -172,7 +169,7 @@ static void apply(const struct near *n)
 {
     const double *d = n->scratch->d;
     double *q = n->scratch->q;
-    for (uint32_t i = 0; i < n->places; i++) q[i] = LAMBDA * d[i];
+    for (uint32_t i = 0; i < n->places; i++) q[i] = SEAM_CLOSING_LAMBDA * d[i];
     for (uint32_t i = 0; i < n->points; i++) {
         const struct chart_seam_point *p = &n->closing->seams.points[n->scratch->point[i]];
         double sum = 0.0;
@@ -199,9 +196,10 @@ static void solve(const struct near *n)
 {
     struct seam_closing_scratch *m = n->scratch;
     for (uint32_t i = 0; i < n->places; i++) m->x[i] = m->r[i] = m->d[i] = 0.0;
-    m->r[0] = m->d[0] = LAMBDA;
-    double square = LAMBDA * LAMBDA;
-    for (int step = 0; step < STEPS && square > 1e-10 * LAMBDA * LAMBDA; step++) {
+    m->r[0] = m->d[0] = SEAM_CLOSING_LAMBDA;
+    double square = SEAM_CLOSING_LAMBDA * SEAM_CLOSING_LAMBDA;
+    for (int step = 0; step < STEPS && square > 1e-10 * SEAM_CLOSING_LAMBDA * SEAM_CLOSING_LAMBDA;
+         step++) {
         apply(n);
         const double alpha = square / dot(m->d, m->q, n->places);
         for (uint32_t i = 0; i < n->places; i++) {

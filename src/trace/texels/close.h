@@ -4,6 +4,9 @@
 #include "scene/charts/seams.h"
 #include "trace/trace_scene.h"
 
+// λ: differences of noise that lookups can represent poorly remain with √λ/2 of it at most.
+#define SEAM_CLOSING_LAMBDA 0.005
+
 struct seam_closing_scratch;
 
 // seam_closing_finish accepts zero.
