@@ -23,6 +23,8 @@ struct ag_lightmap_desc {
                    ///< filter of the light of paths, and a warning for other light; default false
     bool no_light; ///< info and positions alone: no ray is traced, and neither a frame nor the
                    ///< GPU is needed; ag_lightmap_read and _write are refused; default false
+    bool report;   ///< measure what ag_lightmap_report and _read_layer tell, unless no_light; takes
+                   ///< rays; default false
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 /// Thread: any.
@@ -70,6 +72,23 @@ AG_API enum ag_result ag_lightmap_read(const struct ag_lightmap *lightmap, bool 
 /// have one position; only texels with a back have one there. Thread: the context's.
 AG_API enum ag_result ag_lightmap_positions(const struct ag_lightmap *lightmap, bool back,
                                             struct ag_image **out);
+/// The quality of a map that was created with ag_lightmap_desc.report, as a JSON document:
+/// density, texels, overlaps, charts, seams, leaks and, by paths, noise. docs/lightmaps.md
+/// describes its members. Owned by the light map. Thread: the context's.
+AG_API enum ag_result ag_lightmap_report(const struct ag_lightmap *lightmap, const char **json);
+/// A value of each texel, of the same measurement.
+enum ag_lightmap_layer {
+    AG_LIGHTMAP_CHART,   ///< number of its chart, from 0, as in the report
+    AG_LIGHTMAP_DENSITY, ///< of its chart, texels per metre; 0: a chart of one texel
+    AG_LIGHTMAP_OPEN,    ///< share of its sample points outside geometry; 0: it is filled
+    AG_LIGHTMAP_NOISE,   ///< standard error over its light, both of luminance, without direct
+                         ///< light of punctual lights; NaN: not by paths
+    AG_LIGHTMAP_LEAK     ///< largest step of light to a neighbour behind a wall; 0: none
+};
+/// 1 channel; NaN where a texel is on no surface. Thread: the context's.
+AG_API enum ag_result ag_lightmap_read_layer(const struct ag_lightmap *lightmap,
+                                             enum ag_lightmap_layer layer, bool back,
+                                             struct ag_image **out);
 /// Formats of the maps, to be added up.
 enum ag_lightmap_format {
     AG_LIGHTMAP_EXR = 1, ///< irradiance.exr: 32-bit floats, lux

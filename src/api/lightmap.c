@@ -1,32 +1,11 @@
 // Light maps: checks arguments and forwards to lightmap/ and the techniques.
-#include "api/bake_state.h"
+#include "api/lightmap_state.h"
 #include "api/renderer_state.h"
 
-#include "lightmap/close.h"
 #include "lightmap/denoise.h"
-#include "lightmap/tracing.h"
-#include "lightmap/write.h"
-#include "scene/statics.h"
 
 #include <math.h>
 #include <string.h>
-
-struct ag_lightmap {
-    struct ag_context *context;
-    struct ag_scene *scene;
-    struct lightmap map;
-    struct lightmap_tracing tracing; // while it is made
-    struct lightmap_facts facts;
-    struct lightmap_noise noise;
-    bool no_light;
-    char *gi;
-    struct lightmap_record record; // zero: not by paths
-};
-
-static struct ag_context *context_of(const struct ag_lightmap *l)
-{
-    return l ? l->context : NULL;
-}
 
 void ag_lightmap_desc_default(struct ag_lightmap_desc *desc)
 {
@@ -49,6 +28,15 @@ enum ag_result ag_lightmap_technique(struct ag_context *context, const char *gi,
 
 // ---- creation
 
+// 0: the options give a number of texels.
+static float wanted_density(const struct technique *technique, const void *options)
+{
+    const struct option_row *row = option_find(&technique->options, "density");
+    return row && row->type == OPTION_TYPE_float32
+               ? *(const float *)((const char *)options + row->offset)
+               : 0.0f;
+}
+
 // known: the charts, made before; NULL: they are made.
 static bool make_map(struct ag_lightmap *l, const struct gi_spec *spec, int term,
                      const struct scene_pose *pose, const struct charts *known)
@@ -63,6 +51,7 @@ static bool make_map(struct ag_lightmap *l, const struct gi_spec *spec, int term
     ok = ok && lightmap_init(&l->map, &charts, pose->scene);
     scene_statics_finish(&statics);
     l->gi = ok ? gi_spec_print(spec) : NULL;
+    l->wanted_density = wanted_density(spec->technique[term], spec->options[term]);
     l->facts.gi = l->gi;
     return l->gi;
 }
@@ -90,20 +79,24 @@ static bool denoise(struct ag_lightmap *l, const struct ag_lightmap_desc *desc)
     return !desc->denoise || filtered || lightmap_denoise(&l->map);
 }
 
-static bool close_seams(struct ag_lightmap *l)
+// report: measures the quality, too.
+static bool close_seams(struct ag_lightmap *l, bool report)
 {
     struct seam_closing closing;
-    const bool ok =
-        seam_closing_init(&closing, &l->context->host, &l->map.charts, l->tracing.scene.trace) &&
-        lightmap_close(&l->map, &closing);
+    bool ok =
+        seam_closing_init(&closing, &l->context->host, &l->map.charts, l->tracing.scene.trace);
+    if (report) ok = ok && quality_begin(&l->quality, &l->map, &closing);
+    ok = ok && lightmap_close(&l->map, &closing);
+    if (report)
+        ok = ok && quality_measure(&l->quality, &l->map, &closing, &l->tracing, l->wanted_density);
     seam_closing_finish(&closing);
-    return ok;
+    return ok && (!report || api_lightmap_write_report(l));
 }
 
 static enum ag_result done(struct ag_lightmap *l, const struct ag_lightmap_desc *desc, bool ok,
                            struct ag_lightmap **out)
 {
-    if (!desc->no_light) ok = ok && denoise(l, desc) && close_seams(l);
+    if (!desc->no_light) ok = ok && denoise(l, desc) && close_seams(l, desc->report);
     lightmap_tracing_finish(&l->tracing);
     const enum ag_result result = api_done(l->context, ok);
     if (ok)
@@ -219,6 +212,8 @@ void ag_lightmap_destroy(struct ag_lightmap *l)
 {
     if (!l) return;
     struct ag_scene *scene = l->scene;
+    report_destroy(l->report);
+    quality_finish(&l->quality);
     lightmap_finish(&l->map);
     lightmap_record_finish(&l->record);
     host_free(&l->context->host, l->gi);
@@ -230,7 +225,7 @@ void ag_lightmap_destroy(struct ag_lightmap *l)
 
 enum ag_result ag_lightmap_get_info(const struct ag_lightmap *l, struct ag_lightmap_info *out)
 {
-    struct ag_context *context = context_of(l);
+    struct ag_context *context = api_lightmap_context(l);
     AG_REQUIRE(context, l, "lightmap is NULL");
     AG_REQUIRE_POINTER(context, out);
     const struct charts *charts = &l->map.charts;
@@ -246,16 +241,13 @@ enum ag_result ag_lightmap_get_info(const struct ag_lightmap *l, struct ag_light
     return AG_OK;
 }
 
-#define REQUIRE_LIGHT(context, l)                                                                  \
-    AG_REQUIRE(context, !(l)->no_light, "the light map was created with no_light")
-
 enum ag_result ag_lightmap_read(const struct ag_lightmap *l, bool back, struct ag_image **out)
 {
-    struct ag_context *context = context_of(l);
+    struct ag_context *context = api_lightmap_context(l);
     AG_REQUIRE_OUT(context, out);
     AG_REQUIRE(context, l, "lightmap is NULL");
     AG_REQUIRE(context, !back || l->map.has_back, "no material is double-sided");
-    REQUIRE_LIGHT(context, l);
+    AG_REQUIRE(context, !l->no_light, "the light map was created with no_light");
     const struct image *map = &l->map.irradiance[back ? LIGHTMAP_BACK : LIGHTMAP_FRONT];
     struct image copy = { 0 };
     const bool ok = image_init(&copy, &context->host, map->width, map->height, map->channels);
@@ -267,7 +259,7 @@ enum ag_result ag_lightmap_read(const struct ag_lightmap *l, bool back, struct a
 
 enum ag_result ag_lightmap_positions(const struct ag_lightmap *l, bool back, struct ag_image **out)
 {
-    struct ag_context *context = context_of(l);
+    struct ag_context *context = api_lightmap_context(l);
     AG_REQUIRE_OUT(context, out);
     AG_REQUIRE(context, l, "lightmap is NULL");
     AG_REQUIRE(context, !back || l->map.has_back, "no material is double-sided");
@@ -283,7 +275,7 @@ _Static_assert((int)AG_LIGHTMAP_EXR == LIGHTMAP_EXR && (int)AG_LIGHTMAP_KTX2 == 
 static enum ag_result write_files(const char *function, const struct ag_lightmap *l,
                                   const char *folder, uint32_t formats)
 {
-    struct ag_context *context = context_of(l);
+    struct ag_context *context = api_lightmap_context(l);
     AG_REQUIRE_FOR(function, context, l, "lightmap is NULL");
     AG_REQUIRE_FOR(function, context, folder && folder[0], "folder is empty");
     AG_REQUIRE_FOR(function, context, formats > 0 && formats <= LIGHTMAP_FORMATS,

@@ -18,6 +18,8 @@ bool lightmap_init(struct lightmap *out, struct charts *charts, const struct sce
         width > 0 || host_fail(host, FAIL_ARGUMENT,
                                "light map of %s: the scene has no static triangles", scene->name);
     out->has_back = out->charts.side_texel_count > out->charts.texel_count;
+    if (ok) out->texels = host_alloc(host, out->charts.side_texel_count, sizeof *out->texels);
+    ok = out->texels;
     for (int side = 0; ok && side < (out->has_back ? 2 : 1); side++)
         ok = image_init(&out->irradiance[side], host, width, height, 3);
     if (!ok) lightmap_finish(out);
@@ -29,6 +31,7 @@ void lightmap_finish(struct lightmap *map)
     if (!map->host) return;
     for (int side = 0; side < LIGHTMAP_SIDES; side++)
         image_finish(&map->irradiance[side], map->host);
+    host_free(map->host, map->texels);
     charts_finish(&map->charts);
     *map = (struct lightmap){ 0 };
 }
@@ -56,10 +59,20 @@ bool lightmap_positions(const struct lightmap *map, enum lightmap_side side, str
 
 // ---- hidden texels and gutters
 
-static bool fill(struct lightmap *map, const bool *hidden)
+uint32_t *lightmap_sources(const struct lightmap *map)
+{
+    const uint32_t count = map->charts.side_texel_count;
+    bool *hidden = host_alloc(map->host, count, sizeof *hidden);
+    for (uint32_t i = 0; hidden && i < count; i++) hidden[i] = !(map->texels[i].open > 0.0f);
+    uint32_t *sources = hidden ? charts_fill(&map->charts, hidden) : NULL;
+    host_free(map->host, hidden);
+    return sources;
+}
+
+static bool fill(struct lightmap *map)
 {
     const size_t places = (size_t)map->charts.width * map->charts.height;
-    uint32_t *nearest_valid = charts_fill(&map->charts, hidden);
+    uint32_t *nearest_valid = lightmap_sources(map);
     const bool ok = nearest_valid;
     for (uint32_t i = 0; ok && i < map->charts.side_texel_count; i++)
         if (nearest_valid[i] != i)
@@ -75,14 +88,23 @@ static bool fill(struct lightmap *map, const bool *hidden)
 
 // ---- light of the path tracer
 
-static void add_rows(struct lightmap *map, const float *punctual, const float *rest, bool *hidden)
+static float luminance_of(const float *rgb)
+{
+    return luminance(vec3_of(rgb[0], rgb[1], rgb[2]));
+}
+
+// light: `rest`, or filtered.
+static void add_rows(struct lightmap *map, const float *punctual, const float *light,
+                     const float *rest)
 {
     for (uint32_t i = 0; i < map->charts.side_texel_count; i++) {
         float *out = texel_at(map, i);
-        hidden[i] = !(rest[LIGHTMAP_COLUMNS * (size_t)i + LIGHTMAP_SHARE] > 0.0f);
+        const size_t at = LIGHTMAP_COLUMNS * (size_t)i;
         for (size_t c = 0; c < 3; c++)
-            out[c] = rest[LIGHTMAP_COLUMNS * (size_t)i + c] +
-                     (punctual ? punctual[3 * (size_t)i + c] : 0.0f);
+            out[c] = light[at + c] + (punctual ? punctual[3 * (size_t)i + c] : 0.0f);
+        map->texels[i] = (struct lightmap_texel){ .open = rest[at + LIGHTMAP_SHARE],
+                                                  .light = luminance_of(light + at),
+                                                  .variance = rest[at + LIGHTMAP_VARIANCE] };
     }
 }
 
@@ -104,12 +126,10 @@ bool lightmap_set_paths(struct lightmap *map, const struct tensors *bake, bool p
                                          (const uint64_t[]){ rows, 3 });
     const float *rest = tensors_expect(map->host, bake, LIGHTMAP_REST, TENSOR_F32, 2,
                                        (const uint64_t[]){ rows, LIGHTMAP_COLUMNS });
-    bool *hidden = lights && rest ? host_alloc(map->host, rows, sizeof *hidden) : NULL;
-    float *smooth = hidden && filter ? filtered(map, rest) : NULL;
-    bool ok = hidden && (smooth || !filter);
-    if (ok) add_rows(map, punctual ? lights : NULL, smooth ? smooth : rest, hidden);
-    ok = ok && fill(map, hidden);
-    host_free(map->host, hidden);
+    float *smooth = lights && rest && filter ? filtered(map, rest) : NULL;
+    bool ok = lights && rest && (smooth || !filter);
+    if (ok) add_rows(map, punctual ? lights : NULL, smooth ? smooth : rest, rest);
+    ok = ok && fill(map);
     host_free(map->host, smooth);
     return ok;
 }
@@ -121,7 +141,6 @@ struct layers {
     const struct lightmap_layers *from;
     bool punctual;
     const struct gather_scene *scene;
-    bool *hidden;
 };
 
 // With irradiance E along the surface's normal and vector irradiance V, (E + n·V) / 2 is that along
@@ -151,22 +170,20 @@ static void set_texel(void *user, size_t i)
     gather_find_points(l->scene, texel, &points);
     // Charts that are completely inside geometry stay black, as by paths.
     vec3s light = points.count > 0 ? light_along(l, texel) : vec3_of(0, 0, 0);
+    l->map->texels[i] = (struct lightmap_texel){ .open = (float)points.count / GATHER_POINTS,
+                                                 .light = luminance(light),
+                                                 .variance = NAN };
     if (l->punctual) light = glms_vec3_add(light, gather_punctual(l->scene, &points));
     memcpy(texel_at(l->map, texel), light.raw, sizeof light.raw);
-    l->hidden[i] = points.count == 0;
     embree_restore_denormals(before);
 }
 
 bool lightmap_set_layers(struct lightmap *map, const struct lightmap_tracing *tracing,
                          const struct lightmap_layers *from, bool punctual)
 {
-    const size_t rows = map->charts.side_texel_count;
     struct layers l = { .map = map, .from = from, .punctual = punctual, .scene = &tracing->scene };
-    l.hidden = host_alloc(map->host, rows, sizeof *l.hidden);
-    if (l.hidden) parallel_for(rows, 64, set_texel, &l);
-    const bool ok = l.hidden && fill(map, l.hidden);
-    host_free(map->host, l.hidden);
-    return ok;
+    parallel_for(map->charts.side_texel_count, 64, set_texel, &l);
+    return fill(map);
 }
 
 // ---- rays

@@ -37,15 +37,27 @@ bool lightmap_add_stages(struct bake_plan *plan, const struct lightmap_bake *how
 
 enum lightmap_side { LIGHTMAP_FRONT, LIGHTMAP_BACK, LIGHTMAP_SIDES };
 
+// Facts of a texel beside its light.
+struct lightmap_texel {
+    float open;     // share of its sample points outside geometry; 0: it is filled
+    float light;    // luminance without direct light of punctual lights, lux
+    float variance; // of it, before a filter, lux²; NaN: not by paths
+};
+
 struct lightmap {
     struct host *host;
     struct charts charts;
+    struct lightmap_texel *texels;           // [side_texel_count]
     bool has_back;                           // some material is double-sided
     struct image irradiance[LIGHTMAP_SIDES]; // lux; v downwards as in glTF
 };
 // Takes the charts over, also on failure. lightmap_finish accepts zero.
 bool lightmap_init(struct lightmap *out, struct charts *charts, const struct scene *scene);
 void lightmap_finish(struct lightmap *map);
+
+// [side_texel_count] the texel whose light each has: itself, or where it is filled the nearest open
+// one. After lightmap_set_paths or _layers; owned by the caller, NULL without memory.
+uint32_t *lightmap_sources(const struct lightmap *map);
 
 // World positions of a side's texels, m; NaN where there is none. *out is zero before.
 bool lightmap_positions(const struct lightmap *map, enum lightmap_side side, struct image *out);

@@ -255,6 +255,60 @@ TEST(light_map_functions_refuse_wrong_arguments)
     ag_context_destroy(context);
 }
 
+// Finite values of a layer.
+static int values_of(const struct ag_lightmap *lightmap, enum ag_lightmap_layer layer)
+{
+    struct ag_image *image = NULL;
+    int count = 0;
+    assert_int_equal(ag_lightmap_read_layer(lightmap, layer, false, &image), AG_OK);
+    assert_int_equal(image->channels, 1);
+    for (int i = 0; i < image->width * image->height; i++) count += isfinite(image->pixels[i]) != 0;
+    ag_image_destroy(NULL, image);
+    return count;
+}
+
+TEST(report_of_a_light_map_is_there_where_it_was_asked_for)
+{
+    struct ag_context *context = fixture_context();
+    struct ag_scene *scene = NULL;
+    struct ag_bake *bake = NULL;
+    struct ag_bake_desc desc;
+    struct ag_lightmap *lightmap = NULL;
+    struct ag_lightmap_desc how;
+    struct ag_lightmap_info info;
+    struct ag_image *image;
+    const char *json = "";
+    assert_int_equal(ag_scene_load(context, "@cornell", &scene), AG_OK);
+    ag_bake_desc_default(&desc);
+    desc.lightmap_samples = 8;
+    assert_int_equal(ag_bake_create(scene, "radiosity:density=6", &desc, &bake), AG_OK);
+    assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
+    ag_lightmap_desc_default(&how);
+    assert_int_equal(ag_lightmap_from_bake(bake, &how, &lightmap), AG_OK);
+    assert_int_equal(ag_lightmap_report(lightmap, &json), AG_ERROR_ARGUMENT);
+    CHECK(!json && strstr(ag_context_last_error(context), "ag_lightmap_desc.report"));
+    assert_int_equal(ag_lightmap_read_layer(lightmap, AG_LIGHTMAP_CHART, false, &image),
+                     AG_ERROR_ARGUMENT);
+    ag_lightmap_destroy(lightmap);
+    how.report = true;
+    assert_int_equal(ag_lightmap_from_bake(bake, &how, &lightmap), AG_OK);
+    assert_int_equal(ag_lightmap_get_info(lightmap, &info), AG_OK);
+    assert_int_equal(ag_lightmap_report(lightmap, &json), AG_OK);
+    CHECK(strstr(json, "\"wanted\": 6") || strstr(json, "\"wanted\":6"));
+    for (int layer = AG_LIGHTMAP_CHART; layer <= AG_LIGHTMAP_LEAK; layer++)
+        assert_int_equal(values_of(lightmap, (enum ag_lightmap_layer)layer), info.texels);
+    assert_int_equal(ag_lightmap_report(NULL, &json), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_lightmap_report(lightmap, NULL), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_lightmap_read_layer(lightmap, AG_LIGHTMAP_OPEN, true, &image),
+                     AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_lightmap_read_layer(lightmap, (enum ag_lightmap_layer)5, false, &image),
+                     AG_ERROR_ARGUMENT);
+    ag_lightmap_destroy(lightmap);
+    ag_bake_destroy(bake);
+    ag_scene_destroy(scene);
+    ag_context_destroy(context);
+}
+
 // ---- updates: no device is needed
 
 #define UPDATE_SPEC "radiosity:texels=4096"

@@ -3,6 +3,7 @@ target_link_libraries(ag_test_lightmap_fixture PUBLIC ag_test_framework ag_light
 ag_test(lightmap/lightmap USES lightmap LIBRARIES ag_test_lightmap_fixture)
 ag_test(lightmap/noise USES lightmap LIBRARIES ag_test_lightmap_fixture)
 ag_test(lightmap/close USES lightmap LIBRARIES ag_test_lightmap_fixture)
+ag_test(lightmap/quality USES lightmap LIBRARIES ag_test_lightmap_fixture)
 ag_test(lightmap/filter USES lightmap LIBRARIES ag_test_lightmap_fixture)
 ag_test(lightmap/gltf_copy USES lightmap)
 ag_test(lightmap/materials USES lightmap)

@@ -65,6 +65,21 @@ enum ag_result ag_lightmap_positions(const struct ag_lightmap *lightmap, bool ba
     return ag_lightmap_read(lightmap, back, out);
 }
 
+enum ag_result ag_lightmap_report(const struct ag_lightmap *lightmap, const char **json)
+{
+    (void)lightmap;
+    if (json) *json = NULL;
+    return absent(NULL, __func__);
+}
+
+enum ag_result ag_lightmap_read_layer(const struct ag_lightmap *lightmap,
+                                      enum ag_lightmap_layer layer, bool back,
+                                      struct ag_image **out)
+{
+    (void)layer;
+    return ag_lightmap_read(lightmap, back, out);
+}
+
 enum ag_result ag_lightmap_write(const struct ag_lightmap *lightmap, const char *folder)
 {
     (void)lightmap;
