@@ -2,6 +2,7 @@
 #include "api/bake_state.h"
 
 #include "core/c_locale.h"
+#include "core/parallel.h"
 #include "lightmap/lightmap.h"
 #include "scene/rescale.h"
 #include "techniques/gi_bake.h"
@@ -600,6 +601,8 @@ static bool write_report(struct ag_bake *b)
     report_options(b->report, technique, b->spec.options[b->term]);
     report_stages(b->report, b->bake);
     report_number(b->report, "seconds", bake_seconds(b->bake));
+    report_number(b->report, "threads",
+                  b->options.threads > 0 ? b->options.threads : parallel_threads());
     report_number(b->report, "prepare_seconds", bake_prepare_seconds(b->bake));
     report_number(b->report, "peak_memory_bytes", peak_memory_bytes());
     report_number(b->report, "bytes", (double)bake_bytes(b->bake));

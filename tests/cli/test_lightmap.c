@@ -1,5 +1,6 @@
 // bake --lightmap: its files, what is refused, and that the scene's copy looks the same.
 #include "cli/program.h"
+#include "cli/screen.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,11 +21,11 @@ TEST(light_map_is_the_same_for_any_threads_and_replaces_an_earlier_one)
     const char *a = path_of("maps-a"), *b = path_of("maps-b");
     run_expect(0, BAKE " --threads 1 --force --lightmap", a, NULL);
     run_expect(0, BAKE " --threads 3 --force --lightmap", b, NULL);
-    assert_int_equal(count_files(a), 5);
+    assert_int_equal(count_files(a), 6);
     CHECK(files_are_equal(path_of("maps-a/irradiance.exr"), path_of("maps-b/irradiance.exr")));
     CHECK(files_are_equal(path_of("maps-a/scene.glb"), path_of("maps-b/scene.glb")));
     run_expect(0, BAKE " --seed 5 --lightmap", a, NULL);
-    assert_int_equal(count_files(a), 5);
+    assert_int_equal(count_files(a), 6);
     CHECK(!files_are_equal(path_of("maps-a/irradiance.exr"), path_of("maps-b/irradiance.exr")));
 }
 
@@ -132,7 +133,7 @@ TEST(formats_are_those_of_the_list_and_replace_those_of_an_earlier_run)
     use_cache("lightmap-formats");
     const char *maps = path_of("maps-f");
     run_expect(0, BAKE " --lightmap-format ktx2 --lightmap", maps, NULL);
-    assert_int_equal(count_files(maps), 3);
+    assert_int_equal(count_files(maps), 4);
     CHECK(file_exists(path_of("maps-f/irradiance.ktx2")));
     CHECK(!scene_has("maps-f/scene.glb", "MOZ_lightmap"));
     const struct run *r =
@@ -141,7 +142,7 @@ TEST(formats_are_those_of_the_list_and_replace_those_of_an_earlier_run)
     assert_int_equal(json_array_size(formats), 2);
     CHECK_STRING(json_string_value(json_array_get(formats, 0)), "exr");
     json_decref(report);
-    assert_int_equal(count_files(maps), 4);
+    assert_int_equal(count_files(maps), 5);
     CHECK(file_exists(path_of("maps-f/irradiance.png")));
     CHECK(scene_has("maps-f/scene.glb", "MOZ_lightmap"));
     // A copy's copy has the map once more, not twice.
@@ -199,8 +200,8 @@ static void check_merged(const char *scene, const char *more)
     CHECK(files_are_equal(path_of("parts-merged/irradiance.exr"),
                           path_of("parts-whole/irradiance.exr")));
     CHECK(files_are_equal(path_of("parts-merged/scene.glb"), path_of("parts-whole/scene.glb")));
-    static const char *const files[] = { "irradiance.exr", "irradiance.ktx2", "irradiance.png",
-                                         "bake.safetensors", "scene.glb" };
+    static const char *const files[] = { "irradiance.exr",   "irradiance.ktx2", "irradiance.png",
+                                         "bake.safetensors", "scene.glb",       "report.html" };
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         char name[64];
         snprintf(name, sizeof name, "parts-merged/%s", files[i]);
@@ -277,29 +278,6 @@ TEST(denoised_light_maps_of_paths_have_less_noise)
 }
 
 // ---- updates
-
-// A floor of 8 m and a screen of 1 m that stands on it at x.
-static const char *write_screen(const char *name, double x)
-{
-    static const char FORMAT[] =
-        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":["
-        "{\"mesh\":0,\"scale\":[8,1,8]},"
-        "{\"mesh\":0,\"translation\":[%g,0.5,0],\"rotation\":[0.70710678,0,0,0.70710678]}],"
-        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":"
-        "0}]}],"
-        "\"materials\":[{\"doubleSided\":true,\"pbrMetallicRoughness\":{\"metallicFactor\":0}}],"
-        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\","
-        "\"min\":[-0.5,0,-0.5],\"max\":[0.5,0,0.5]},"
-        "{\"bufferView\":1,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}],"
-        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},"
-        "{\"buffer\":0,\"byteOffset\":48,\"byteLength\":12}],"
-        "\"buffers\":[{\"byteLength\":60,\"uri\":\"data:application/octet-stream;base64,"
-        "AAAAvwAAAAAAAAC/AAAAvwAAAAAAAAA/AAAAPwAAAAAAAAA/AAAAPwAAAAAAAAC/AAABAAIAAAACAAMA\"}]}";
-    static char text[2048];
-    const int size = snprintf(text, sizeof text, FORMAT, x);
-    write_file(path_of(name), text, (size_t)size);
-    return path_of(name);
-}
 
 #define SCREEN                                                                                     \
     "bake --gi radiosity:texels=2048 --spp 16 --sky 100,100,100 --light "                          \

@@ -129,6 +129,36 @@ TEST(valid_unwrap_is_used_without_a_warning)
     CHECK(difference(plain, image) < 0.05);
 }
 
+// ---- figures
+
+static double number_of(const json_t *report, const char *group, const char *name)
+{
+    const json_t *value =
+        json_object_get(json_object_get(json_object_get(report, "quality"), group), name);
+    assert_non_null(value);
+    return json_number_value(value);
+}
+
+// Charts of normals replace two islands on one place.
+TEST(light_maps_of_valid_and_of_overlapping_coordinates_have_no_overlap)
+{
+    float overlapping[CORNERS][2];
+    move(overlapping, 4, -0.4f);
+    setenv("AFTERGLOW_CACHE", make_folder("overlap-cache"), 1);
+    for (int broken = 0; broken < 2; broken++) {
+        const char *scene = write_sheet(broken ? "twice" : "once", broken ? overlapping : valid);
+        const struct run *r =
+            run_expect(0, "bake --gi radiosity:texels=2048 --spp 1 --json --lightmap",
+                       test_path(broken ? "maps-twice" : "maps-once"), scene, NULL);
+        assert_int_equal(strstr(r->err, "overlaps itself") != NULL, broken);
+        json_t *report = run_json(r);
+        CHECK(number_of(report, "overlaps", "shared") == 0.0);
+        CHECK(number_of(report, "overlaps", "folded") == 0.0);
+        CHECK(number_of(report, "charts", "unwrapped") == (broken ? 0.0 : 1.0));
+        json_decref(report);
+    }
+}
+
 // ---- info
 
 TEST(info_has_charts_texels_and_density_of_the_light_map)

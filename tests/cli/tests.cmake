@@ -1,8 +1,8 @@
 # The program as scripts use it.
-add_library(ag_test_program STATIC ${CMAKE_CURRENT_LIST_DIR}/program.c)
+add_library(ag_test_program STATIC ${CMAKE_CURRENT_LIST_DIR}/program.c ${CMAKE_CURRENT_LIST_DIR}/screen.c)
 target_compile_definitions(ag_test_program PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
 target_link_libraries(ag_test_program PUBLIC ag_test_framework PkgConfig::JANSSON PRIVATE afterglow_flags)
-foreach(name usage info environment diff reference render interrupt hostile lightmap lightmap_lights probes export unwrap scale complete tonemap)
+foreach(name usage info environment diff reference render interrupt hostile lightmap lightmap_lights lightmap_report probes export unwrap scale complete tonemap)
   ag_test(cli/${name} USES image LIBRARIES ag_test_program)
 endforeach()
 foreach(name folders references report)
@@ -45,7 +45,8 @@ ag_test(cli/report_page LIBRARIES ag_test_report)
 ag_test(cli/waiting LIBRARIES ag_test_report)
 ag_test(cli/terminal LIBRARIES ag_test_report)
 ag_test(cli/report_page_browser LIBRARIES ag_test_report)
-set_tests_properties(cli.report_page_browser PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: no Chromium")
+ag_test(cli/lightmap_page LIBRARIES ag_test_report)
+set_tests_properties(cli.report_page_browser cli.lightmap_page PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: no Chromium")
 
 # The manual page, against what the program prints, and completion in each shell.
 add_test(NAME cli.manual COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/manual.sh ${CMAKE_BINARY_DIR}/manual $<TARGET_FILE:afterglow>)

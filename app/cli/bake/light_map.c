@@ -1,6 +1,6 @@
 // Light maps as files: by the path tracer, through a bake, or by a renderer of a technique.
 #include "light_map.h"
-#include "baking.h"
+#include "light_map_report.h"
 #include "light_renderer.h"
 #include "cli/technique_names.h"
 #include "cli/files/folder.h"
@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 // A folder with one of them is of an earlier run; the first is named in messages.
@@ -25,14 +26,23 @@ struct job {
     struct baking baking;         // by paths
     struct light_renderer light;  // of the technique
     struct ag_lightmap *lightmap;
+    double begun_s;
 };
+
+static double now_s(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
 
 // ---- checks of the command line
 
 static bool is_ours(const char *name)
 {
     static const char *const others[] = { "irradiance_back.exr", "irradiance_back.ktx2",
-                                          "irradiance_back.png", "bake.safetensors", "scene.glb" };
+                                          "irradiance_back.png", "bake.safetensors",
+                                          "scene.glb",           LIGHT_MAP_PAGE };
     for (size_t i = 0; i < sizeof MARKS / sizeof *MARKS; i++)
         if (strcmp(name, MARKS[i]) == 0) return true;
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
@@ -88,8 +98,7 @@ enum status light_map_check_others(const struct arguments *a)
 
 static enum status check_usage(const struct arguments *a)
 {
-    const char *option = a->report                  ? "--report"
-                         : a->report_full           ? "--report-full"
+    const char *option = a->report_full             ? "--report-full"
                          : a->all_objects           ? "--all-objects"
                          : a->exported              ? "--export"
                          : a->probes                ? "--probes"
@@ -247,18 +256,6 @@ static json_t *formats_json(unsigned formats)
     return out;
 }
 
-static enum status write_folder(struct job *job)
-{
-    enum status status = folder_begin(&job->folder);
-    if (status != DONE) return status;
-    interrupt_hold();
-    const enum ag_result result =
-        ag_lightmap_write_as(job->lightmap, job->folder.beside.path, formats_of(job->arguments));
-    interrupt_release();
-    return result == AG_OK ? folder_commit(&job->folder, mark_in(job->folder.path))
-                           : fail_call(job, result);
-}
-
 static void say_noise(const struct ag_lightmap_info *info)
 {
     if (!isfinite(info->noise)) return;
@@ -312,22 +309,75 @@ static json_t *json_of(const struct job *job, const struct ag_lightmap_info *inf
     return out;
 }
 
-static enum status report(const struct job *job)
-{
-    struct ag_bake_update_info update;
-    const bool updated =
-        job->baking.updates && ag_bake_get_update(job->baking.bake, &update) == AG_OK;
-    if (updated) say_update(&update);
+// The map in numbers.
+struct outcome {
     struct ag_lightmap_info info;
-    ag_lightmap_get_info(job->lightmap, &info);
-    const double utilisation = (double)info.texels / ((double)info.width * (double)info.height);
+    double utilisation;
+    bool updated;
+    struct ag_bake_update_info update;
+};
+
+static struct outcome outcome_of(const struct job *job)
+{
+    struct outcome out = { 0 };
+    ag_lightmap_get_info(job->lightmap, &out.info);
+    out.utilisation = (double)out.info.texels / ((double)out.info.width * (double)out.info.height);
+    out.updated = job->baking.updates && ag_bake_get_update(job->baking.bake, &out.update) == AG_OK;
+    return out;
+}
+
+static void say(const struct job *job, const struct outcome *o)
+{
+    const struct ag_lightmap_info *info = &o->info;
+    if (o->updated) say_update(&o->update);
     note("light map of %dx%d, %d texels in %d charts, %.0f %% of it, %.3g texels per metre; "
          "written: %s",
-         info.width, info.height, info.texels, info.charts, 100.0 * utilisation,
-         (double)info.texels_per_m, job->folder.shown);
-    say_noise(&info);
-    if (!job->arguments->json) return DONE;
-    return json_print(json_of(job, &info, utilisation, updated ? &update : NULL));
+         info->width, info->height, info->texels, info->charts, 100.0 * o->utilisation,
+         (double)info->texels_per_m, job->folder.shown);
+    say_noise(info);
+}
+
+static struct light_map_run run_of(const struct job *job)
+{
+    struct light_map_run run = { .session = &job->session,
+                                 .lightmap = job->lightmap,
+                                 .gi = gi_of(job),
+                                 .seconds = now_s() - job->begun_s };
+    for (int i = 0; i < job->light.bakes.count; i++)
+        run.bakes[run.bake_count++] = job->light.bakes.at[i].bake;
+    if (job->baking.bake) run.bakes[run.bake_count++] = job->baking.bake;
+    return run;
+}
+
+static enum status write_folder(struct job *job, const struct light_map_run *run,
+                                const json_t *document)
+{
+    enum status status = folder_begin(&job->folder);
+    if (status != DONE) return status;
+    interrupt_hold();
+    const enum ag_result result =
+        ag_lightmap_write_as(job->lightmap, job->folder.beside.path, formats_of(job->arguments));
+    interrupt_release();
+    if (result != AG_OK) return fail_call(job, result);
+    status = light_map_page_write(run, document, &job->folder);
+    return status == DONE ? folder_commit(&job->folder, mark_in(job->folder.path)) : status;
+}
+
+static enum status publish(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    const struct outcome outcome = outcome_of(job);
+    const struct light_map_run run = run_of(job);
+    json_t *document =
+        json_of(job, &outcome.info, outcome.utilisation, outcome.updated ? &outcome.update : NULL);
+    if (!document) return fail_call(job, AG_ERROR_MEMORY);
+    enum status status = light_map_report_add(&run, document);
+    if (status == DONE) status = write_folder(job, &run, document);
+    if (status == DONE) say(job, &outcome);
+    if (status == DONE && a->report) status = json_write(document, a->report);
+    if (status == DONE && a->json) return json_print(document);
+    json_decref(document);
+    return status;
 }
 
 // Everything that can fail before the work.
@@ -343,6 +393,7 @@ static enum status prepare(struct job *job)
     if (status == DONE && !baking_is_followed(a))
         status = is_part(a) ? whole_file_check(a->output)
                             : folder_plan(&job->folder, a->lightmap, mark_in(a->lightmap), is_ours);
+    if (status == DONE && a->report && !baking_is_followed(a)) status = whole_file_check(a->report);
     if (status == DONE)
         status = session_load(&job->session, a->merge ? job->origin.scene_name : a->positional[0],
                               a->merge ? job->origin.scene_scale : a->scene_scale);
@@ -357,12 +408,12 @@ static enum status run(struct job *job)
     ag_lightmap_desc_default(&desc);
     desc.indirect_only = a->indirect_only;
     desc.denoise = a->denoise;
+    desc.report = true;
     enum status status = prepare(job);
     if (status == DONE)
         status = a->has_spp || a->merge ? take_paths(job, &desc) : take_technique(job, &desc);
     if (status != DONE || !has_results(a)) return status;
-    status = write_folder(job);
-    return status == DONE ? report(job) : status;
+    return publish(job);
 }
 
 enum status light_map_bake(const struct arguments *arguments)
@@ -370,6 +421,7 @@ enum status light_map_bake(const struct arguments *arguments)
     struct job *job = calloc(1, sizeof *job);
     if (!job) return fail("cannot bake %s: out of memory", arguments->positional[0]);
     job->arguments = arguments;
+    job->begun_s = now_s();
     const enum status status = run(job);
     ag_lightmap_destroy(job->lightmap);
     light_renderer_end(&job->light);

@@ -1,11 +1,11 @@
 // Output of compare: report.json, a table, exceeded bounds.
 #include "compare.h"
 #include "cli/files/json.h"
+#include "cli/page/origin.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 // ---- report.json
 
@@ -133,29 +133,9 @@ static json_t *reference_json(const struct reference *t)
     return object;
 }
 
-static json_t *version_json(void)
-{
-    const int v = ag_version();
-    return json_sprintf("%d.%d.%d", v / 10000, v / 100 % 100, v % 100);
-}
-
-static json_t *date_json(void)
-{
-    char text[32] = "";
-    struct tm utc;
-    const time_t now = time(NULL);
-    if (gmtime_r(&now, &utc)) strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    return json_string(text);
-}
-
-// Adds the command that makes the report again.
 static void add_origin(json_t *report, const struct comparison *c)
 {
-    char command[COMMAND_SIZE];
-    arguments_command("compare", c->arguments, command, sizeof command);
-    json_object_set_new(report, "command", json_text(command));
-    json_object_set_new(report, "version", version_json());
-    json_object_set_new(report, "date", date_json());
+    report_add_origin(report, "compare", c->arguments);
     json_object_set_new(report, "light", json_text(c->session.light));
     json_object_set_new(report, "light_is_default", json_boolean(c->session.made_up_light));
     json_object_set_new(report, "camera_is_default", json_boolean(c->session.made_up));
