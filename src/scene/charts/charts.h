@@ -91,7 +91,8 @@ struct charts {
     uint32_t count;
     struct chart_triangle *triangles; // chart after chart
     uint32_t triangle_count;
-    struct chart_texel *texels; // chart after chart, row by row
+    // Chart after chart; in each row by row, or in squares (squares.h).
+    struct chart_texel *texels;
     uint32_t texel_count;
     // Texels of both sides: those of all fronts, in the order of `texels`, then the backs of charts
     // with a double-sided material.
