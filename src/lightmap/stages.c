@@ -26,6 +26,16 @@ static void destroy(void *argument)
     charts_finish(&job->charts);
 }
 
+// A trace scene has Embree's hierarchy, corners and facets of each triangle. About two triangles
+// meet a texel.
+size_t lightmap_job_bytes(const struct charts *charts)
+{
+    enum { OF_TRIANGLE = 240, OF_LISTS = 12 };
+    return charts->triangle_count * (sizeof *charts->triangles + OF_TRIANGLE) +
+           (size_t)charts->width * charts->height * sizeof *charts->owner +
+           charts->texel_count * (sizeof *charts->texels + OF_LISTS);
+}
+
 // ---- one number of paths for all texels
 
 static void gather(void *user, const struct bake_task *task, uint32_t texel, uint64_t row)
@@ -93,9 +103,11 @@ bool lightmap_add_stages(struct bake_plan *plan, const struct lightmap_bake *how
     struct lightmap_job *job = bake_plan_alloc(plan, 1, sizeof *job);
     if (!job) return false;
     const bool ok = plan_job(job, bake_plan_host(plan), how, plan);
-    bake_plan_set_job(
-        plan,
-        &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish, .destroy = destroy });
+    bake_plan_set_job(plan, &(struct bake_job){ .job = job,
+                                                .prepare = prepare,
+                                                .finish = finish,
+                                                .destroy = destroy,
+                                                .bytes = lightmap_job_bytes(&job->charts) });
     if (!ok || how->noise > 0.0f) return ok && adaptive_add_stages(plan, job);
     // An empty scene has one row, of zeros.
     return add_stage(plan, how->samples,

@@ -14,3 +14,6 @@ struct lightmap_job {
     struct scene_statics statics;
     struct gather_scene scene;
 };
+
+// Memory of the charts, and of the rays among the surfaces: about.
+size_t lightmap_job_bytes(const struct charts *charts);

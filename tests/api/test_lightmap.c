@@ -255,6 +255,31 @@ TEST(light_map_functions_refuse_wrong_arguments)
     ag_context_destroy(context);
 }
 
+TEST(estimated_memory_of_a_light_map_has_its_charts)
+{
+    struct ag_context *context = fixture_context();
+    struct ag_scene *scene = NULL;
+    struct ag_bake_estimate few, many;
+    struct ag_bake_desc desc;
+    assert_int_equal(ag_scene_load(context, "@cornell", &scene), AG_OK);
+    ag_bake_desc_default(&desc);
+    desc.lightmap_samples = 1;
+    for (int i = 0; i < 2; i++) {
+        struct ag_bake *bake = NULL;
+        const char *spec = i ? "radiosity:texels=65536" : "radiosity:texels=4096";
+        assert_int_equal(ag_bake_create(scene, spec, &desc, &bake), AG_OK);
+        assert_int_equal(ag_bake_estimate_cost(bake, false, i ? &many : &few), AG_OK);
+        ag_bake_destroy(bake);
+    }
+    // A texel has a position, its middle, a place in the atlas, the result and lists.
+    const double texels = many.texels - few.texels;
+    const double bytes = (double)many.peak_memory_bytes - (double)few.peak_memory_bytes;
+    print_message("%.0f bytes for a texel\n", bytes / texels);
+    CHECK(bytes > 64.0 * texels && bytes < 200.0 * texels);
+    ag_scene_destroy(scene);
+    ag_context_destroy(context);
+}
+
 // Finite values of a layer.
 static int values_of(const struct ag_lightmap *lightmap, enum ag_lightmap_layer layer)
 {

@@ -4,7 +4,7 @@
 
 #include "bake/scene_key.h"
 #include "core/rng.h"
-#include "lightmap/rows.h"
+#include "lightmap/stages.h"
 
 #include <string.h>
 
@@ -346,9 +346,14 @@ bool lightmap_add_update_stages(struct bake_plan *plan, const struct lightmap_up
                          .charts = *update->charts };
     *update->was = (struct lightmap_record){ 0 };
     *update->charts = (struct charts){ 0 };
+    // The scene as it was has rays of its own, and both have a record.
+    const size_t record = job->charts.side_texel_count * LIGHTMAP_COLUMNS * sizeof(float);
     bake_plan_set_job(
-        plan,
-        &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish, .destroy = destroy });
+        plan, &(struct bake_job){ .job = job,
+                                  .prepare = prepare,
+                                  .finish = finish,
+                                  .destroy = destroy,
+                                  .bytes = 2 * (lightmap_job_bytes(&job->charts) + record) });
     if (!scene_statics_init(&job->statics, job->host, job->how.pose) ||
         !compare(job, update->folder))
         return false;
