@@ -198,6 +198,12 @@ static float first_feedback(const struct mrt *mrt, const struct frame_view *view
     return view->constants->previous_scale_ratio;
 }
 
+// Feedback gathers all bounces over some frames.
+static float rest_of(const struct mrt *mrt)
+{
+    return mrt->options.remainder && !mrt->options.feedback ? mrt->runtime.rest : 1.0f;
+}
+
 static bool record_host_solution(struct mrt *mrt, struct gpu_cmd *cmd,
                                  const struct frame_view *view)
 {
@@ -209,6 +215,7 @@ static bool record_host_solution(struct mrt *mrt, struct gpu_cmd *cmd,
                                       .radiosity = mrt_buffer(&mrt->runtime, "mrt_radiosity"),
                                       .bounces = mrt->options.bounces,
                                       .feedback = mrt->options.feedback,
+                                      .rest = rest_of(mrt),
                                       .radiance_scale = view->constants->radiance_scale,
                                   });
 }
@@ -220,9 +227,12 @@ enum { BOUNCES_OF_NEW_OPERATORS = 16 };
 static void record_bounces(struct mrt *mrt, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const bool lost = mrt->options.feedback && mrt->update.swapped;
-    const float feedback = lost ? 0.0f : first_feedback(mrt, view);
-    const int more = lost ? BOUNCES_OF_NEW_OPERATORS : 0;
-    mrt_record_bounces(&mrt->runtime, cmd, mrt->options.bounces + more, feedback);
+    const struct mrt_bounces bounces = {
+        .count = mrt->options.bounces + (lost ? BOUNCES_OF_NEW_OPERATORS : 0),
+        .feedback = lost ? 0.0f : first_feedback(mrt, view),
+        .rest = rest_of(mrt),
+    };
+    mrt_record_bounces(&mrt->runtime, cmd, &bounces);
     mrt->update.swapped = false;
 }
 

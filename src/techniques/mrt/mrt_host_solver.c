@@ -7,8 +7,7 @@ void mrt_host_solver_set_reflectance(struct mrt_host_solver *solver,
                                      const struct mrt_geometry_texel *geometry)
 {
     for (int i = 0; i < solver->texels; i++)
-        solver->reflectance[i] = glms_vec3_mul(geometry[i].reflectance,
-                                               glms_vec3_sub(vec3_of(1, 1, 1), geometry[i].hidden));
+        solver->reflectance[i] = mrt_shown_reflectance(&geometry[i]);
 }
 
 bool mrt_host_solver_init(struct mrt_host_solver *out, struct host *host, struct gpu *gpu,
@@ -62,7 +61,8 @@ static void solve(struct mrt_host_solver *s, const struct mrt_host_slot *slot,
 {
     // Last irradiance in the scale of this radiosity.
     const float rescale = frame->feedback && s->solved ? slot->scale / s->scale : 0.0f;
-    for (int i = 0; i < frame->bounces; i++) bounce(s, i > 0 ? 1.0f : rescale);
+    for (int i = 0; i < frame->bounces; i++)
+        bounce(s, i == 0 ? rescale : i == 1 ? frame->rest : 1.0f);
     s->newest = slot->frame;
     s->scale = slot->scale;
     s->solved = true;

@@ -44,6 +44,7 @@ struct mrt_host_frame {
     gpu_buffer radiosity;          // of the last bounce, for probes; none: id 0
     int bounces;
     bool feedback;
+    float rest; // of struct mrt_bounces
     float radiance_scale;
 };
 // Reads `direct`, solves for light that has arrived, and uploads the newest solution into

@@ -34,14 +34,20 @@ static void set_direct(struct mrt_runtime *runtime, const float *radiosity)
 }
 
 // `bounces` of the radiosity in the buffer, and the light map.
-static void solve(struct mrt_runtime *runtime, int bounces, bool feedback)
+static void solve_rest(struct mrt_runtime *runtime, int bounces, bool feedback, float rest)
 {
     struct gpu_cmd *cmd = gpu_frame_begin(runtime->gpu);
     assert_non_null(cmd);
-    mrt_record_bounces(runtime, cmd, bounces, feedback ? 1.0f : 0.0f);
+    mrt_record_bounces(runtime, cmd,
+                       &(struct mrt_bounces){ bounces, feedback ? 1.0f : 0.0f, rest });
     mrt_record_light_map(runtime, cmd);
     CHECK(gpu_frame_end(runtime->gpu, cmd));
     CHECK(gpu_wait(runtime->gpu));
+}
+
+static void solve(struct mrt_runtime *runtime, int bounces, bool feedback)
+{
+    solve_rest(runtime, bounces, feedback, 1.0f);
 }
 
 static float *read_buffer(struct mrt_runtime *runtime, gpu_buffer buffer, size_t floats)
@@ -237,6 +243,34 @@ TEST_GPU(mrt_feedback_converges_to_the_geometric_series)
             worst = fmax(worst, fabs((double)got[i] / sum[i % 3] - 1.0));
         print_message("%2d bounces: %.3f %.3f %.3f, at most %.1f %% from the series\n", bounce,
                       (double)got[0], (double)got[1], (double)got[2], 100.0 * worst);
+        CHECK(worst < 0.03);
+        free(got);
+    }
+    free(radiosity);
+    mrt_runtime_finish(&runtime);
+    mrt_runtime_fixture_finish(&f);
+}
+
+// The last power of the series has the weight of all that follow. Eight bounces alone have 0.83 of
+// the light.
+TEST_GPU(mrt_remainder_completes_the_geometric_series)
+{
+    const float reflectance = 0.8f;
+    struct mrt_runtime_fixture f;
+    closed_cube(&f, vec3_of(reflectance, reflectance, reflectance));
+    struct mrt_runtime runtime = start(gpu, &f, true);
+    const size_t floats = 3 * (size_t)runtime.level.texels;
+    float *radiosity = malloc(floats * sizeof *radiosity);
+    for (size_t i = 0; i < floats; i++) radiosity[i] = 1.0f;
+    set_direct(&runtime, radiosity);
+    CHECK_NEAR(runtime.rest, 1 / (1 - (double)reflectance), 1e-3);
+    for (int bounces = 2; bounces <= 8; bounces *= 2) {
+        solve_rest(&runtime, bounces, false, runtime.rest);
+        float *got = read_irradiance(&runtime);
+        double worst = 0.0;
+        for (size_t i = 0; i < floats; i++)
+            worst = fmax(worst, fabs((double)(got[i] * (1.0f - reflectance)) - 1.0));
+        print_message("%d bounces: at most %.1f %% from the series\n", bounces, 100.0 * worst);
         CHECK(worst < 0.03);
         free(got);
     }

@@ -24,8 +24,7 @@ static void fill_reflected(const struct builder *s, int block, int first_opening
         if (!mrt_block_has_wall(of, f)) continue;
         for (size_t t = 0; t < s->face; t++, row++) {
             const struct mrt_geometry_texel *texel = &input->images->geometry[first + (int)row];
-            const float reflectance =
-                texel->reflectance.raw[colour] * (1.0f - texel->hidden.raw[colour]);
+            const float reflectance = mrt_shown_reflectance(texel).raw[colour];
             float *to = out->at + row * out->stride;
             const float *u_b = basis->u[0].at + row * basis->u[0].stride;
             for (int k = 0; k < o->k_b; k++) *to++ = reflectance * u_b[k];
@@ -78,6 +77,33 @@ static bool add_block(struct builder *s, int block, int first_opening, int openi
     return ok;
 }
 
+// ---- the remainder of the series of bounces
+
+// A room's light after many bounces falls by about this ratio from one to the next.
+static vec3s mean_reflectance(const struct mrt_runtime_input *input, int block)
+{
+    const struct mrt_atlas *atlas = input->atlas;
+    const bool last = block + 1 == input->map->count;
+    const int end = last ? atlas->texels : mrt_first_texel(atlas, block + 1);
+    vec3s sum = vec3_of(0, 0, 0);
+    float area_m2 = 0.0f;
+    for (int t = mrt_first_texel(atlas, block); t < end; t++) {
+        const struct mrt_geometry_texel *texel = &input->images->geometry[t];
+        sum = glms_vec3_muladds(mrt_shown_reflectance(texel), texel->area_m2, sum);
+        area_m2 += texel->area_m2;
+    }
+    return area_m2 > 0.0f ? glms_vec3_divs(sum, area_m2) : sum;
+}
+
+static float remainder_of(const struct mrt_runtime_input *input)
+{
+    static const float MOST = 0.95f;
+    float largest = 0.0f;
+    for (int b = 0; b < input->map->count; b++)
+        largest = fmaxf(largest, glms_vec3_max(mean_reflectance(input, b)));
+    return 1.0f / (1.0f - fminf(largest, MOST));
+}
+
 bool mrt_reflection_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
                            const struct mrt_scales *scales)
 {
@@ -88,6 +114,7 @@ bool mrt_reflection_upload(struct mrt_runtime *runtime, const struct mrt_runtime
     float *all = host_alloc(runtime->host, columns, 3 * rows * sizeof *all);
     struct builder s = { runtime->host, input, scales, runtime->level.texels_of_tile, all };
     bool ok = all;
+    runtime->rest = remainder_of(input);
     for (int b = 0, opening = 0; ok && b < input->map->count; b++) {
         const int first = opening;
         while (opening < o->opening_count && o->openings[opening].block == b) opening++;

@@ -88,6 +88,8 @@ struct mrt_runtime {
     struct mrt_runtime_options options;
     struct mrt_level_params level;
     uint32_t block_count, opening_count;
+    // 1 + ρ + ρ² + …, of the mean reflectance ρ of the walls of the block where it is largest.
+    float rest;
     // Tables, operators and light of the level, by the names of their bindings (mrt_buffer).
     gpu_buffer buffers[MRT_MAX_BUFFERS];
     const char *buffer_names[MRT_MAX_BUFFERS];
@@ -134,10 +136,20 @@ uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size);
 // Radiosity of the texels before any bounce.
 void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                        const struct frame_view *view, bool emitters);
-// Indirect irradiance of the texels after `count` bounces. feedback: the weight of the last call's
-// indirect light, which the first one reflects too; 0: none.
-void mrt_record_bounces(struct mrt_runtime *runtime, struct gpu_cmd *cmd, int count,
-                        float feedback);
+// feedback: the weight of the last call's indirect light, which the first bounce reflects too;
+// 0: none. rest: that of the last power of the series, 1, or runtime.rest for its remainder, too.
+struct mrt_bounces {
+    int count;
+    float feedback, rest;
+};
+// Σ Mⁿ f by Horner's scheme: the weight of the light that bounce i of the loop reflects.
+static inline float mrt_weight_of_bounce(const struct mrt_bounces *bounces, int i)
+{
+    return i == 0 ? bounces->feedback : i == 1 ? bounces->rest : 1.0f;
+}
+// Indirect irradiance of the texels.
+void mrt_record_bounces(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                        const struct mrt_bounces *bounces);
 // b and r of the radiosity in mrt_radiosity, where the host computed irradiance.
 void mrt_record_coefficients(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
 // U_b b + U_r r at the texels of some tiles. vector: by normal. Names of buffers.

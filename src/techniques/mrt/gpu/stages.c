@@ -52,14 +52,15 @@ static void record_reconstruct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     mrt_record_reconstruct(runtime, cmd, vector ? &by_normal : &irradiance);
 }
 
-void mrt_record_bounces(struct mrt_runtime *runtime, struct gpu_cmd *cmd, int count, float feedback)
+void mrt_record_bounces(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                        const struct mrt_bounces *bounces)
 {
     gpu_scope_begin(cmd, "b");
     record_project(runtime, cmd, "mrt_direct");
     gpu_scope_end(cmd);
     gpu_scope_begin(cmd, "bounces");
-    for (int i = 0; i < count; i++) {
-        record_reflect(runtime, cmd, i > 0 ? 1.0f : feedback);
+    for (int i = 0; i < bounces->count; i++) {
+        record_reflect(runtime, cmd, mrt_weight_of_bounce(bounces, i));
         record_couple(runtime, cmd);
     }
     gpu_scope_end(cmd);

@@ -29,6 +29,11 @@ struct mrt_geometry_texel {
     // hide their part of the hemisphere, and reflect the same irradiance.
     vec3s hidden;
 };
+// The reflectance for the block's light.
+static inline vec3s mrt_shown_reflectance(const struct mrt_geometry_texel *texel)
+{
+    return glms_vec3_mul(texel->reflectance, glms_vec3_sub(vec3_of(1, 1, 1), texel->hidden));
+}
 
 // One for each texel of the level, without light. The caller frees it with host_free.
 struct mrt_geometry_texel *mrt_geometry_create(struct host *host, const struct mrt_block_map *map,
