@@ -153,6 +153,7 @@ struct mrt_apply_push {
 #define MRT_ROW_EDGES   3u // three
 #define MRT_ROW_TILES   6u // two
 #define MRT_ROW_OPENING 64u
+#define MRT_NO_BLOCK    0xffffffffu // of a cell of the lookup grid
 
 // Begins a list of pixels.
 struct mrt_list_header {

@@ -48,16 +48,46 @@ void store_block(uint block)
     store(block, MRT_ROW_TILES + 1u, uvec4(words[4], words[5], masks, 0u));
 }
 
+// Edges of the block between it and the middle of a cell of the lookup grid, less than 0 inside.
+// Returns whether the block is in the cell.
+bool is_in_cell(uint block, uint cell, out float distance)
+{
+    uint x = uint(level.cells_x), y = uint(level.cells_y);
+    vec3 at = vec3(cell % x, cell / x % y, cell / (x * y)) + 0.5;
+    vec3 way = level.grid_origin_m + at / level.cells_per_m - block_table[block].middle;
+    bool inside = true;
+    distance = -1.0;
+    for (uint a = 0u; a < 3u; a++) {
+        vec3 row = block_table[block].inverse[a];
+        float half_size = 0.5 / level.cells_per_m * dot(abs(row), vec3(1.0));
+        float beyond = abs(dot(row, way)) - 0.5;
+        inside = inside && beyond <= half_size;
+        distance = max(distance, beyond);
+    }
+    return inside;
+}
+
+// The blocks in a cell, those that have most of it first.
 void store_cell(uint cell)
 {
     uvec2 list = cell_table[cell];
-    uint last = max(list.y, 1u) - 1u;
-    uvec4 words = uvec4(list.y, 0u, 0u, 0u);
-    if (list.y > 0u) {
-        words.y = candidate_table[list.x];
-        words.z = candidate_table[list.x + min(1u, last)];
+    uvec4 blocks = uvec4(MRT_NO_BLOCK);
+    vec4 distances = vec4(1e30);
+    for (uint k = 0u; k < list.y; k++) {
+        uint block = candidate_table[list.x + k];
+        float distance;
+        if (!is_in_cell(block, cell, distance)) continue;
+        for (int i = 0; i < 4; i++) {
+            if (distance >= distances[i]) continue;
+            uint next = blocks[i];
+            float of_next = distances[i];
+            blocks[i] = block;
+            distances[i] = distance;
+            block = next;
+            distance = of_next;
+        }
     }
-    imageStore(cell_rows, light_map_at(cell), words);
+    imageStore(cell_rows, light_map_at(cell), blocks);
 }
 
 void main()

@@ -6,7 +6,7 @@
 
 #include "techniques/mrt/gpu/block_rows.glsl"
 
-// [cell of the lookup grid]: number of candidates and the first two of them.
+// [cell of the lookup grid]: four blocks in it, or MRT_NO_BLOCK.
 layout(set = 0, binding = MRT_CELL_ROWS_BINDING, rgba32ui) uniform readonly uimage2D cell_rows;
 
 struct mrt_rows {
@@ -23,23 +23,20 @@ mrt_rows rows_of(uint block, vec3 world)
     return rows;
 }
 
-// As `locate`, of the first two candidates. False: the point is in neither.
+// As `locate`, of the blocks in the cell. False: the point is in none of them.
 bool find_rows(vec3 world, out mrt_rows rows)
 {
     ivec3 cells = ivec3(level.cells_x, level.cells_y, level.cells_z);
     vec3 at = (world - level.grid_origin_m) * level.cells_per_m;
     ivec3 i = clamp(ivec3(at), ivec3(0), cells - 1);
     uvec4 list = imageLoad(cell_rows, light_map_at(uint((i.z * cells.y + i.y) * cells.x + i.x)));
-    bool found = false;
-    uint next = list.y, left = 2u;
+    bool found;
     do {
-        rows = rows_of(next, world);
-        found = largest_of(rows.cell) <= 0.5;
-        next = list.z;
-        left--;
-    } while (!found && left > 0u);
-    return found && list.x > 0u && all(greaterThanEqual(at, vec3(0.0))) &&
-           all(lessThan(at, vec3(cells)));
+        rows = rows_of(list.x == MRT_NO_BLOCK ? 0u : list.x, world);
+        found = list.x != MRT_NO_BLOCK && largest_of(rows.cell) <= 0.5;
+        list = uvec4(list.yzw, MRT_NO_BLOCK);
+    } while (!found && list.x != MRT_NO_BLOCK);
+    return found && all(greaterThanEqual(at, vec3(0.0))) && all(lessThan(at, vec3(cells)));
 }
 
 // A place of a block, and the faces around it.
