@@ -106,16 +106,29 @@ static bool mrt_bake_report(struct report *report, struct bake *bake,
     return mrt_dictionary_report(report, bake, &options);
 }
 
-static void mrt_objects(const void *options, int view, uint32_t width, uint32_t height,
-                        struct gpu_objects *out)
+static void objects(bool delta, int view, uint32_t width, uint32_t height, struct gpu_objects *out)
 {
     const size_t base = offsetof(struct mrt, lists) + (size_t)view * sizeof(struct mrt_pixel_lists);
     const size_t bytes = width > 0 ? mrt_list_bytes(width, height) : 0;
-    (void)options;
 #define LIST(thing)                                                                                \
     { GPU_BUFFER,      #thing,         offsetof(struct mrt_pixel_lists, thing),                    \
       .of_view = true, .bytes = bytes, .usage = GPU_BUFFER_INDIRECT }
     GPU_ADD(out, base, LIST(amid), LIST(several));
+    if (delta) GPU_ADD(out, base, LIST(clutter));
+}
+
+static void mrt_objects(const void *options, int view, uint32_t width, uint32_t height,
+                        struct gpu_objects *out)
+{
+    (void)options;
+    objects(false, view, width, height, out);
+}
+
+static void drt_objects(const void *options, int view, uint32_t width, uint32_t height,
+                        struct gpu_objects *out)
+{
+    (void)options;
+    objects(true, view, width, height, out);
 }
 
 static bool mrt_create(void *state, const struct technique_create *how)
@@ -360,12 +373,11 @@ enum {
     .name = of_name, .title = of_title, .paper = of_paper, .role = ROLE_SOURCE,                    \
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_LIGHT_EVOLVES, .bake_version = 6,                     \
     .options = OPTION_TABLE(struct mrt_options, rows, NULL), .presets = presets,                   \
-    .debug_views = debug_views, .state_size = sizeof(struct mrt), .objects = mrt_objects,          \
-    .resolve = mrt_resolve_maze, .read_block_map = mrt_read_block_map, .bake = mrt_bake,           \
-    .bake_report = mrt_bake_report, .load = mrt_load, .set_options = mrt_set_options,              \
-    .invalidate = mrt_invalidate, .is_updating = mrt_is_updating, .update = mrt_update,            \
-    .record = mrt_record, .debug_view = mrt_debug_view, .probes = mrt_probes,                      \
-    .destroy = mrt_destroy
+    .debug_views = debug_views, .state_size = sizeof(struct mrt), .resolve = mrt_resolve_maze,     \
+    .read_block_map = mrt_read_block_map, .bake = mrt_bake, .bake_report = mrt_bake_report,        \
+    .load = mrt_load, .set_options = mrt_set_options, .invalidate = mrt_invalidate,                \
+    .is_updating = mrt_is_updating, .update = mrt_update, .record = mrt_record,                    \
+    .debug_view = mrt_debug_view, .probes = mrt_probes, .destroy = mrt_destroy
 
 const struct technique technique_mrt = {
     MRT_TECHNIQUE("mrt", "modular radiance transfer",
@@ -373,6 +385,7 @@ const struct technique technique_mrt = {
     .capabilities = MRT_CAN | KEEPS_GEOMETRY,
     .more_needs = mrt_more_needs,
     .check = mrt_check,
+    .objects = mrt_objects,
     .block_map = mrt_block_map,
     .create = mrt_create,
     .follow = mrt_follow,
@@ -387,6 +400,7 @@ const struct technique technique_drt = {
     .bake_name = "mrt",
     .more_needs = drt_more_needs,
     .check = drt_check,
+    .objects = drt_objects,
     .block_map = drt_block_map,
     .create = drt_create,
     .follow = drt_follow,

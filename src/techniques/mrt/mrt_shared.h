@@ -5,6 +5,7 @@
 
 #include "core/shared.h"
 #include "frame/frame_shared.h"
+#include "techniques/common/light_map/surface_shared.h"
 
 #define MRT_LOCAL         64  // workgroup size over texels
 #define MRT_LOCAL_2D      8   // workgroup size over pixels, in x and y
@@ -141,11 +142,6 @@ struct mrt_gpu_clutter_place {
     uint32_t light, texel; // of mrt_clutter_light, of the clutter's texels
 };
 
-struct mrt_apply_push {
-    // Columns of the image in which clutter is lit where the alpha of irradiance is 1: all or none.
-    int32_t clutter_columns;
-};
-
 // Rows of a block in a table of an image (gpu/pixels/rows.glsl). Of the second row of tiles, z is a
 // mask of faces that are walls, and one of those with a block beyond.
 #define MRT_BLOCK_ROWS  8u
@@ -192,7 +188,8 @@ struct mrt_level_params {
     uint32_t has_dielectric; // FRAME_DIELECTRIC
 
     uint32_t reflectors;
-    AG_STRUCT(frame_probes) outdoors; // no probes: all places are enclosed
+    AG_STRUCT(light_map_instances) clutter; // in the light map of clutter
+    AG_STRUCT(frame_probes) outdoors;       // no probes: all places are enclosed
 };
 
 struct mrt_view_push {
@@ -222,12 +219,11 @@ _Static_assert(sizeof(struct mrt_gpu_clutter_face) == 40, "layout is shared with
 _Static_assert(sizeof(struct mrt_gpu_clutter_group) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_place) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_sample) == 8, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_apply_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_list_header) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_rows_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_clutter_fill_push) == 116, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_level_params) == 124, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_level_params) == 132, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_view_push) == 4, "layout is shared with GLSL");
 #endif
 

@@ -44,6 +44,20 @@ uint light_map_scene_triangle(uvec2 ids, light_map_instances instances)
     return triangle == LIGHT_MAP_NO_TRIANGLE ? triangle : first + triangle;
 }
 
+// Whether the map has the triangle, which is that of `ids`, and knows where it was.
+bool light_map_knows(light_map_triangle t, uvec2 ids, light_map_instances instances)
+{
+    if (vec4(t.u_axis, t.offset.x) == vec4(0.0, 0.0, 0.0, -1.0)) return false;
+    return !HAS_MOVES || ids.x > instances.moved || move_table[ids.x - 1u].x != vec3(0.0);
+}
+
+bool light_map_has(uvec2 ids, light_map_instances instances)
+{
+    uint triangle = light_map_scene_triangle(ids, instances);
+    return triangle != LIGHT_MAP_NO_TRIANGLE &&
+           light_map_knows(triangle_table[triangle], ids, instances);
+}
+
 // In texels; z: the side, 0 or 1, negative where there is none. Moves the surface of an instance
 // that has moved since.
 vec3 light_map_place_in(uint triangle, uvec2 ids, light_map_instances instances,
@@ -52,11 +66,9 @@ vec3 light_map_place_in(uint triangle, uvec2 ids, light_map_instances instances,
     if (triangle == LIGHT_MAP_NO_TRIANGLE) return vec3(-1.0);
     light_map_triangle t = triangle_table[triangle];
     vec4 u = vec4(t.u_axis, t.offset.x), v = vec4(t.v_axis, t.offset.y);
-    if (u == vec4(0.0, 0.0, 0.0, -1.0)) return vec3(-1.0);
-    if (HAS_MOVES && ids.x <= instances.moved) {
-        if (move_table[ids.x - 1u].x == vec3(0.0)) return vec3(-1.0);
+    if (!light_map_knows(t, ids, instances)) return vec3(-1.0);
+    if (HAS_MOVES && ids.x <= instances.moved)
         s = light_map_surface_moved(s, move_table[ids.x - 1u]);
-    }
     bool back = false;
     if (HAS_BACKS && t.front != LIGHT_MAP_ONE_SIDED)
         back = dot(octahedral_direction(unpackSnorm2x16(t.front)), s.to_viewer) < 0.0;

@@ -117,8 +117,6 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
         light_map_image(&clutter->charts, "clutter_map", LIGHT_MAP_LAYERS);
     const size_t tiles = tiles_of(input->operators),
                  instances = (size_t)clutter->walls.scene.instance_count;
-    runtime->objects.constants[MRT_CONSTANT_ROW_BACKS] =
-        (struct gpu_constant){ LIGHT_MAP_HAS_BACKS, charts_sides(&clutter->charts) == 2 };
     map->tile_count = (uint32_t)tiles;
     map->surfaces.count = (uint32_t)instances;
     map->fill_push.places = list_places(input, NULL);
@@ -136,12 +134,7 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
                          tiles * MRT_LOCAL * VALUES * VEC3_BYTES) &&
            mrt_image_of(runtime, &image, &map->image) &&
            mrt_pipeline_of(runtime, "clutter_fill", &shader_mrt_gpu_clutter_fill_comp, 0,
-                           &map->fill) &&
-           mrt_pipeline_of(runtime, "clutter_apply",
-                           runtime->options.specular
-                               ? &shader_mrt_gpu_pixels_clutter_apply_specular_comp
-                               : &shader_mrt_gpu_pixels_clutter_apply_diffuse_comp,
-                           1u << MRT_CONSTANT_ROW_BACKS, &map->apply);
+                           &map->fill);
 }
 
 // ---- passes
@@ -164,25 +157,4 @@ void mrt_record_clutter_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
                  { .name = "clutter_map", .image = m->image }),
         &m->fill_push, sizeof m->fill_push, gpu_groups(m->fill_push.places, MRT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
-}
-
-// A G-buffer of the host without identifiers leaves these pixels to `apply`.
-bool mrt_record_clutter_pixels(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
-                               const struct frame_view *view)
-{
-    struct mrt_runtime_clutter_map *m = &runtime->clutter.map;
-    m->surfaces.first = mrt_buffer(runtime, "mrt_clutter_first_triangles");
-    m->surfaces.triangles = mrt_buffer(runtime, "mrt_clutter_triangles");
-    const struct light_map_instances push = light_map_instances(&m->surfaces);
-    if (m->tile_count == 0 || !view->layers[FRAME_ID].id) return false;
-    mrt_dispatch(runtime, cmd, m->apply,
-                 GPU_BIND(FRAME_SURFACE_BINDINGS(view),
-                          LIGHT_MAP_SURFACE_BINDINGS(&m->surfaces, cmd),
-                          { .name = "clutter_map", .image = m->image, .sampler = runtime->linear },
-                          { .name = "id", .image = view->layers[FRAME_ID] },
-                          { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] },
-                          { .name = "specular", .image = view->layers[FRAME_SPECULAR] }),
-                 &push, sizeof push, gpu_groups(view->width, MRT_LOCAL_2D),
-                 gpu_groups(view->height, MRT_LOCAL_2D), 1);
-    return true;
 }

@@ -74,6 +74,11 @@ static bool is_affine(const struct mrt_block_map *map)
     return true;
 }
 
+static bool has_clutter_map(const struct mrt_runtime_input *input)
+{
+    return input->operators->row_count > 0;
+}
+
 // VECTOR is another value of VALUES.
 static void fill_constants(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
@@ -90,11 +95,13 @@ static void fill_constants(struct mrt_runtime *runtime, const struct mrt_runtime
         [MRT_CONSTANT_SIGHT] = mrt_sight_voxels(input->operators),
         [MRT_CONSTANT_OUTDOORS] = input->images->outdoors.probes != NULL,
     };
+    const bool has_backs = has_clutter_map(input) && charts_sides(&input->clutter->charts) == 2;
     struct gpu_constant *constants = runtime->objects.constants;
     for (uint32_t i = 0; i < MRT_CONSTANT_ROW_VECTOR; i++)
         constants[i] = (struct gpu_constant){ i, values[i] };
     constants[MRT_CONSTANT_ROW_VECTOR] =
         (struct gpu_constant){ MRT_CONSTANT_VALUES, VECTOR_VALUES };
+    constants[MRT_CONSTANT_ROW_BACKS] = (struct gpu_constant){ LIGHT_MAP_HAS_BACKS, has_backs };
     const struct gpu_constant size[] = { { LIGHT_MAP_APPLY_WIDTH, columns.width },
                                          { LIGHT_MAP_APPLY_HEIGHT, columns.height },
                                          { LIGHT_MAP_APPLY_ROWS, columns.rows } };
@@ -114,24 +121,22 @@ enum {
     SIGHT = 1 << MRT_CONSTANT_SIGHT,
     OUTDOORS = 1 << MRT_CONSTANT_OUTDOORS,
     COLUMNS = 7 << MRT_CONSTANT_ROW_COLUMNS,
+    BACKS = 1 << MRT_CONSTANT_ROW_BACKS,
     VECTOR = 1 << MRT_CONSTANT_ROW_VECTOR,
     ALL = HALF | QUADS_B | QUADS_R | CLUTTER,
 };
 
-static bool make_pipelines(struct mrt_runtime *runtime)
+static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_pipelines *p = &runtime->pipelines;
     const bool vector = runtime->options.vector, lists = runtime->has_lists,
                specular = runtime->options.specular;
     const uint32_t at_pixels =
         (vector ? VECTOR : VALUES) | PROBES | AFFINE | TUBES | SIGHT | OUTDOORS;
-    const struct gpu_shader *apply = specular ? &shader_mrt_gpu_pixels_apply_specular_comp
-                                              : &shader_mrt_gpu_pixels_apply_diffuse_comp;
-    const struct gpu_shader *amid = specular ? &shader_mrt_gpu_pixels_listed_amid_specular_comp
-                                             : &shader_mrt_gpu_pixels_listed_amid_diffuse_comp;
-    const struct gpu_shader *several = specular
-                                           ? &shader_mrt_gpu_pixels_listed_several_specular_comp
-                                           : &shader_mrt_gpu_pixels_listed_several_diffuse_comp;
+    const bool clutter = has_clutter_map(input);
+#define AT_PIXELS(name)                                                                            \
+    (specular ? &shader_mrt_gpu_pixels_##name##_specular_comp                                      \
+              : &shader_mrt_gpu_pixels_##name##_diffuse_comp)
     const struct {
         gpu_pipeline *out;
         const char *name;
@@ -144,9 +149,12 @@ static bool make_pipelines(struct mrt_runtime *runtime)
         { &p->couple, "couple", &shader_mrt_gpu_couple_comp, HALF | QUADS_B | QUADS_R },
         { &p->reconstruct, "reconstruct", &shader_mrt_gpu_reconstruct_comp, ALL | VALUES },
         { &p->fill, "fill", &shader_mrt_gpu_fill_comp, VALUES },
-        { &p->apply, "apply", apply, at_pixels | COLUMNS },
-        { &p->amid, "amid", lists ? amid : NULL, at_pixels },
-        { &p->several, "several", lists ? several : NULL, at_pixels },
+        { &p->apply, "apply", AT_PIXELS(apply), at_pixels | COLUMNS },
+        { &p->apply_clutter, "apply_clutter", clutter ? AT_PIXELS(apply_clutter) : NULL,
+          at_pixels | COLUMNS },
+        { &p->clutter, "clutter", clutter ? AT_PIXELS(listed_clutter) : NULL, at_pixels | BACKS },
+        { &p->amid, "amid", lists ? AT_PIXELS(listed_amid) : NULL, at_pixels },
+        { &p->several, "several", lists ? AT_PIXELS(listed_several) : NULL, at_pixels },
         { &p->rows, "rows", &shader_mrt_gpu_pixels_rows_comp, 0 },
         { &p->debug, "debug", &shader_mrt_gpu_debug_comp, AFFINE | TUBES },
         { &p->reconstruct_vector, "reconstruct_vector",
@@ -165,7 +173,7 @@ static bool make_all(struct mrt_runtime *out, const struct mrt_runtime_input *in
     return mrt_tables_upload(out, input) && mrt_reflectors_upload(out, input) &&
            mrt_lookup_grid_upload(out, input->map) && mrt_probes_upload(out, input) &&
            mrt_outdoors_upload(out, input) && mrt_operators_upload(out, input) &&
-           make_buffers(out, input->operators) && make_images(out) && make_pipelines(out) &&
+           make_buffers(out, input->operators) && make_images(out) && make_pipelines(out, input) &&
            mrt_clutter_upload(out, input);
 }
 

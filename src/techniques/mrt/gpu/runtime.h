@@ -39,7 +39,8 @@ struct mrt_runtime_pipelines {
     gpu_pipeline reconstruct, reconstruct_vector;
     gpu_pipeline fill, fill_vector;
     gpu_pipeline rows, apply, debug;
-    gpu_pipeline amid, several; // of the lists of `apply`
+    gpu_pipeline apply_clutter;          // `apply`, where there is clutter
+    gpu_pipeline clutter, amid, several; // of their lists
 };
 
 // Volume probes; without them `bricks` is 1×1×1.
@@ -61,7 +62,7 @@ struct mrt_runtime_outdoors {
 struct mrt_runtime_clutter_map {
     struct light_map_surfaces surfaces;
     gpu_image image;
-    gpu_pipeline fill, apply;
+    gpu_pipeline fill;
     uint32_t tile_count;
     bool is_clear;                          // the others, of the image
     struct mrt_clutter_fill_push fill_push; // of the newest direct light
@@ -169,9 +170,9 @@ void mrt_record_probes(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 void mrt_record_outdoors(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                          const struct frame_view *view);
 // Lists of the pixels of a view (mrt_list_header): those that probes light, those that several
-// lookups do.
+// lookups do, and those of clutter in drt.
 struct mrt_pixel_lists {
-    gpu_buffer amid, several;
+    gpu_buffer amid, several, clutter;
 };
 static inline size_t mrt_list_bytes(uint32_t width, uint32_t height)
 {

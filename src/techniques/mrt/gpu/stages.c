@@ -199,26 +199,40 @@ static void clear_list(struct gpu_cmd *cmd, gpu_buffer list)
         .name = "specular", .image = (view)->layers[FRAME_SPECULAR]                                \
     }
 
+// A G-buffer of the host without identifiers does not show which pixels are of clutter.
+static bool finds_clutter(const struct mrt_runtime *runtime, const struct frame_view *view)
+{
+    return runtime->clutter.map.tile_count > 0 && view->layers[FRAME_ID].id;
+}
+
 static void record_pixels(const struct mrt_runtime *runtime, struct gpu_cmd *cmd,
-                          const struct frame_view *view, const struct mrt_pixel_lists *lists,
-                          struct mrt_apply_push push)
+                          const struct frame_view *view, const struct mrt_pixel_lists *lists)
 {
     const struct light_map_columns *columns = &runtime->columns;
-    mrt_dispatch(runtime, cmd, runtime->pipelines.apply,
+    const struct mrt_runtime_pipelines *p = &runtime->pipelines;
+    mrt_dispatch(runtime, cmd, finds_clutter(runtime, view) ? p->apply_clutter : p->apply,
                  GPU_BIND(PIXEL_BINDINGS(runtime, view),
+                          LIGHT_MAP_SURFACE_BINDINGS(&runtime->clutter.map.surfaces, cmd),
+                          { .name = "id", .image = view->layers[FRAME_ID] },
                           { .name = "amid_list", .buffer = lists->amid },
-                          { .name = "several_list", .buffer = lists->several }),
-                 &push, sizeof push, gpu_groups(view->width, columns->width),
+                          { .name = "several_list", .buffer = lists->several },
+                          { .name = "clutter_list", .buffer = lists->clutter }),
+                 NULL, 0, gpu_groups(view->width, columns->width),
                  gpu_groups(view->height, columns->height * columns->rows), 1);
 }
 
 static void record_list(const struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                         const struct frame_view *view, gpu_pipeline pipeline, gpu_buffer list)
 {
-    mrt_dispatch_indirect(
-        runtime, cmd, pipeline,
-        GPU_BIND(PIXEL_BINDINGS(runtime, view), { .name = "pixel_list", .buffer = list }), list,
-        offsetof(struct mrt_list_header, groups));
+    mrt_dispatch_indirect(runtime, cmd, pipeline,
+                          GPU_BIND(PIXEL_BINDINGS(runtime, view),
+                                   LIGHT_MAP_SURFACE_BINDINGS(&runtime->clutter.map.surfaces, cmd),
+                                   { .name = "id", .image = view->layers[FRAME_ID] },
+                                   { .name = "clutter_map",
+                                     .image = runtime->clutter.map.image,
+                                     .sampler = runtime->linear },
+                                   { .name = "pixel_list", .buffer = list }),
+                          list, offsetof(struct mrt_list_header, groups));
 }
 
 void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
@@ -228,14 +242,18 @@ void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     const struct mrt_runtime_pipelines *p = &runtime->pipelines;
     runtime->level.gain = gain;
     runtime->level.has_dielectric = view->layers[FRAME_DIELECTRIC].id != 0;
+    struct light_map_surfaces *clutter = &runtime->clutter.map.surfaces;
+    clutter->first = mrt_buffer(runtime, "mrt_clutter_first_triangles");
+    clutter->triangles = mrt_buffer(runtime, "mrt_clutter_triangles");
+    runtime->level.clutter = light_map_instances(clutter);
     record_rows(runtime, cmd);
     gpu_scope_begin(cmd, "apply");
     light_map_clear_pixels(cmd, view);
     clear_list(cmd, lists->amid);
     clear_list(cmd, lists->several);
-    const bool clutter_is_lit = mrt_record_clutter_pixels(runtime, cmd, view);
-    record_pixels(runtime, cmd, view, lists,
-                  (struct mrt_apply_push){ clutter_is_lit ? (int32_t)view->width : 0 });
+    if (finds_clutter(runtime, view)) clear_list(cmd, lists->clutter);
+    record_pixels(runtime, cmd, view, lists);
+    if (finds_clutter(runtime, view)) record_list(runtime, cmd, view, p->clutter, lists->clutter);
     if (runtime->has_lists) {
         record_list(runtime, cmd, view, p->amid, lists->amid);
         record_list(runtime, cmd, view, p->several, lists->several);

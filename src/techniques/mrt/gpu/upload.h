@@ -123,10 +123,7 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
 // Radiosity of direct light of the faces; runtime->level has the parameters of direct light.
 void mrt_record_clutter_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                                const struct frame_view *view);
-// Its light map, from the newest b and r; pixels that it lights, before `apply`. Returns whether
-// the alpha of irradiance tells which these are.
+// Its light map, from the newest b and r.
 void mrt_record_clutter_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
-bool mrt_record_clutter_pixels(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
-                               const struct frame_view *view);
 // T_b→r of each bounce and c, where there is clutter.
 void mrt_record_clutter_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd);

@@ -1,18 +1,15 @@
 // Irradiance of each pixel from the light map (Loos 2015, section 3.6.3, step 7); SPECULAR: also
 // the radiance that the specular lobe reflects. In a level of affine cubes, of pixels that one
-// lookup of a wall lights; listed.comp lights the others, which are in lists. The host has cleared
-// pixels without a surface.
+// lookup of a wall lights; listed.comp lights the others, which are in lists; CLUTTER: and those
+// of clutter. The host has cleared pixels without a surface.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
 #include "techniques/mrt/gpu/pixels/pixel.glsl"
-
-layout(push_constant, scalar) uniform push_block
-{
-    mrt_apply_push push_of_all;
-};
-mrt_apply_push push; // a copy, as FRAME_CONSTANTS_COPIED
+#if CLUTTER
+#include "techniques/mrt/gpu/pixels/clutter.glsl"
+#endif
 #include "techniques/common/light_map/columns.glsl"
 
 layout(set = 0, binding = 21, scalar) buffer amid_list
@@ -25,6 +22,24 @@ layout(set = 0, binding = 22, scalar) buffer several_list
     mrt_list_header several;
     uint several_pixels[];
 };
+
+#if CLUTTER
+layout(set = 0, binding = 23, scalar) buffer clutter_list
+{
+    mrt_list_header clutter;
+    uint clutter_pixels[];
+};
+
+// Whether the pixel is of clutter.
+bool append_clutter(ivec2 pixel)
+{
+    if (!is_of_clutter(pixel)) return false;
+    uint to = atomicAdd(clutter.count, 1u);
+    if (to % MRT_LOCAL == 0u) atomicAdd(clutter.groups[0], 1u);
+    clutter_pixels[to] = uint(pixel.y) << 16 | uint(pixel.x);
+    return true;
+}
+#endif
 
 void append_amid(ivec2 pixel)
 {
@@ -42,8 +57,9 @@ void append_several(ivec2 pixel)
 
 void shade(ivec2 pixel)
 {
-    // Clutter has light.
-    if (pixel.x < push.clutter_columns && imageLoad(irradiance, pixel).a > 0.0) return;
+#if CLUTTER
+    if (append_clutter(pixel)) return;
+#endif
     pixel_surface s = surface_of(pixel);
     if (!AFFINE || TUBES) {
         store_light(s, level_light(s.position, s.normal, s.lobe));
@@ -60,6 +76,5 @@ void main()
 {
     frame = frame_block;
     level = level_block;
-    push = push_of_all;
     shade_column(ivec2(frame.width, frame.height));
 }

@@ -29,7 +29,7 @@
 
 layout(set = 0, binding = 8) uniform sampler2D depth;
 layout(set = 0, binding = 9) uniform sampler2D normal;
-layout(set = 0, binding = 10, rgba16f) uniform image2D irradiance;
+layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D irradiance;
 #if SPECULAR
 #include "techniques/mrt/gpu/pixels/reflected.glsl"
 #endif
