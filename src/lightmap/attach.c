@@ -70,8 +70,8 @@ static vec2s place_in_texel(const struct chart *chart, uint32_t triangle, uint32
     while (across * across < chart->triangle_count) across++;
     const float x = ((float)(at % across) + CORNER[k][0]) / (float)across;
     const float y = ((float)(at / across) + CORNER[k][1]) / (float)across;
-    return (vec2s){ { (float)(chart->x + CHART_SINGLE_TEXEL_GUTTER) + x,
-                      (float)(chart->y + CHART_SINGLE_TEXEL_GUTTER) + y } };
+    return (
+        vec2s){ { (float)(chart->x + CHART_GUTTER) + x, (float)(chart->y + CHART_GUTTER) + y } };
 }
 
 static vec2s place_of(const struct charts *charts, uint32_t triangle, uint32_t k)

@@ -13,13 +13,14 @@ struct denoiser {
     OIDNFilter filter; // RTLightmap
 };
 
-// Null where the place in the chart's rectangle belongs to no chart.
+// Null where the place in the chart's rectangle belongs to no chart, or to another one.
 static float *owned_texel(const struct denoiser *d, int side, const struct chart *chart, uint32_t x,
                           uint32_t y)
 {
     const struct charts *charts = &d->map->charts;
     const uint32_t column = chart->x + x, row = chart->y + y;
-    if (charts->owner[(size_t)row * charts->width + column] == CHART_NONE) return NULL;
+    const uint32_t owner = charts->owner[(size_t)row * charts->width + column];
+    if (owner < chart->first_texel || owner - chart->first_texel >= chart->texel_count) return NULL;
     return image_at(&d->map->irradiance[side], (int)column, (int)row);
 }
 
@@ -31,7 +32,7 @@ static const float *first_owned(const struct denoiser *d, int side, const struct
     return texel;
 }
 
-// Texels beyond the gutter belong to no chart: they get those of the row before.
+// Texels beyond the gutter are not the chart's: they get those of the row before.
 static void read_chart(const struct denoiser *d, int side, const struct chart *chart, float *out)
 {
     const float *last = first_owned(d, side, chart);

@@ -36,7 +36,8 @@ static uint32_t neighbour(const struct filter *f, uint32_t texel, int dx, int dy
 {
     const struct charts *charts = f->charts;
     const struct chart_texel *t = chart_texel_of(charts, texel);
-    const struct chart *chart = &charts->charts[chart_triangle_of(charts, texel)->chart];
+    const uint32_t index = chart_triangle_of(charts, texel)->chart;
+    const struct chart *chart = &charts->charts[index];
     const int x = (int)t->x + dx, y = (int)t->y + dy;
     if (x < (int)chart->x || x >= (int)(chart->x + chart->width) || y < (int)chart->y ||
         y >= (int)(chart->y + chart->height))
@@ -45,6 +46,7 @@ static uint32_t neighbour(const struct filter *f, uint32_t texel, int dx, int dy
     const uint32_t found =
         chart_texel_of_place(charts, side + (size_t)y * charts->width + (size_t)x);
     if (found == CHART_NONE || !is_open(f, found)) return CHART_NONE;
+    if (chart_triangle_of(charts, found)->chart != index) return CHART_NONE;
     const struct chart_texel *own = chart_texel_of(charts, found);
     return (int)own->x == x && (int)own->y == y ? found : CHART_NONE; // not of a gutter
 }

@@ -73,8 +73,9 @@ static struct record_chart chart_of(const struct lightmap_record *r, const struc
                                     uint32_t index)
 {
     const struct chart *c = &charts->charts[index];
-    struct record_chart out = { .width = c->width,
-                                .height = c->height,
+    const bool across = c->turns % 2 == 1;
+    struct record_chart out = { .width = across ? c->height : c->width,
+                                .height = across ? c->width : c->height,
                                 .first_texel = c->first_texel,
                                 .texel_count = c->texel_count,
                                 .first_back = c->first_back };
@@ -100,9 +101,8 @@ bool lightmap_record_add_charts(struct lightmap_record *r, const struct charts *
         const struct chart *chart = &charts->charts[i];
         r->charts[i] = chart_of(r, charts, i);
         for (uint32_t k = chart->first_texel; k < chart->first_texel + chart->texel_count; k++) {
-            const struct chart_texel *t = &charts->texels[k];
-            r->places[k] = (struct record_place){ .x = (uint16_t)(t->x - chart->x),
-                                                  .y = (uint16_t)(t->y - chart->y) };
+            const struct chart_place at = chart_own_place(chart, &charts->texels[k]);
+            r->places[k] = (struct record_place){ .x = (uint16_t)at.x, .y = (uint16_t)at.y };
         }
     }
     return true;

@@ -19,7 +19,7 @@ struct record_chart {
 };
 
 struct record_place {
-    uint16_t x, y; // in the chart
+    uint16_t x, y; // in the chart's own frame
 };
 
 struct lightmap_record {

@@ -23,19 +23,15 @@ static double first_density(const struct surface *surface, const struct charts_o
     return fmin(density, 16.0 * most / surface->edges_m);
 }
 
-static uint32_t gutter_of(bool single_texel)
-{
-    return single_texel ? CHART_SINGLE_TEXEL_GUTTER : CHART_GUTTER;
-}
-
 static void place_triangle(struct chart_triangle *out, const struct chart *chart,
                            double place[3][2])
 {
     for (int k = 0; k < 3; k++) {
-        const double x = chart->single_texel ? 0.5 : place[k][0],
-                     y = chart->single_texel ? 0.5 : place[k][1];
-        out->place[k].x = (float)(x + gutter_of(chart->single_texel) + chart->x);
-        out->place[k].y = (float)(y + gutter_of(chart->single_texel) + chart->y);
+        double own[2] = { 0.5, 0.5 }, at[2];
+        if (!chart->single_texel) memcpy(own, place[k], sizeof own);
+        for (int a = 0; a < 2; a++) own[a] += CHART_GUTTER;
+        pack_place(chart, own, at);
+        out->place[k] = (vec2s){ { (float)at[0], (float)at[1] } };
     }
 }
 
@@ -65,16 +61,10 @@ static bool start_charts(struct charts *out, const struct grown *grown)
     if (!out->charts) return false;
     for (uint32_t i = 0; i < grown->count; i++) {
         const struct grown_chart *from = &grown->charts[i];
-        const uint32_t gutters = 2 * gutter_of(from->single_texel);
-        const uint32_t width = from->single_texel ? 0 : (uint32_t)from->width;
-        const uint32_t height = from->single_texel ? 0 : (uint32_t)from->height;
-        // One texel more: places become floats after they were packed.
         out->charts[i] = (struct chart){ .unwrapped = from->unwrapped,
                                          .single_texel = from->single_texel,
                                          .first_triangle = from->first_triangle,
                                          .triangle_count = from->triangle_count,
-                                         .width = width + 1 + gutters,
-                                         .height = height + 1 + gutters,
                                          .normal = from->normal };
     }
     return true;
@@ -100,7 +90,7 @@ static bool try_density(struct charts *out, const struct surface *surface, doubl
     bool ok = grow_charts(&grown, out->host, surface, density);
     if (ok && options->join != CHARTS_APART)
         ok = join_small_charts(&grown, surface, density, options->join == CHARTS_JOINED_ACROSS);
-    ok = ok && start_charts(out, &grown) && pack_charts(out, options->max_texels, packed);
+    ok = ok && start_charts(out, &grown) && pack_charts(out, &grown, options->max_texels, packed);
     if (ok && *packed) ok = finish_charts(out, surface, &grown);
     grown_finish(&grown);
     return ok;
@@ -145,7 +135,7 @@ static bool are_least(const struct charts *charts)
 {
     for (uint32_t i = 0; i < charts->count; i++) {
         const struct chart *chart = &charts->charts[i];
-        const uint32_t least = 1 + 2 * gutter_of(chart->single_texel);
+        const uint32_t least = 1 + 2 * CHART_GUTTER;
         if (chart->width > least || chart->height > least) return false;
     }
     return true;

@@ -1,19 +1,20 @@
 // Charts: a parameterisation of a pose's triangles without overlaps, in one atlas, for light maps.
 // Each instance has charts of its own. A mesh whose TEXCOORD_1, or another set of coordinates, is a
 // valid unwrap (unwrap.h) keeps its islands, each scaled to the density; triangles of other meshes
-// are clustered by normal, connected, and projected onto planes. Charts are packed with
-// stb_rect_pack.
+// are clustered by normal, connected, and projected onto planes.
 //
-// A chart's rectangle has a gutter of CHART_GUTTER texels around the texels that its surface
-// touches; rectangles do not overlap. Coordinates in the atlas are in texels, centres at ½.
+// Around the texels that a chart's surface touches is a gutter of CHART_GUTTER texels, for bilinear
+// lookups. Texels and gutters of charts do not overlap, but their rectangles may: `owner` tells
+// whose a place is. Charts are turned by quarters. Coordinates in the atlas are in texels, centres
+// at ½; its sides are multiples of eight.
 //
 // Charts that would fit in a texel may be joined to single-texel charts: all corners are at the
-// centre of the texel, with a gutter of one texel.
+// centre of the texel.
 #pragma once
 
 #include "scene/pose.h"
 
-enum { CHART_GUTTER = 2, CHART_SINGLE_TEXEL_GUTTER = 1, CHART_MAX_SIDE = 16384 };
+enum { CHART_GUTTER = 1, CHART_MAX_SIDE = 16384 };
 #define CHART_NONE UINT32_MAX
 
 // Normals within a chart of clusters differ from its plane's by at most acos of this. Lengths are
@@ -58,6 +59,7 @@ struct chart {
     uint32_t first_texel, texel_count;
     uint32_t first_back;          // of the texels of both sides; CHART_NONE: it has no back
     uint32_t x, y, width, height; // gutters included
+    uint32_t turns;               // quarter turns by which it was packed
     float area_m2;
     vec3s normal; // unit; the plane's for clusters, the mean for islands
 };
@@ -119,13 +121,26 @@ static inline float charts_utilisation(const struct charts *charts)
     const float places = (float)charts->width * (float)charts->height;
     return places > 0.0f ? (float)charts->texel_count / places : 0.0f;
 }
+// The place of a texel in its chart's own frame, gutters included: it does not depend on where
+// other charts are packed.
+struct chart_place {
+    uint32_t x, y;
+};
+static inline struct chart_place chart_own_place(const struct chart *chart,
+                                                 const struct chart_texel *texel)
+{
+    const uint32_t x = texel->x - chart->x, y = texel->y - chart->y;
+    const uint32_t right = chart->width - 1 - x, below = chart->height - 1 - y;
+    const struct chart_place turned[4] = { { x, y }, { y, right }, { right, below }, { below, x } };
+    return turned[chart->turns];
+}
 // Bounds of the triangles in charts.
 struct box3 charts_bounds(const struct charts *charts);
 
 // Charts for the light map of a technique.
 struct charts_wish {
     const char *technique; // in messages
-    uint32_t texels;       // wanted number, without gutters
+    uint32_t texels;       // wanted number of both sides, without gutters; reached within an eighth
     float density;         // texels/m, in place of `texels`; 0: not given
     float most_density;    // texels/m, even if there are fewer than `texels`; 0: any
     uint32_t most_charts;

@@ -101,6 +101,33 @@ struct raster_polygon raster_clip(const struct raster_polygon *polygon, int axis
     return clip_side(&above, axis, low + 1.0, -1.0);
 }
 
+static void range_of(const struct raster_polygon *polygon, int axis, double *low, double *high)
+{
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (int i = 0; i < polygon->count; i++) {
+        *low = fmin(*low, polygon->at[i][axis]);
+        *high = fmax(*high, polygon->at[i][axis]);
+    }
+    *low = floor(*low);
+}
+
+bool raster_parts(const struct raster_polygon *polygon, raster_part_visit visit, void *user)
+{
+    double top, bottom, left, right;
+    range_of(polygon, 1, &bottom, &top);
+    for (double y = bottom; y < top; y += 1.0) {
+        const struct raster_polygon row = raster_clip(polygon, 1, y);
+        if (row.count < 3) continue;
+        range_of(&row, 0, &left, &right);
+        for (double x = left; x < right; x += 1.0) {
+            const struct raster_polygon part = raster_clip(&row, 0, x);
+            if (!visit(user, (int32_t)x, (int32_t)y, &part)) return false;
+        }
+    }
+    return true;
+}
+
 // Twice the signed area of a triangle of the fan around corner 0.
 static double fan_area2(const struct raster_polygon *p, int i)
 {

@@ -30,5 +30,10 @@ struct raster_polygon raster_polygon_of(const vec2s corner[3]);
 // Keeps the part of the polygon with low ≤ coordinate ≤ low + 1.
 struct raster_polygon raster_clip(const struct raster_polygon *polygon, int axis, double low);
 double raster_polygon_area(const struct raster_polygon *polygon);
+// Calls visit for each texel that the polygon meets, with its part there. Stops when visit returns
+// false, and returns that.
+typedef bool (*raster_part_visit)(void *user, int32_t x, int32_t y,
+                                  const struct raster_polygon *part);
+bool raster_parts(const struct raster_polygon *polygon, raster_part_visit visit, void *user);
 // The centroid of a polygon that has an area.
 void raster_polygon_centroid(const struct raster_polygon *polygon, double out[2]);

@@ -43,17 +43,6 @@ static void position_at(const struct chart_triangle *t, const double weight[3], 
     }
 }
 
-static void range_of(const struct raster_polygon *polygon, int axis, double *low, double *high)
-{
-    *low = INFINITY;
-    *high = -INFINITY;
-    for (int i = 0; i < polygon->count; i++) {
-        *low = fmin(*low, polygon->at[i][axis]);
-        *high = fmax(*high, polygon->at[i][axis]);
-    }
-    *low = floor(*low);
-}
-
 static void add_moment(struct cell *cell, const struct chart_triangle *t, const double at[2],
                        double area_m2)
 {
@@ -63,50 +52,49 @@ static void add_moment(struct cell *cell, const struct chart_triangle *t, const 
     for (int c = 0; c < 3; c++) cell->moment[c] += area_m2 * position[c];
 }
 
-static void add_part(struct cell *cell, const struct raster_polygon *part,
-                     const struct charts *charts, uint32_t triangle, double m2_per_texel)
+struct part_of {
+    const struct charts *charts;
+    struct cells *cells;
+    uint32_t triangle;
+    double m2_per_texel;
+};
+
+static bool add_part(void *user, int32_t x, int32_t y, const struct raster_polygon *part)
 {
+    const struct part_of *of = user;
+    const struct chart *chart = of->cells->chart;
+    struct cell *cell =
+        &of->cells->at[((uint32_t)y - chart->y) * chart->width + ((uint32_t)x - chart->x)];
     const double area = raster_polygon_area(part);
     double centroid[2];
-    if (!(area > 0.0)) return;
+    if (!(area > 0.0)) return true;
     raster_polygon_centroid(part, centroid);
-    cell->area_m2 += area * m2_per_texel;
-    add_moment(cell, &charts->triangles[triangle], centroid, area * m2_per_texel);
-    if (!(area > cell->largest)) return;
+    cell->area_m2 += area * of->m2_per_texel;
+    add_moment(cell, &of->charts->triangles[of->triangle], centroid, area * of->m2_per_texel);
+    if (!(area > cell->largest)) return true;
     cell->largest = area;
-    cell->triangle = triangle;
+    cell->triangle = of->triangle;
     for (int a = 0; a < 2; a++) {
         cell->middle[a] = 0.0;
         for (int i = 0; i < part->count; i++) cell->middle[a] += part->at[i][a] / part->count;
     }
+    return true;
 }
 
 static void add_triangle(const struct charts *charts, uint32_t triangle, struct cells *cells)
 {
     const struct chart_triangle *t = &charts->triangles[triangle];
     const struct raster_polygon whole = raster_polygon_of(t->place);
-    const double m2_per_texel = (double)t->area_m2 / raster_polygon_area(&whole);
-    if (!isfinite(m2_per_texel)) return;
-    double top, bottom, left, right;
-    range_of(&whole, 1, &bottom, &top);
-    for (double y = bottom; y < top; y += 1.0) {
-        const struct raster_polygon row = raster_clip(&whole, 1, y);
-        if (row.count < 3) continue;
-        range_of(&row, 0, &left, &right);
-        for (double x = left; x < right; x += 1.0) {
-            const struct raster_polygon part = raster_clip(&row, 0, x);
-            const size_t column = (size_t)x - cells->chart->x, line = (size_t)y - cells->chart->y;
-            add_part(&cells->at[line * cells->chart->width + column], &part, charts, triangle,
-                     m2_per_texel);
-        }
-    }
+    struct part_of of = { charts, cells, triangle, 0.0 };
+    of.m2_per_texel = (double)t->area_m2 / raster_polygon_area(&whole);
+    if (isfinite(of.m2_per_texel)) raster_parts(&whole, add_part, &of);
 }
 
 // All of a single-texel chart is in one texel, whose triangle is the largest.
 static void add_single_texel(const struct charts *charts, struct cells *cells)
 {
     const struct chart *chart = cells->chart;
-    struct cell *cell = &cells->at[CHART_SINGLE_TEXEL_GUTTER * (chart->width + 1)];
+    struct cell *cell = &cells->at[CHART_GUTTER * (chart->width + 1)];
     for (uint32_t i = 0; i < chart->triangle_count; i++) {
         const uint32_t t = chart->first_triangle + i;
         const double area = (double)charts->triangles[t].area_m2;
@@ -181,8 +169,11 @@ static void emit(struct charts *charts, struct chart *chart, const struct cell *
     }
     chart->texel_count = charts->texel_count - chart->first_texel;
     for (uint32_t y = chart->y; y < chart->y + chart->height; y++)
-        for (uint32_t x = chart->x; x < chart->x + chart->width; x++)
-            charts->owner[(size_t)y * charts->width + x] = nearest_texel(chart, own, x, y);
+        for (uint32_t x = chart->x; x < chart->x + chart->width; x++) {
+            const uint32_t nearest = nearest_texel(chart, own, x, y);
+            // Rectangles of charts overlap where their texels and gutters do not.
+            if (nearest != CHART_NONE) charts->owner[(size_t)y * charts->width + x] = nearest;
+        }
 }
 
 static size_t largest_chart(const struct charts *charts)

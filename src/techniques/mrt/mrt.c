@@ -371,7 +371,7 @@ enum {
 };
 #define MRT_TECHNIQUE(of_name, of_title, of_paper, rows)                                           \
     .name = of_name, .title = of_title, .paper = of_paper, .role = ROLE_SOURCE,                    \
-    .needs = FRAME_WRITES_IRRADIANCE | FRAME_LIGHT_EVOLVES, .bake_version = 6,                     \
+    .needs = FRAME_WRITES_IRRADIANCE | FRAME_LIGHT_EVOLVES, .bake_version = 7,                     \
     .options = OPTION_TABLE(struct mrt_options, rows, NULL), .presets = presets,                   \
     .debug_views = debug_views, .state_size = sizeof(struct mrt), .resolve = mrt_resolve_maze,     \
     .read_block_map = mrt_read_block_map, .bake = mrt_bake, .bake_report = mrt_bake_report,        \

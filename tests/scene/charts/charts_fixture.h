@@ -3,7 +3,7 @@
 //     struct scene_pose pose;
 //     struct scene *scene = open_scene("@cornell", &pose);
 //     CHECK(charts_init(&charts, test_host(), &pose, &options));
-//     check_rectangles_are_apart(&charts);
+//     check_gutters_are_own(&charts);
 //     charts_finish(&charts);
 //     close_scene(scene, &pose);
 #pragma once
@@ -26,7 +26,7 @@ struct scene *two_quads(float u_of_second, float first_u, int instances);
 
 void check_each_triangle_is_in_one_chart(const struct charts *charts,
                                          const struct scene_pose *pose);
-void check_rectangles_are_apart(const struct charts *charts);
+void check_gutters_are_own(const struct charts *charts);
 void check_texels_lie_on_triangles(const struct charts *charts);
 // A bilinear lookup anywhere on a triangle reads texels of its chart alone.
 void check_lookups_stay_in_the_chart(const struct charts *charts);

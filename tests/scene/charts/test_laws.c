@@ -62,7 +62,7 @@ static void check_laws(const char *name, float texels_per_m, uint32_t max_texels
     CHECK((uint64_t)charts.width * charts.height <= max_texels);
     CHECK(charts.texels_per_m <= texels_per_m);
     check_each_triangle_is_in_one_chart(&charts, &pose);
-    check_rectangles_are_apart(&charts);
+    check_gutters_are_own(&charts);
     check_stretch_is_bounded(&charts);
     check_texels_lie_on_triangles(&charts);
     check_centroids(&charts);
@@ -165,7 +165,7 @@ TEST(a_spiral_does_not_overlap_itself)
         CHECK(mark(taken, (uint32_t)y * charts.width + (uint32_t)x));
     }
     host_free(test_host(), taken);
-    check_rectangles_are_apart(&charts);
+    check_gutters_are_own(&charts);
     check_texels_lie_on_triangles(&charts);
     charts_finish(&charts);
     close_scene(scene, &pose);

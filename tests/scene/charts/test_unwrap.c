@@ -63,7 +63,7 @@ static uint32_t unwrapped_charts(float u_of_second, int instances)
         unwrapped += charts.charts[c].unwrapped;
         CHECK_NEAR(charts.charts[c].width, 16 + 1 + 2 * CHART_GUTTER, 1.0);
     }
-    check_rectangles_are_apart(&charts);
+    check_gutters_are_own(&charts);
     check_texels_lie_on_triangles(&charts);
     charts_finish(&charts);
     close_scene(scene, &pose);

@@ -177,6 +177,16 @@ static int metal(struct frame_fixture *s, float roughness)
     return fixture_material(s, &m);
 }
 
+// The mean of 5 × 5 pixels in the middle: single ones have the noise of their texels, some percent.
+static float middle_specular(struct frame_fixture *s)
+{
+    float sum = 0.0f;
+    for (uint32_t i = 0; i < 25; i++)
+        sum +=
+            fixture_pixel(s, READ_SPECULAR, s->width / 2 + i % 5 - 2, s->height / 2 + i / 5 - 2).x;
+    return sum / 25.0f;
+}
+
 TEST_GPU(metal_reflects_uniform_light_whole)
 {
     static const float ROUGHNESS[] = { 0.1f, 0.5f, 1.0f };
@@ -188,11 +198,11 @@ TEST_GPU(metal_reflects_uniform_light_whole)
                     metal(&s, ROUGHNESS[i]));
         baked_fixture_open(&run, &s, "radiosity:texels=2048");
         fixture_render(&s);
-        const vec3s l = fixture_pixel(&s, READ_SPECULAR, s.width / 2, s.height / 2);
+        const float light = middle_specular(&s);
         const vec3s wall = fixture_pixel(&s, READ_SPECULAR, 0, 0);
         print_message("roughness %.1f: %.3f of the light\n", (double)ROUGHNESS[i],
-                      (double)l.x / 10);
-        CHECK_NEAR(l.x, 10.0, 0.2);
+                      (double)light / 10);
+        CHECK_NEAR(light, 10.0, 0.2);
         CHECK(wall.x == 0.0f);
         baked_fixture_close(&run, &s);
     }
