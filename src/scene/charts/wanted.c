@@ -10,9 +10,9 @@ static bool want_fewer(struct charts_options *how, uint32_t texels, const struct
 {
     // Each small part of a surface has a texel at any density: the others keep a quarter of them.
     const uint32_t least = texels / 4;
-    if (charts->texel_count <= texels + texels / 8) return false;
+    if (charts->side_texel_count <= texels + texels / 8) return false;
     if (how->surface_texels > least) {
-        const double surface = (double)how->surface_texels * texels / charts->texel_count;
+        const double surface = (double)how->surface_texels * texels / charts->side_texel_count;
         how->surface_texels = surface > least ? (uint32_t)surface : least;
         return true;
     }
