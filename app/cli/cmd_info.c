@@ -157,9 +157,10 @@ static json_t *bounds_json(const struct ag_scene_info *info)
 static json_t *light_map_json(const struct ag_bake_estimate *map)
 {
     if (map->charts == 0) return json_null();
-    return json_pack("{s:s, s:f, s:I, s:o, s:o}", "technique", LIGHT_MAP_GI, "texels", map->texels,
-                     "charts", (json_int_t)map->charts, "texels_per_m",
-                     json_float(map->texels_per_m), "utilisation", json_float(map->utilisation));
+    return json_pack("{s:s, s:f, s:I, s:f, s:o, s:o}", "technique", LIGHT_MAP_GI, "texels",
+                     map->texels, "charts", (json_int_t)map->charts, "texels_per_chart",
+                     map->texels / map->charts, "texels_per_m", json_float(map->texels_per_m),
+                     "utilisation", json_float(map->utilisation));
 }
 
 static enum status info_json(struct session *session, const struct facts *facts)
@@ -224,8 +225,9 @@ static void print_counts(const struct facts *facts)
 static void print_light_map(const struct ag_bake_estimate *map)
 {
     if (map->charts == 0) return;
-    printf("light map    %.0f texels in %u charts, %.3g per metre, %.0f %% of the atlas (%s)\n",
-           map->texels, (unsigned)map->charts, (double)map->texels_per_m,
+    printf("light map    %.0f texels in %u charts, %.3g each, %.3g per metre, %.0f %% of the atlas "
+           "(%s)\n",
+           map->texels, (unsigned)map->charts, map->texels / map->charts, (double)map->texels_per_m,
            100.0 * (double)map->utilisation, LIGHT_MAP_GI);
 }
 

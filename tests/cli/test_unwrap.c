@@ -178,8 +178,8 @@ TEST(info_has_charts_texels_and_density_of_the_light_map)
     CHECK_NEAR(texels, 65536, 4096);
     json_decref(info);
     char line[200];
-    snprintf(line, sizeof line, "light map    %.0f texels in 1 charts, %.3g per metre", texels,
-             density);
+    snprintf(line, sizeof line, "light map    %.0f texels in 1 charts, %.3g each, %.3g per metre",
+             texels, texels, density);
     r = run_expect(0, "info", scene, NULL);
     if (!strstr(r->out, line)) fail_msg("no \"%s\" in %s", line, r->out);
 }

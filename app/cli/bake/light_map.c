@@ -291,13 +291,19 @@ static json_t *update_json(const struct ag_bake_update_info *u)
                      json_double(u->seconds), "full_seconds", json_double(u->full_seconds));
 }
 
+static double texels_per_chart(const struct ag_lightmap_info *info)
+{
+    return (double)info->texels / fmax((double)info->charts, 1.0);
+}
+
 static json_t *json_of(const struct job *job, const struct ag_lightmap_info *info,
                        double utilisation, const struct ag_bake_update_info *update)
 {
     json_t *out =
-        json_pack("{s:o, s:[i, i], s:i, s:i, s:o, s:o, s:b, s:o}", "output",
+        json_pack("{s:o, s:[i, i], s:i, s:i, s:o, s:o, s:o, s:b, s:o}", "output",
                   json_text(job->folder.shown), "size", info->width, info->height, "texels",
-                  info->texels, "charts", info->charts, "texels_per_m",
+                  info->texels, "charts", info->charts, "texels_per_chart",
+                  json_double(texels_per_chart(info)), "texels_per_m",
                   json_double((double)info->texels_per_m), "utilisation", json_double(utilisation),
                   "back", info->has_back, "formats", formats_json(formats_of(job->arguments)));
     if (out && info->paths > 0.0f)
@@ -330,10 +336,10 @@ static void say(const struct job *job, const struct outcome *o)
 {
     const struct ag_lightmap_info *info = &o->info;
     if (o->updated) say_update(&o->update);
-    note("light map of %dx%d, %d texels in %d charts, %.0f %% of it, %.3g texels per metre; "
-         "written: %s",
-         info->width, info->height, info->texels, info->charts, 100.0 * o->utilisation,
-         (double)info->texels_per_m, job->folder.shown);
+    note("light map of %dx%d, %d texels in %d charts, %.3g each, %.0f %% of it, %.3g texels per "
+         "metre; written: %s",
+         info->width, info->height, info->texels, info->charts, texels_per_chart(info),
+         100.0 * o->utilisation, (double)info->texels_per_m, job->folder.shown);
     say_noise(info);
 }
 
