@@ -19,52 +19,65 @@ layout(set = 0, binding = 3, scalar) readonly buffer mrt_borders
 };
 layout(set = 0, binding = 4, scalar) readonly buffer mrt_irradiance
 {
-    vec3 irradiance_table[]; // [texel][value]
+    vec3 irradiance_table[]; // [texel]
+};
+layout(set = 0, binding = 7, scalar) readonly buffer mrt_vector
+{
+    vec3 vector_table[]; // [texel][4]
 };
 layout(set = 0, binding = 6, scalar) readonly buffer mrt_area_light
 {
     mrt_gpu_area_light area_light_table[]; // [texel]
 };
-// VALUES 1: one layer of RGB. VALUES 4: a layer for each of red, green, blue, with four values.
+// VALUES 1: one layer of RGB. VALUES 4: a layer for each of red, green and blue, as
+// light_map_lookup reads them.
 layout(set = 0, binding = 5, rgba16f) writeonly uniform image2DArray light_map;
 
-void store(ivec2 at, vec3 values[4])
+// Light of a texel, in the frame of struct mrt_point. Irradiance by normal is E + s·(n − z):
+// `twice` is 2 s.
+struct texel_light {
+    vec3 irradiance;
+    mat3 twice; // a column for each axis
+};
+
+void store(ivec2 at, texel_light light)
 {
     if (VALUES == 1u) {
-        imageStore(light_map, ivec3(at, 0), vec4(clamp(values[0], -HALF_MAX, HALF_MAX), 1.0));
+        vec3 irradiance = clamp(light.irradiance, -HALF_MAX, HALF_MAX);
+        imageStore(light_map, ivec3(at, 0), vec4(irradiance, 1.0));
         return;
     }
     for (int c = 0; c < 3; c++) {
-        vec4 texel = vec4(values[0][c], values[1][c], values[2][c], values[3][c]);
+        vec3 twice = vec3(light.twice[0][c], light.twice[1][c], light.twice[2][c]);
+        vec4 texel = vec4(2.0 * light.irradiance[c] - twice.z, twice);
         imageStore(light_map, ivec3(at, c), clamp(texel, -HALF_MAX, HALF_MAX));
     }
 }
 
-// By normal: the slopes of the fit that vector_of_fit (lobe.glsl) takes for its vector irradiance.
-// Along the wall's normal that of uniform light, half of its irradiance. Its constant is that of
-// the other layer.
-void add_area_light(mrt_gpu_area_light light, float weight, inout vec3 sum[4])
+// Along the wall's normal the vector irradiance of area light is that of uniform light.
+void add_vector(uint texel, float weight, vec3 passed, inout texel_light sum)
 {
-    if (VALUES == 1u) {
-        sum[0] += weight * light.irradiance;
-    } else {
-        sum[1] += weight / (MRT_VECTOR_OF_SLOPE * SH_Y1) * light.along[1];
-        sum[2] += weight / (2.0 * SH_Y1) * light.irradiance;
-        sum[3] += weight / (MRT_VECTOR_OF_SLOPE * SH_Y1) * light.along[0];
-    }
+    mrt_gpu_area_light area = area_light_table[texel];
+    passed *= 2.0 * SH_Y1;
+    sum.twice[0] +=
+        passed * vector_table[4u * texel + 3u] + weight * 2.0 / MRT_VECTOR_OF_SLOPE * area.along[0];
+    sum.twice[1] +=
+        passed * vector_table[4u * texel + 1u] + weight * 2.0 / MRT_VECTOR_OF_SLOPE * area.along[1];
+    sum.twice[2] += passed * vector_table[4u * texel + 2u] + weight * area.irradiance;
 }
 
-void add(uint texel, float weight, inout vec3 sum[4])
+void add(uint texel, float weight, inout texel_light sum)
 {
     vec3 passed = weight * (1.0 - area_light_table[texel].hidden);
-    for (uint v = 0u; v < VALUES; v++) sum[v] += passed * irradiance_table[texel * VALUES + v];
-    add_area_light(area_light_table[texel], weight, sum);
+    sum.irradiance +=
+        passed * irradiance_table[texel] + weight * area_light_table[texel].irradiance;
+    if (VALUES == 4u) add_vector(texel, weight, passed, sum);
 }
 
 void main()
 {
     uint i = gl_GlobalInvocationID.x, width = level.map_width;
-    vec3 sum[4] = { vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0) };
+    texel_light sum = texel_light(vec3(0.0), mat3(0.0));
     if (i < level.texels) {
         mrt_gpu_tile tile = tile_table[i / level.texels_of_tile];
         int local = int(i % level.texels_of_tile), n = int(level.resolution);

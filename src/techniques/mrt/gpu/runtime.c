@@ -56,12 +56,9 @@ static size_t cells_of(const struct mrt_level_params *level)
 static bool make_images(struct mrt_runtime *runtime)
 {
     const struct mrt_level_params *level = &runtime->level;
-    const bool vector = runtime->options.vector;
     return mrt_sampler_of(runtime, "linear", &runtime->linear) &&
-           make_image(runtime, "light_map", level->map_width, level->map_height, 1,
-                      &runtime->light_map) &&
-           make_image(runtime, "vector_map", vector ? level->map_width : 1,
-                      vector ? level->map_height : 1, 3, &runtime->vector_map) &&
+           make_image(runtime, "light_map", level->map_width, level->map_height,
+                      runtime->options.vector ? LIGHT_MAP_LAYERS : 1, &runtime->light_map) &&
            make_table(runtime, "block_rows", runtime->block_count * MRT_BLOCK_ROWS,
                       &runtime->block_rows) &&
            make_table(runtime, "cell_rows", cells_of(level), &runtime->cell_rows);
@@ -148,7 +145,7 @@ static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime
         { &p->bounce, "bounce", &shader_mrt_gpu_bounce_comp, QUADS_B | QUADS_R },
         { &p->couple, "couple", &shader_mrt_gpu_couple_comp, HALF | QUADS_B | QUADS_R },
         { &p->reconstruct, "reconstruct", &shader_mrt_gpu_reconstruct_comp, ALL | VALUES },
-        { &p->fill, "fill", &shader_mrt_gpu_fill_comp, VALUES },
+        { &p->fill, "fill", &shader_mrt_gpu_fill_comp, vector ? VECTOR : VALUES },
         { &p->apply, "apply", AT_PIXELS(apply), at_pixels | COLUMNS },
         { &p->apply_clutter, "apply_clutter", clutter ? AT_PIXELS(apply_clutter) : NULL,
           at_pixels | COLUMNS },
@@ -159,7 +156,6 @@ static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime
         { &p->debug, "debug", &shader_mrt_gpu_debug_comp, AFFINE | TUBES },
         { &p->reconstruct_vector, "reconstruct_vector",
           vector ? &shader_mrt_gpu_reconstruct_comp : NULL, ALL | VECTOR },
-        { &p->fill_vector, "fill_vector", vector ? &shader_mrt_gpu_fill_comp : NULL, VECTOR },
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (!mrt_pipeline_of(runtime, all[i].name, all[i].shader, all[i].constants, all[i].out))
@@ -266,7 +262,7 @@ uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
 {
     const struct sizes s = sizes_of(size);
     const uint64_t n = (uint64_t)size->resolution;
-    // A tile for each wall, RGBA16F; three layers of irradiance by normal.
+    // A tile for each wall, RGBA16F.
     const uint64_t map = s.walls * (n + 2) * (n + 2) * 8;
     const uint64_t cells = MRT_LOOKUP_CELLS * MRT_LOOKUP_CELLS * MRT_LOOKUP_CELLS;
     return cells * 3 * sizeof(uint32_t) + light_map_table_bytes(cells, 16) +
@@ -276,5 +272,6 @@ uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
            s.walls * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
            s.texels * s.k_b * s.number * (1 + s.values) + 3 * s.k_b * s.k_b * sizeof(float) +
            MRT_RESPONSES * s.texels * s.k_r * s.number * s.values +
-           map * (size->options.vector ? 4 : 1) + bytes_of_probes(&s) + bytes_of_clutter(&s);
+           map * (size->options.vector ? LIGHT_MAP_LAYERS : 1) + bytes_of_probes(&s) +
+           bytes_of_clutter(&s);
 }

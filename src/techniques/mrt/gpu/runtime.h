@@ -37,7 +37,7 @@ struct mrt_runtime_options {
 struct mrt_runtime_pipelines {
     gpu_pipeline reflectors, reflectors_bounce, direct, project, bounce, couple;
     gpu_pipeline reconstruct, reconstruct_vector;
-    gpu_pipeline fill, fill_vector;
+    gpu_pipeline fill;
     gpu_pipeline rows, apply, debug;
     gpu_pipeline apply_clutter;          // `apply`, where there is clutter
     gpu_pipeline clutter, amid, several; // of their lists
@@ -95,7 +95,7 @@ struct mrt_runtime {
     gpu_buffer buffers[MRT_MAX_BUFFERS];
     const char *buffer_names[MRT_MAX_BUFFERS];
     int buffer_count;
-    gpu_image light_map, vector_map; // vector_map: 1×1 without `vector`
+    gpu_image light_map;             // LIGHT_MAP_LAYERS, without `vector` one
     gpu_image block_rows, cell_rows; // of rows.glsl
     bool has_rows;                   // they are filled
     struct light_map_columns columns;

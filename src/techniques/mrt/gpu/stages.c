@@ -81,26 +81,22 @@ void mrt_record_coefficients(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
     gpu_scope_end(cmd);
 }
 
-static void record_fill(struct mrt_runtime *runtime, struct gpu_cmd *cmd, bool vector)
+// Without `vector` no buffer has irradiance by normal, and none is read.
+static void record_fill(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
-    const struct mrt_runtime_pipelines *p = &runtime->pipelines;
     const struct mrt_level_params *level = &runtime->level;
-    const gpu_buffer from = mrt_buffer(runtime, vector ? "mrt_vector" : "mrt_irradiance");
-    const gpu_image to = vector ? runtime->vector_map : runtime->light_map;
-    mrt_dispatch(runtime, cmd, vector ? p->fill_vector : p->fill,
-                 GPU_BIND({ .name = "mrt_irradiance", .buffer = from },
-                          { .name = "light_map", .image = to }),
+    const char *vector = runtime->options.vector ? "mrt_vector" : "mrt_irradiance";
+    mrt_dispatch(runtime, cmd, runtime->pipelines.fill,
+                 GPU_BIND({ .name = "mrt_vector", .buffer = mrt_buffer(runtime, vector) },
+                          { .name = "light_map", .image = runtime->light_map }),
                  NULL, 0, gpu_groups(level->texels + level->borders, MRT_LOCAL), 1, 1);
 }
 
 void mrt_record_light_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
     gpu_scope_begin(cmd, "light_map");
-    record_fill(runtime, cmd, false);
-    if (runtime->options.vector) {
-        record_reconstruct(runtime, cmd, true);
-        record_fill(runtime, cmd, true);
-    }
+    if (runtime->options.vector) record_reconstruct(runtime, cmd, true);
+    record_fill(runtime, cmd);
     gpu_scope_end(cmd);
     mrt_record_clutter_map(runtime, cmd);
 }
@@ -189,7 +185,6 @@ static void clear_list(struct gpu_cmd *cmd, gpu_buffer list)
 #define PIXEL_BINDINGS(runtime, view)                                                              \
     FRAME_SURFACE_BINDINGS(view),                                                                  \
         { .name = "light_map", .image = (runtime)->light_map, .sampler = (runtime)->linear },      \
-        { .name = "vector_map", .image = (runtime)->vector_map, .sampler = (runtime)->linear },    \
         { .name = "bricks", .image = (runtime)->probes.bricks, .sampler = (runtime)->linear },     \
         { .name = "outdoors", .image = (runtime)->outdoors.image, .sampler = (runtime)->linear },  \
         { .name = "block_rows", .image = (runtime)->block_rows },                                  \

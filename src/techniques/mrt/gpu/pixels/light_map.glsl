@@ -4,7 +4,6 @@
 #define AG_MRT_LIGHT_MAP_GLSL
 
 layout(set = 0, binding = MRT_LIGHT_MAP_BINDING) uniform sampler2DArray light_map;
-layout(set = 0, binding = MRT_VECTOR_MAP_BINDING) uniform sampler2DArray vector_map;
 
 layout(constant_id = MRT_CONSTANT_VALUES) const uint VALUES = 1; // 4: by normal
 layout(constant_id = MRT_CONSTANT_PROBES) const bool PROBES = false;
@@ -13,8 +12,6 @@ layout(constant_id = MRT_CONSTANT_PROBES) const bool PROBES = false;
 // the cell) and from the second cosine, not at all beyond the others.
 const vec2 MRT_WALL_DISTANCE = vec2(0.1, 0.15);
 const vec2 MRT_WALL_COSINE = vec2(0.35, 0.65);
-// Normals in the half floats of the frame differ this little from the wall's.
-const float MRT_ALONG_WALL = 1.0 - 1e-6;
 
 // One of the two faces of an axis.
 int face_of(int axis, bool high)
@@ -22,32 +19,25 @@ int face_of(int axis, bool high)
     return 2 * axis + (high ? 1 : 0);
 }
 
-vec3 light_map_uv(vec2 first, vec2 st)
+// place: in texels. Irradiance changes from the wall's normal to another (Loos 2015,
+// section 3.5.4); its slopes are those of a fit.
+light_map_light light_at(vec2 place, vec3 normal)
 {
-    vec2 at = first + st * float(level.resolution);
-    return vec3(at / vec2(level.map_width, level.map_height), 0.0);
-}
-
-// The light at a wall changes from its normal to another (Loos 2015, section 3.5.4), in the frame
-// of struct mrt_point. Its vector irradiance along the wall's normal is its irradiance there.
-void change_by_normal(vec3 uv, vec3 normal, inout light_map_light light)
-{
-    vec4 change = sh4_eval(normal) - sh4_eval(vec3(0.0, 0.0, 1.0));
-    for (int c = 0; c < 3; c++) {
-        vec4 texel = textureLod(vector_map, vec3(uv.xy, float(c)), 0.0);
-        light.vector[c] = vec3(vector_of_fit(texel).xy, light.irradiance[c]);
-        light.irradiance[c] += dot(texel, change);
-    }
+    vec2 per_size = 1.0 / vec2(level.map_width, level.map_height);
+    if (VALUES == 1u)
+        return light_map_light(textureLod(light_map, vec3(place * per_size, 0.0), 0.0).rgb,
+                               mat3(0.0));
+    light_map_light light = light_map_lookup(light_map, per_size, vec3(place, 0.0), normal);
+    for (int c = 0; c < 3; c++) light.vector[c].xy *= 0.5 * MRT_VECTOR_OF_SLOPE;
+    return light;
 }
 
 // Reduced bases leave small negative values beside bright texels. Up to here light is linear.
 // `normal` and `lobe` are in the frame of struct mrt_point.
 mrt_light tile_light(vec2 first, vec2 st, vec3 normal, light_map_lobe lobe)
 {
-    vec3 uv = light_map_uv(first, clamp(st, 0.0, 1.0));
-    light_map_light light = light_map_light(textureLod(light_map, uv, 0.0).rgb, mat3(0.0));
-    if (VALUES == 4u && (SPECULAR == 1 || normal.z < MRT_ALONG_WALL))
-        change_by_normal(uv, normal, light);
+    vec2 place = first + clamp(st, 0.0, 1.0) * float(level.resolution);
+    light_map_light light = light_at(place, normal);
     light.irradiance = max(light.irradiance, vec3(0.0));
     return mrt_light(light.irradiance, light_map_radiance_of(light, normal, lobe));
 }
