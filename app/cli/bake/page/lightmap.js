@@ -59,7 +59,8 @@ function checks() {
     ['Charts', `${whole(charts.count)}, ${percent(small)} of the texels in charts below 16`, 'at most 20 %', small <= 0.2,
       'Small parts have a texel or two each: raise density, or unwrap them together.'],
     ['Seams', `${percent(seams.after?.above_5_percent)} of ${whole(seams.texels)} texels of edges with steps above 5 % (${percent(seams.before?.above_5_percent)} before they were closed)`,
-      'at most 5 %', !(seams.after?.above_5_percent > 0.05), 'Lines on smooth surfaces: raise density, or move seams in the unwrap.'],
+      'at most 5 %', !(seams.after?.above_5_percent > 0.05), noise?.median > 0.1 ? 'Noise makes steps, too: raise --spp first.'
+        : 'Lines on smooth surfaces: raise density, or move seams in the unwrap.'],
     ['Leaks', `${whole(leaks.texels)} texels`, '0', leaks.texels === 0,
       'Light or darkness beside walls: divide the mesh where walls meet it, make walls thicker than a texel, or raise density.'],
     ['Inside geometry', `${whole(texels.filled)} texels filled, ${whole(texels.partly_inside)} partly inside${inside}`, null, null,
