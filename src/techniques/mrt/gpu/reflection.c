@@ -79,29 +79,19 @@ static bool add_block(struct builder *s, int block, int first_opening, int openi
 
 // ---- the remainder of the series of bounces
 
-// A room's light after many bounces falls by about this ratio from one to the next.
-static vec3s mean_reflectance(const struct mrt_runtime_input *input, int block)
+// Light of many bounces falls by about the mean reflectance of the walls from one to the next.
+static float remainder_of(const struct mrt_runtime_input *input)
 {
-    const struct mrt_atlas *atlas = input->atlas;
-    const bool last = block + 1 == input->map->count;
-    const int end = last ? atlas->texels : mrt_first_texel(atlas, block + 1);
+    static const float MOST = 0.95f;
     vec3s sum = vec3_of(0, 0, 0);
     float area_m2 = 0.0f;
-    for (int t = mrt_first_texel(atlas, block); t < end; t++) {
+    for (int t = 0; t < input->atlas->texels; t++) {
         const struct mrt_geometry_texel *texel = &input->images->geometry[t];
         sum = glms_vec3_muladds(mrt_shown_reflectance(texel), texel->area_m2, sum);
         area_m2 += texel->area_m2;
     }
-    return area_m2 > 0.0f ? glms_vec3_divs(sum, area_m2) : sum;
-}
-
-static float remainder_of(const struct mrt_runtime_input *input)
-{
-    static const float MOST = 0.95f;
-    float largest = 0.0f;
-    for (int b = 0; b < input->map->count; b++)
-        largest = fmaxf(largest, glms_vec3_max(mean_reflectance(input, b)));
-    return 1.0f / (1.0f - fminf(largest, MOST));
+    const float mean = area_m2 > 0.0f ? glms_vec3_max(sum) / area_m2 : 0.0f;
+    return 1.0f / (1.0f - fminf(mean, MOST));
 }
 
 bool mrt_reflection_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,

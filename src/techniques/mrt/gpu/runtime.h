@@ -89,7 +89,7 @@ struct mrt_runtime {
     struct mrt_runtime_options options;
     struct mrt_level_params level;
     uint32_t block_count, opening_count;
-    // 1 + ρ + ρ² + …, of the mean reflectance ρ of the walls of the block where it is largest.
+    // 1 + ρ + ρ² + …, of the mean reflectance ρ of all walls in the colour where it is largest.
     float rest;
     // Tables, operators and light of the level, by the names of their bindings (mrt_buffer).
     gpu_buffer buffers[MRT_MAX_BUFFERS];
