@@ -376,20 +376,25 @@ static bool start_runtime(struct mrt *mrt)
 // Each proportion takes about half a second of a processor: `auto` traces those of a home. A box
 // around a scene without a room, and one that is very flat, has surfaces but no walls: light in its
 // proportions is no truer than in a cube.
-static struct mrt_retrace_limits limits_of(int32_t warp, const struct mrt_block_map *map)
+static struct mrt_retrace_limits limits_of(const struct mrt *mrt)
 {
     static const struct mrt_retrace_limits LIMITS[] = {
-        [MRT_WARP_STRETCH] = { 0, 0.0f },
-        [MRT_WARP_RETRACE] = { INT_MAX, INFINITY },
-        [MRT_WARP_AUTO] = { 8, 16.0f },
+        [MRT_WARP_STRETCH] = { .most = 0 },
+        [MRT_WARP_RETRACE] = { .most = INT_MAX, .flattest = INFINITY },
+        [MRT_WARP_AUTO] = { .most = 8, .flattest = 16.0f },
     };
-    return LIMITS[warp == MRT_WARP_AUTO && map->is_single ? MRT_WARP_STRETCH : warp];
+    const int32_t warp = mrt->options.warp;
+    struct mrt_retrace_limits limits =
+        LIMITS[warp == MRT_WARP_AUTO && mrt->map.is_single ? MRT_WARP_STRETCH : warp];
+    // Blocks with objects have a fit of their own to walls alone (objects/delta.c).
+    limits.openings = mrt->parts.clutter.triangles == 0;
+    return limits;
 }
 
 static bool init_level(struct mrt *mrt)
 {
     const struct mrt_level_options options = { .max_depth = mrt->options.depth,
-                                               .retrace = limits_of(mrt->options.warp, &mrt->map) };
+                                               .retrace = limits_of(mrt) };
     return mrt_level_init(mrt->host, &mrt->map, &mrt->dictionary, &options, &mrt->level);
 }
 

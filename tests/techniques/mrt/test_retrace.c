@@ -23,7 +23,7 @@ static void box_init(struct box *box, vec3s size, const struct mrt_dictionary *d
                      bool retrace)
 {
     const struct mrt_level_options options = { .max_depth = 0,
-                                               .retrace = { retrace ? 8 : 0, 16.0f } };
+                                               .retrace = { retrace ? 8 : 0, 16.0f, true } };
     *box = (struct box){ .half = glms_vec3_scale(size, 0.5f) };
     CHECK(mrt_block_map_init(test_host(), "test", 1, &box->map));
     mrt_block_init(&box->map.blocks[0], "box", MRT_BLOCK_CUBE);
@@ -162,7 +162,7 @@ TEST(blocks_of_equal_proportions_share_bases)
         mrt_block_init(&map.blocks[b], name, MRT_BLOCK_CUBE);
         mrt_block_set_box(&map.blocks[b], (struct box3){ vec3_of(0, 0, 0), sizes[b] });
     }
-    struct mrt_level_options level_options = { .retrace = { 8, 16.0f } };
+    struct mrt_level_options level_options = { .retrace = { 8, 16.0f, true } };
     CHECK(mrt_level_init(test_host(), &map, &dictionary, &level_options, &level));
     CHECK(level.retraces.count == 2);
     CHECK(level.retraces.of_block[0] == level.retraces.of_block[1]);
@@ -170,13 +170,13 @@ TEST(blocks_of_equal_proportions_share_bases)
     CHECK(level.retraces.of_block[3] == -1);
     mrt_level_finish(&level);
     // The proportions of most area, and none that are flat.
-    level_options.retrace = (struct mrt_retrace_limits){ 1, 16.0f };
+    level_options.retrace = (struct mrt_retrace_limits){ 1, 16.0f, true };
     CHECK(mrt_level_init(test_host(), &map, &dictionary, &level_options, &level));
     CHECK(level.retraces.count == 1);
     CHECK(level.retraces.of_block[0] == 0 && level.retraces.of_block[1] == 0);
     CHECK(level.retraces.of_block[2] == -1 && level.retraces.of_block[3] == -1);
     mrt_level_finish(&level);
-    level_options.retrace = (struct mrt_retrace_limits){ 8, 1.5f };
+    level_options.retrace = (struct mrt_retrace_limits){ 8, 1.5f, true };
     CHECK(mrt_level_init(test_host(), &map, &dictionary, &level_options, &level));
     CHECK(level.retraces.count == 0 && level.retraces.of_block[0] == -1);
     mrt_level_finish(&level);

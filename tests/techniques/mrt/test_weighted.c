@@ -118,8 +118,9 @@ static double lit_by(const struct matrix_f32 *t_db, const struct matrix_f32 *u_b
 TEST(fitted_light_has_the_energy_of_walls_of_unequal_areas)
 {
     struct matrix_f32 f, l_imp, t_db, u_b;
-    const struct mrt_projection projection = { mrt_cube(EDGE, 0), glms_mat3_identity(), &f, &u_b,
-                                               &l_imp };
+    const struct mrt_projection projection = {
+        mrt_cube(EDGE, 0), mrt_cube(EDGE, 0), glms_mat3_identity(), &f, &u_b, &l_imp
+    };
     struct mrt_projection of = projection;
     of.block_from_cell.m00 = 4.0f;
     open_fit(&f, &l_imp, &t_db);

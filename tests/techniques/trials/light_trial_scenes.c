@@ -419,6 +419,23 @@ void trial_wardrobe(struct frame_fixture *s, struct gpu *gpu, bool second_view)
     fixture_add_point(s, vec3_of(1, 2.4f, 1.2f), grey(200));
 }
 
+void trial_patch_between_blocks(struct frame_fixture *s, struct gpu *gpu, bool second_view)
+{
+    fixture_init(s, gpu);
+    s->options.shadow_size = 1024;
+    const int wood = fixture_matte(s, grey(0.4f));
+    add_house(s, (struct box3){ vec3_of(-2.5f, 0, -2), vec3_of(2.5f, 2.6f, 2) }, box3_empty(),
+              fixture_matte(s, grey(0.7f)));
+    add_camera(s, vec3_of(0, 1.5f, 1));
+    add_solid(s, vec3_of(-2.2f, 0, -1.7f), vec3_of(-1.9f, 0.3f, -1.4f), wood);
+    add_solid(s, vec3_of(1.9f, 0, -1.7f), vec3_of(2.2f, 0.3f, -1.4f), wood);
+    fixture_add_spot(s, vec3_of(0.2f, 2.5f, 0.3f), vec3_of(0, -1, 0), 0.2f, 0.4f, grey(800));
+    if (second_view)
+        fixture_look(s, vec3_of(-2.2f, 1, 1.7f), vec3_of(1.2f, 2, -0.6f));
+    else
+        fixture_look(s, vec3_of(2.2f, 1.6f, 1.7f), vec3_of(-1.2f, 1.1f, -0.6f));
+}
+
 void trial_long_room(struct frame_fixture *s, struct gpu *gpu, bool second_view)
 {
     fixture_init(s, gpu);

@@ -83,7 +83,9 @@ void trial_sheets(struct frame_fixture *s, struct gpu *gpu, bool second_view);
 
 // A room of 5 × 2.6 × 4 in solid walls of 20 cm (albedo 0.7) with a point light: two blocks.
 void trial_long_room(struct frame_fixture *s, struct gpu *gpu, bool second_view);
-// The same with a wardrobe 5 cm from a wall, a sofa and a table (albedo 0.4).
+// The same with a spot light over the border of the blocks, and a small box in each (albedo 0.4).
+void trial_patch_between_blocks(struct frame_fixture *s, struct gpu *gpu, bool second_view);
+// The long room with a wardrobe 5 cm from a wall, a sofa and a table (albedo 0.4).
 void trial_thick_walls(struct frame_fixture *s, struct gpu *gpu, bool second_view);
 
 // A room of 6 × 3 × 6 (albedo 0.5, double-sided) with a point light. Walls like these are hidden

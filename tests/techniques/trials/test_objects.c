@@ -24,6 +24,14 @@ TEST_GPU(light_of_a_room_of_two_blocks)
     trial_check_energy(gpu, trial_long_room, 256, bounds, sizeof bounds / sizeof bounds[0]);
 }
 
+// A lit patch on the border of two blocks: what it sends through the opening is a part of the fit
+// of direct light, else a tenth of the light is missing.
+TEST_GPU(light_of_a_patch_between_two_blocks)
+{
+    static const struct trial_bounds bounds = { "mrt" DICTIONARY, 0.95, 1.05 };
+    trial_check_energy(gpu, trial_patch_between_blocks, 256, &bounds, 1);
+}
+
 // Walls are solids, and furniture is large: neither is a block of its own. In mrt furniture does
 // not darken the room.
 TEST_GPU(light_of_a_furnished_room_between_thick_walls)

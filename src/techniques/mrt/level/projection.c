@@ -1,16 +1,19 @@
 // The least squares of a projection.
 #include "techniques/mrt/level/projection.h"
 
+#include <string.h>
+
 static const double NEGLIGIBLE = 1e-9; // of the largest eigenvalue of N: modes that are 0
 
 // Rows times the areas of their texels, of which the mean is 1.
 static bool weigh_rows(struct host *host, const struct mrt_projection *of,
-                       const struct matrix_f32 *from, struct matrix_f32 *out)
+                       const struct mrt_shape *shape, const struct matrix_f32 *from,
+                       struct matrix_f32 *out)
 {
     float mean = 0.0f;
     if (!matrix_f32_copy(host, from, from->columns, out)) return false;
     for (size_t t = 0; t < out->rows; t++) {
-        const mat3s frame = mrt_shape_texel(&of->shape, (int)t).frame;
+        const mat3s frame = mrt_shape_texel(shape, (int)t).frame;
         const vec3s u = glms_mat3_mulv(of->block_from_cell, frame.col[0]);
         const vec3s v = glms_mat3_mulv(of->block_from_cell, frame.col[1]);
         const float area = glms_vec3_norm(glms_vec3_cross(u, v));
@@ -41,7 +44,8 @@ static bool make_equations(struct host *host, const struct mrt_projection *of,
 {
     struct matrix_f32 u = { 0 }, light = { 0 };
     struct matrix_f64 t = { 0 }, walls = { 0 };
-    bool ok = weigh_rows(host, of, of->u_b, &u) && weigh_rows(host, of, of->l_imp, &light) &&
+    bool ok = weigh_rows(host, of, &of->receivers, of->u_b, &u) &&
+              weigh_rows(host, of, &of->shape, of->l_imp, &light) &&
               matrix_f64_from_f32(host, t_db, &t) && product(host, &u, of->f, rest) &&
               product(host, &u, of->u_b, n) && product(host, &light, of->l_imp, &walls) &&
               matrix_f64_multiply(host, -1.0, n, NOT_TRANSPOSED, &t, NOT_TRANSPOSED, 1.0, rest);
@@ -89,4 +93,19 @@ bool mrt_fit_projection(struct host *host, const struct mrt_projection *of, stru
     matrix_f64_finish(host, &rest);
     matrix_f64_finish(host, &n);
     return ok;
+}
+
+bool mrt_rows_of_walls(struct host *host, const struct mrt_shape *shape,
+                       const struct matrix_f32 *faces, struct matrix_f32 *out)
+{
+    const size_t face = (size_t)(shape->resolution * shape->resolution);
+    size_t to = 0;
+    if (!matrix_f32_init(host, out, (size_t)mrt_shape_texels(shape), faces->columns)) return false;
+    for (size_t f = 0; f < CUBE_FACES; f++) {
+        if (mrt_shape_is_open(shape, (int)f)) continue;
+        memcpy(out->at + to * out->stride, faces->at + f * face * faces->stride,
+               face * faces->stride * sizeof *out->at);
+        to += face;
+    }
+    return true;
 }

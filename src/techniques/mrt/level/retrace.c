@@ -33,11 +33,12 @@ static bool same_metric(mat3s a, mat3s b)
 
 struct gather_job {
     const struct mrt_element *element;
+    struct mrt_shape receivers;
     mat3s block_from_cell; // J of the warp
     struct mrt_rays rays;
-    struct matrix_f32 *rows; // F of all texels; NULL: not kept
+    struct matrix_f32 *rows; // F of all receivers; NULL: not kept
     struct matrix_f32 *out;
-    struct host *hosts; // [texels]: failures of tasks do not race
+    struct host *hosts; // [receivers]: failures of tasks do not race
     bool *ok;
 };
 
@@ -57,7 +58,7 @@ static void gather_texel(void *user, size_t i)
     const struct mrt_element *element = job->element;
     const size_t values = (size_t)job->rays.values;
     struct host *host = &job->hosts[i];
-    struct mrt_point point = mrt_shape_texel(&element->shape, (int)i);
+    struct mrt_point point = mrt_shape_texel(&job->receivers, (int)i);
     struct matrix_f32 rows = { 0 };
     struct matrix_f32 out = matrix_f32_block(job->out, i * values, 0, values, job->out->columns);
     point.frame = mrt_cell_from_wall(job->block_from_cell, point.frame);
@@ -69,13 +70,16 @@ static void gather_texel(void *user, size_t i)
     if (!job->rows) matrix_f32_finish(host, &rows);
 }
 
-static bool gather(struct host *host, const struct mrt_element *element, mat3s block_from_cell,
+static bool gather(struct host *host, const struct mrt_element *element,
+                   const struct mrt_shape *receivers, mat3s block_from_cell,
                    enum mrt_measure measure, struct matrix_f32 *rows, struct matrix_f32 *out)
 {
-    const size_t texels = element->l_imp.rows;
-    struct gather_job job = {
-        .element = element, .block_from_cell = block_from_cell, .rows = rows, .out = out
-    };
+    const size_t texels = (size_t)mrt_shape_texels(receivers);
+    struct gather_job job = { .element = element,
+                              .receivers = *receivers,
+                              .block_from_cell = block_from_cell,
+                              .rows = rows,
+                              .out = out };
     job.hosts = host_alloc(host, texels, sizeof *job.hosts);
     job.ok = host_alloc(host, texels, sizeof *job.ok);
     bool ok = job.hosts && job.ok && mrt_rays_init(host, measure, RAYS, &job.rays) &&
@@ -92,17 +96,24 @@ static bool gather(struct host *host, const struct mrt_element *element, mat3s b
     return ok;
 }
 
+// openings: light that leaves by them counts as that on walls, in the fit.
 static bool gather_irradiance(struct host *host, const struct mrt_element *element,
-                              mat3s block_from_cell, struct mrt_retraced *out)
+                              mat3s block_from_cell, bool openings, struct mrt_retraced *out)
 {
-    struct matrix_f32 f = { 0 };
-    const struct mrt_projection projection = { element->shape, block_from_cell, &f, &out->u_b,
-                                               &element->l_imp };
-    const bool ok = matrix_f32_init(host, &f, element->l_imp.rows, element->l_imp.rows) &&
-                    gather(host, element, block_from_cell, MRT_IRRADIANCE, &f, &out->u_b) &&
-                    matrix_f32_copy(host, &element->t_db, element->t_db.columns, &out->t_db) &&
-                    mrt_fit_projection(host, &projection, &out->t_db);
+    const struct mrt_shape shape = element->shape;
+    const struct mrt_shape receivers = openings ? mrt_cube(shape.resolution, 0) : shape;
+    struct matrix_f32 f = { 0 }, u = { 0 };
+    const struct mrt_projection projection = { shape, receivers, block_from_cell,
+                                               &f,    &u,        &element->l_imp };
+    const bool ok =
+        matrix_f32_init(host, &f, (size_t)mrt_shape_texels(&receivers), element->l_imp.rows) &&
+        gather(host, element, &receivers, block_from_cell, MRT_IRRADIANCE, &f, &u) &&
+        (openings ? mrt_rows_of_walls(host, &shape, &u, &out->u_b)
+                  : matrix_f32_copy(host, &u, u.columns, &out->u_b)) &&
+        matrix_f32_copy(host, &element->t_db, element->t_db.columns, &out->t_db) &&
+        mrt_fit_projection(host, &projection, &out->t_db);
     matrix_f32_finish(host, &f);
+    matrix_f32_finish(host, &u);
     return ok;
 }
 
@@ -177,10 +188,12 @@ static bool keep_largest(struct mrt_retraces *out, int blocks, int most)
     return true;
 }
 
-static bool retrace(struct host *host, const struct mrt_element *element, struct mrt_retraced *to)
+static bool retrace(struct host *host, const struct mrt_element *element, bool openings,
+                    struct mrt_retraced *to)
 {
-    return gather_irradiance(host, element, to->block_from_cell, to) &&
-           gather(host, element, to->block_from_cell, MRT_VECTOR, NULL, &to->u_vec);
+    return gather_irradiance(host, element, to->block_from_cell, openings, to) &&
+           gather(host, element, &element->shape, to->block_from_cell, MRT_VECTOR, NULL,
+                  &to->u_vec);
 }
 
 bool mrt_retraces_init(struct host *host, const struct mrt_block_map *map,
@@ -196,7 +209,7 @@ bool mrt_retraces_init(struct host *host, const struct mrt_block_map *map,
         out->of_block[b] = add_block(out, &map->blocks[b], &places[b], limits.flattest);
     if (ok && out->count > limits.most) ok = keep_largest(out, map->count, limits.most);
     for (int i = 0; ok && i < out->count; i++)
-        ok = retrace(host, &dictionary->element[out->at[i].cube], &out->at[i]);
+        ok = retrace(host, &dictionary->element[out->at[i].cube], limits.openings, &out->at[i]);
     if (!ok) mrt_retraces_finish(out);
     return ok;
 }

@@ -27,6 +27,7 @@ struct mrt_retraces {
 struct mrt_retrace_limits {
     int most; // number of proportions
     float flattest;
+    bool openings; // T_d→b is fitted to the light that leaves by them, too
 };
 
 // Blocks of equal cube and proportions share their bases; a block that is a cube keeps the

@@ -138,7 +138,7 @@ static bool project(struct mrt_delta_block *out, const struct mrt_clutter_cell *
     const struct matrix_f32 *l_imp = cell->rays->l_imp[cell->index];
     const struct matrix_f32 *t_db = cell->rays->t_db[cell->index];
     const mat3s middle = mrt_warp_jacobian(cell->block->corner, glms_vec3_zero());
-    const struct mrt_projection projection = { cell->shape, middle, f, &of->b, l_imp };
+    const struct mrt_projection projection = { cell->shape, cell->shape, middle, f, &of->b, l_imp };
     return matrix_f32_copy(out->host, t_db, t_db->columns, &out->t_db) &&
            mrt_weigh_projection(out->host, l_imp, of->open, &out->t_db) &&
            mrt_fit_projection(out->host, &projection, &out->t_db);
