@@ -157,6 +157,39 @@ TEST_GPU(mrt_light_map_has_the_borders_of_the_level)
     mrt_runtime_fixture_finish(&f);
 }
 
+// Area light of all texels is 1, but of one, which stands for an object amid the block, 1000.
+static void light_of_an_object(struct mrt_runtime *runtime, int texel)
+{
+    const size_t texels = runtime->level.texels;
+    struct mrt_gpu_area_light *light = calloc(texels, sizeof *light);
+    for (size_t i = 0; i < texels; i++) light[i].irradiance = vec3_of(1, 1, 1);
+    light[texel].irradiance = vec3_of(1000, 1000, 1000);
+    CHECK(gpu_buffer_upload(runtime->gpu, mrt_buffer(runtime, "mrt_area_light"), 0, light,
+                            texels * sizeof *light));
+    free(light);
+}
+
+TEST_GPU(mrt_walls_behind_an_object_have_the_light_beside_it)
+{
+    struct mrt_runtime_fixture f;
+    const int texel = 27, n = 8;
+    mrt_runtime_fixture_init(&f, mrt_one_block(vec3_of(-1, 0, -1), vec3_of(2, 2, 3)), n, K_B, K_R,
+                             vec3_of(0.5f, 0.5f, 0.5f));
+    f.images.geometry[texel].position = vec3_of(0.5f, 1, 1);
+    struct mrt_runtime runtime = start(gpu, &f, false);
+    light_of_an_object(&runtime, texel);
+    solve(&runtime, 1, false);
+    const size_t floats = 4 * (size_t)(f.atlas.width * f.atlas.height);
+    float *map = calloc(floats, sizeof *map);
+    CHECK(gpu_image_download_float(gpu, runtime.light_map, 0, 0, map, 4, floats));
+    const struct mrt_tile *tile = &f.atlas.tiles[0];
+    const int at = (tile->y + texel / n) * f.atlas.width + tile->x + texel % n;
+    CHECK_NEAR(0.5f * (map[4 * at] + map[4 * at + 3]), 1.0, 1e-3);
+    free(map);
+    mrt_runtime_finish(&runtime);
+    mrt_runtime_fixture_finish(&f);
+}
+
 static void closed_cube(struct mrt_runtime_fixture *f, vec3s reflectance)
 {
     mrt_runtime_fixture_init(f, mrt_one_block(vec3_of(-1, 0, -1), vec3_of(2, 2, 3)), 8, K_B, K_R,

@@ -29,6 +29,10 @@ layout(set = 0, binding = 6, scalar) readonly buffer mrt_area_light
 {
     mrt_gpu_area_light area_light_table[]; // [texel]
 };
+layout(set = 0, binding = 8, scalar) readonly buffer mrt_shown
+{
+    uint shown_table[]; // [texel]: that whose area light the wall has there
+};
 // VALUES 1: one layer of RGB. VALUES 4: a layer for each of red, green and blue, as
 // light_map_lookup reads them.
 layout(set = 0, binding = 5, rgba16f) writeonly uniform image2DArray light_map;
@@ -55,9 +59,9 @@ void store(ivec2 at, texel_light light)
 }
 
 // Along the wall's normal the vector irradiance of area light is that of uniform light.
-void add_vector(uint texel, float weight, vec3 passed, inout texel_light sum)
+void add_vector(uint texel, mrt_gpu_area_light area, float weight, vec3 passed,
+                inout texel_light sum)
 {
-    mrt_gpu_area_light area = area_light_table[texel];
     passed *= 2.0 * SH_Y1;
     sum.twice[0] +=
         passed * vector_table[4u * texel + 3u] + weight * 2.0 / MRT_VECTOR_OF_SLOPE * area.along[0];
@@ -68,10 +72,10 @@ void add_vector(uint texel, float weight, vec3 passed, inout texel_light sum)
 
 void add(uint texel, float weight, inout texel_light sum)
 {
-    vec3 passed = weight * (1.0 - area_light_table[texel].hidden);
-    sum.irradiance +=
-        passed * irradiance_table[texel] + weight * area_light_table[texel].irradiance;
-    if (VALUES == 4u) add_vector(texel, weight, passed, sum);
+    mrt_gpu_area_light area = area_light_table[shown_table[texel]];
+    vec3 passed = weight * (1.0 - area.hidden);
+    sum.irradiance += passed * irradiance_table[texel] + weight * area.irradiance;
+    if (VALUES == 4u) add_vector(texel, area, weight, passed, sum);
 }
 
 void main()

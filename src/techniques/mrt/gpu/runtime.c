@@ -268,7 +268,7 @@ uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
     return cells * 3 * sizeof(uint32_t) + light_map_table_bytes(cells, 16) +
            light_map_table_bytes(MRT_BLOCK_ROWS, 16) +
            s.texels * (sizeof(struct mrt_texel) + sizeof(struct mrt_gpu_area_light) +
-                       (1 + s.values) * VEC3_BYTES) +
+                       sizeof(uint32_t) + (1 + s.values) * VEC3_BYTES) +
            s.walls * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
            s.texels * s.k_b * s.number * (1 + s.values) + 3 * s.k_b * s.k_b * sizeof(float) +
            MRT_RESPONSES * s.texels * s.k_r * s.number * s.values +

@@ -44,6 +44,50 @@ static void fill_texels(const struct mrt_runtime_input *input, void *items)
     mrt_fill_texels(input->images->geometry, (size_t)input->atlas->texels, items);
 }
 
+// Edges from a wall up to which surfaces have its light (MRT_WALL_DISTANCE in
+// gpu/pixels/light_map.glsl).
+static const float NEAR_WALL = 0.15f;
+
+static bool is_near_wall(const struct mrt_runtime_input *input, const struct mrt_tile *tile,
+                         vec3s point)
+{
+    vec3s cell;
+    if (!mrt_warp_inverse(input->map->blocks[tile->block].corner, point, &cell)) return true;
+    return 0.5f - glms_vec3_dot(cube_from_face(tile->face).col[2], cell) <= NEAR_WALL;
+}
+
+// The nearest texel of the tile that stands for its wall; the texel itself where there is none.
+static int nearest_of_wall(const struct mrt_runtime_input *input, const struct mrt_tile *tile,
+                           int k)
+{
+    const int n = input->atlas->resolution;
+    const struct mrt_geometry_texel *texels = input->images->geometry + tile->first_texel;
+    int nearest = k, least = 2 * n * n;
+    if (is_near_wall(input, tile, texels[k].position)) return k;
+    for (int i = 0; i < n * n; i++) {
+        const int x = i % n - k % n, y = i / n - k / n;
+        if (x * x + y * y >= least || !is_near_wall(input, tile, texels[i].position)) continue;
+        least = x * x + y * y;
+        nearest = i;
+    }
+    return nearest;
+}
+
+// Texels that stand for an object far from the wall have its area light, but pixels that look them
+// up are on the wall beside the object or behind it.
+static void fill_shown(const struct mrt_runtime_input *input, void *items)
+{
+    uint32_t *shown = items;
+    const bool is_tube = mrt_block_is_tube(&input->map->blocks[0]);
+    for (int i = 0; i < input->atlas->texels; i++) shown[i] = (uint32_t)i;
+    for (int i = 0; i < input->atlas->tile_count && !is_tube; i++) {
+        const struct mrt_tile *tile = &input->atlas->tiles[i];
+        for (uint32_t k = 0; k < texels_of_tile(input); k++)
+            shown[tile->first_texel + (int)k] =
+                (uint32_t)(tile->first_texel + nearest_of_wall(input, tile, (int)k));
+    }
+}
+
 // First row of a basis in the operators.
 static uint32_t basis_row(const struct mrt_operators *operators, int block)
 {
@@ -223,6 +267,8 @@ bool mrt_tables_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inp
     runtime->opening_count = (uint32_t)openings;
     return mrt_table_upload(runtime, input, "mrt_texels", (size_t)atlas->texels,
                             sizeof(struct mrt_texel), fill_texels) &&
+           mrt_table_upload(runtime, input, "mrt_shown", (size_t)atlas->texels, sizeof(uint32_t),
+                            fill_shown) &&
            mrt_table_upload(runtime, input, "mrt_tiles", (size_t)atlas->tile_count,
                             sizeof(struct mrt_gpu_tile), fill_tiles) &&
            mrt_table_upload(runtime, input, "mrt_blocks", (size_t)input->map->count,
