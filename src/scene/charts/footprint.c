@@ -56,7 +56,7 @@ void footprint_draw(struct footprint_grid *grid, uint8_t *spare, const struct gr
     memset(grid->taken, 0, size);
     for (uint32_t i = 0; i < chart->triangle_count && !chart->single_texel; i++)
         draw_triangle(grid, grown->place[grown->order[chart->first_triangle + i]]);
-    // Where rounding leaves no area there is a texel nevertheless.
+    // A chart has a texel even if rounding leaves no area.
     if (!memchr(grid->taken, 1, size)) grid->taken[first] = 1;
     memcpy(spare, grid->taken, size);
     widen(grid, spare);
