@@ -11,18 +11,22 @@
 #include <stddef.h>
 #include <string.h>
 
-#define OPTION(...) OPTION_ROW(struct mrt_options, __VA_ARGS__)
+#define OPTION(...)       OPTION_ROW(struct mrt_options, __VA_ARGS__)
+#define MRT_HAS_REMAINDER true
 static const struct option_row option_rows[] = {
 #include "techniques/mrt/mrt_options.def"
 };
+#undef MRT_HAS_REMAINDER
 #undef OPTION
 
 #define OPTION(...) OPTION_ROW(struct mrt_options, __VA_ARGS__)
 #define MRT_GPU_ONLY
+#define MRT_HAS_REMAINDER false
 static const struct option_row drt_option_rows[] = {
 #include "techniques/mrt/mrt_options.def"
 #include "techniques/mrt/drt_options.def"
 };
+#undef MRT_HAS_REMAINDER
 #undef MRT_GPU_ONLY
 #undef OPTION
 
