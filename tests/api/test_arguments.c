@@ -148,6 +148,7 @@ TEST(a_null_object_is_refused)
     assert_int_equal(ag_device_validation_messages(NULL), 0);
     ag_device_get_info(NULL, NULL);
     assert_true(ag_image_auto_exposure(NULL) == 0.0f);
+    assert_true(ag_image_metered_exposure(NULL, AG_METERING_HIGHLIGHTS) == 0.0f);
 }
 
 TEST(null_results_are_refused)

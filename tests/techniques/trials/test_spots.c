@@ -4,7 +4,6 @@
 #include "techniques/trials/share_trial.h"
 #include "techniques/trials/trial_bakes.h"
 
-#define ORT_FINE "ort:texels=8192,offsets=400,coordinates=charts"
 // A scene of few surfaces; coarser texels would rather mix the light of both sides of a wall.
 #define RADIOSITY_COARSE "radiosity:texels=4096"
 // Also of ort: a patch of 0.5 m is seen by texels of less than that.
