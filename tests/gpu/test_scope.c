@@ -2,6 +2,7 @@
 #include "framework/gpu_test.h"
 #include "gpu_test_shaders.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -11,11 +12,8 @@ static void work(struct gpu_cmd *cmd, gpu_pipeline sum, gpu_buffer words, gpu_bu
                  NULL, 0, 1, 1, 1);
 }
 
-TEST_GPU(scopes_nest_and_sum_in_the_order_first_begun)
+static void record_scopes(struct gpu *gpu, gpu_pipeline sum, gpu_buffer words, gpu_buffer total)
 {
-    if (!gpu_limits(gpu)->timestamps) test_skip("no timestamps");
-    gpu_buffer words = test_gpu_buffer(gpu, 400000), total = test_gpu_buffer(gpu, 4);
-    gpu_pipeline sum = test_gpu_compute(gpu, &shader_test_sum_comp);
     struct gpu_cmd *cmd = gpu_frame_begin(gpu);
     gpu_scope_begin(cmd, "b.once");
     work(cmd, sum, words, total);
@@ -31,16 +29,30 @@ TEST_GPU(scopes_nest_and_sum_in_the_order_first_begun)
     gpu_scope_end(cmd);
     CHECK(gpu_frame_end(gpu, cmd));
     CHECK(gpu_wait(gpu));
+}
+
+// Times are the least of eight frames: other programs may interrupt a frame anywhere.
+TEST_GPU(scopes_nest_and_sum_in_the_order_first_begun)
+{
+    if (!gpu_limits(gpu)->timestamps) test_skip("no timestamps");
+    gpu_buffer words = test_gpu_buffer(gpu, 400000), total = test_gpu_buffer(gpu, 4);
+    gpu_pipeline sum = test_gpu_compute(gpu, &shader_test_sum_comp);
+    double thrice = INFINITY, nothing = INFINITY;
     struct gpu_timing t[8];
-    // Only the frame and innermost scopes are listed.
-    assert_int_equal(gpu_frame_timings(gpu, t, 8), 4);
-    CHECK_STRING(t[0].name, "frame");
-    CHECK_STRING(t[1].name, "b.once");
-    CHECK_STRING(t[2].name, "a.thrice");
-    CHECK_STRING(t[3].name, "c.nothing");
-    CHECK(t[1].ms > 0 && t[2].ms > 0 && t[3].ms >= 0);
-    CHECK(t[1].ms + t[2].ms + t[3].ms <= t[0].ms + 1e-9);
-    CHECK(t[3].ms < t[2].ms);
+    for (int frame = 0; frame < 8; frame++) {
+        record_scopes(gpu, sum, words, total);
+        // Only the frame and innermost scopes are listed.
+        assert_int_equal(gpu_frame_timings(gpu, t, 8), 4);
+        CHECK_STRING(t[0].name, "frame");
+        CHECK_STRING(t[1].name, "b.once");
+        CHECK_STRING(t[2].name, "a.thrice");
+        CHECK_STRING(t[3].name, "c.nothing");
+        CHECK(t[1].ms > 0 && t[2].ms > 0 && t[3].ms >= 0);
+        CHECK(t[1].ms + t[2].ms + t[3].ms <= t[0].ms + 1e-9);
+        thrice = fmin(thrice, t[2].ms);
+        nothing = fmin(nothing, t[3].ms);
+    }
+    CHECK(nothing < thrice);
     assert_int_equal(gpu_frame_timings(gpu, t, 2), 2);
     gpu_buffer_destroy(gpu, &words);
     gpu_buffer_destroy(gpu, &total);
