@@ -1,4 +1,4 @@
-// State of a bake, shared by bake.c and renderer_bakes.c.
+// State of a bake, shared by bake.c and renderer/bakes.c.
 #pragma once
 
 #include "api/objects.h"

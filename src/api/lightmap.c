@@ -1,6 +1,6 @@
 // Light maps: checks arguments and forwards to lightmap/ and the techniques.
 #include "api/lightmap_state.h"
-#include "api/renderer_state.h"
+#include "api/renderer/state.h"
 
 #include "lightmap/denoise.h"
 

@@ -1,5 +1,5 @@
 // Painted light: checks arguments and forwards to the GI stack.
-#include "api/renderer_state.h"
+#include "api/renderer/state.h"
 
 void ag_light_paint_default(struct ag_light_paint *paint)
 {

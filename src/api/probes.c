@@ -1,5 +1,5 @@
 // Probe volumes: downloaded, sampled on the CPU, or passed on as a Vulkan image.
-#include "api/renderer_state.h"
+#include "api/renderer/state.h"
 
 #include "techniques/common/probes/copy.h"
 

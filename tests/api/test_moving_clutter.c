@@ -2,7 +2,7 @@
 // changes from one frame to the next, whole.
 #include "api/moving_box.h"
 
-#include "api/renderer_state.h"
+#include "api/renderer/state.h"
 #include "techniques/gi_state.h"
 #include "techniques/mrt/mrt_state.h"
 

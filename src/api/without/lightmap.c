@@ -1,5 +1,5 @@
 // In place of api/lightmap.c, in a library without bakes.
-#include "api/renderer_state.h"
+#include "api/renderer/state.h"
 #include "api/without/absent.h"
 
 static enum ag_result absent(struct ag_context *context, const char *function)

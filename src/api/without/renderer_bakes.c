@@ -1,5 +1,5 @@
-// In place of api/renderer_bakes.c, in a library without bakes: no technique of it needs one.
-#include "api/renderer_bakes.h"
+// In place of api/renderer/bakes.c, in a library without bakes: no technique of it needs one.
+#include "api/renderer/bakes.h"
 #include "api/without/absent.h"
 
 bool renderer_bakes_find(struct renderer_bakes *bakes, struct host *host,

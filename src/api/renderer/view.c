@@ -1,6 +1,6 @@
 // Further views of a renderer.
-#include "api/renderer_gbuffer.h"
-#include "api/renderer_state.h"
+#include "api/renderer/gbuffer.h"
+#include "api/renderer/state.h"
 
 void ag_view_desc_default(struct ag_view_desc *desc)
 {

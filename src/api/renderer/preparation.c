@@ -1,5 +1,5 @@
 // Preparations: pipelines of another GI spec, compiled beside frames.
-#include "api/renderer_state.h"
+#include "api/renderer/state.h"
 
 #include "gpu/gpu.h"
 #include "techniques/gi.h"

@@ -1,5 +1,5 @@
 // Layers of the newest frame: downloaded, or passed on as Vulkan images.
-#include "api/renderer_state.h"
+#include "api/renderer/state.h"
 
 #include "image/image.h"
 

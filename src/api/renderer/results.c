@@ -1,5 +1,5 @@
 // Numbers of finished frames: exposure, times, memory.
-#include "api/renderer_state.h"
+#include "api/renderer/state.h"
 
 #include "gpu/gpu.h"
 

@@ -1,7 +1,7 @@
 // A renderer follows the changes of its scene before each frame.
-#include "api/renderer_scene.h"
+#include "api/renderer/scene.h"
 
-#include "api/renderer_state.h"
+#include "api/renderer/state.h"
 
 uint32_t renderer_scene_changes(struct ag_renderer *r)
 {

@@ -1,7 +1,7 @@
 // A program's G-buffer: checks, and images of the GPU layer for the time of a recording.
-#include "api/renderer_gbuffer.h"
+#include "api/renderer/gbuffer.h"
 
-#include "api/renderer_state.h"
+#include "api/renderer/state.h"
 
 #include <stddef.h>
 #include <stdio.h>

@@ -8,7 +8,7 @@
 //
 // whose zeros at −1 and +1 are the sides of the image, and likewise for y. Depth is A + B/d or
 // A + B d.
-#include "api/view_matrices.h"
+#include "api/renderer/view_matrices.h"
 
 #include "scene/limits.h"
 

@@ -1,7 +1,7 @@
 // A program's G-buffer as images of a frame.
 #pragma once
 
-#include "api/view_matrices.h"
+#include "api/renderer/view_matrices.h"
 
 #include "frame/frame.h"
 

@@ -1,8 +1,8 @@
 // Frames of a renderer: submitted by the library, or recorded into a caller's command buffer.
-#include "api/renderer_gbuffer.h"
-#include "api/renderer_scene.h"
-#include "api/renderer_state.h"
-#include "api/view_matrices.h"
+#include "api/renderer/gbuffer.h"
+#include "api/renderer/scene.h"
+#include "api/renderer/state.h"
+#include "api/renderer/view_matrices.h"
 
 #include "core/sampling.h"
 #include "gpu/gpu.h"

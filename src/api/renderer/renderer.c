@@ -1,7 +1,7 @@
 // Renderers: creation, resizing, destruction.
-#include "api/renderer_bakes.h"
-#include "api/renderer_gbuffer.h"
-#include "api/renderer_state.h"
+#include "api/renderer/bakes.h"
+#include "api/renderer/gbuffer.h"
+#include "api/renderer/state.h"
 
 #include "gpu/gpu.h"
 

@@ -1,6 +1,6 @@
 // Changes of a running renderer: GI spec, frame options, debug view.
-#include "api/renderer_bakes.h"
-#include "api/renderer_state.h"
+#include "api/renderer/bakes.h"
+#include "api/renderer/state.h"
 
 static bool set_gi(struct ag_renderer *r, const struct ag_renderer_desc *desc)
 {

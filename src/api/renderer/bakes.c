@@ -1,5 +1,5 @@
 // The bakes of a renderer: those of its description, or files of the folder that the host names.
-#include "api/renderer_bakes.h"
+#include "api/renderer/bakes.h"
 
 #include "api/bake_state.h"
 #include "techniques/gi_bake.h"
