@@ -10,6 +10,25 @@ bool fixture_charts(const struct scene_pose *statics, const void *options, struc
     return charts_init(out, host, statics, &how);
 }
 
+struct fixture_box fixture_box(vec3s size, bool inside)
+{
+    struct fixture_box out;
+    for (uint32_t side = 0; side < 6; side++) {
+        const int a = (int)side / 2, b = (a + 1) % 3, c = (a + 2) % 3;
+        const float sign = side % 2 ? -0.5f : 0.5f;
+        for (uint32_t k = 0; k < 4; k++) {
+            vec3s *p = &out.at[4 * side + k];
+            p->raw[a] = sign * size.raw[a];
+            p->raw[b] = (k == 1 || k == 2 ? 0.5f : -0.5f) * size.raw[b];
+            p->raw[c] = (k > 1 ? 0.5f : -0.5f) * size.raw[c];
+        }
+        const bool turned = (sign < 0.0f) != inside;
+        const uint32_t order[2][6] = { { 0, 1, 2, 0, 2, 3 }, { 0, 2, 1, 0, 3, 2 } };
+        for (uint32_t k = 0; k < 6; k++) out.indices[6 * side + k] = 4 * side + order[turned][k];
+    }
+    return out;
+}
+
 struct bake *fixture_bake(const struct fixture_bake *of)
 {
     const struct bake_identity identity = {

@@ -9,6 +9,13 @@
 bool fixture_charts(const struct scene_pose *statics, const void *options, struct host *host,
                     struct charts *out);
 
+// Corners of a box around the origin, four to a side; sides face out, `inside`: in.
+struct fixture_box {
+    vec3s at[24];
+    uint32_t indices[36];
+};
+struct fixture_box fixture_box(vec3s size, bool inside);
+
 struct fixture_bake {
     const struct scene_pose *pose;
     int texels, samples;

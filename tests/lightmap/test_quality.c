@@ -41,21 +41,8 @@ static void add_quad(struct scene *scene, float from, float to)
 
 static void add_box(struct scene *scene, vec3s centre, vec3s size)
 {
-    vec3s at[24];
-    uint32_t indices[36];
-    for (uint32_t side = 0; side < 6; side++) {
-        const int a = (int)side / 2, b = (a + 1) % 3, c = (a + 2) % 3;
-        const float sign = side % 2 ? -0.5f : 0.5f;
-        for (uint32_t k = 0; k < 4; k++) {
-            vec3s *p = &at[4 * side + k];
-            p->raw[a] = sign * size.raw[a];
-            p->raw[b] = (k == 1 || k == 2 ? 0.5f : -0.5f) * size.raw[b];
-            p->raw[c] = (k > 1 ? 0.5f : -0.5f) * size.raw[c];
-        }
-        const uint32_t order[2][6] = { { 0, 1, 2, 0, 2, 3 }, { 0, 2, 1, 0, 3, 2 } };
-        for (uint32_t k = 0; k < 6; k++) indices[6 * side + k] = 4 * side + order[sign < 0][k];
-    }
-    CHECK(add_mesh(scene, at, 24, indices, 36, centre) >= 0);
+    struct fixture_box box = fixture_box(size, false);
+    CHECK(add_mesh(scene, box.at, 24, box.indices, 36, centre) >= 0);
 }
 
 static struct scene *create_floor(void)

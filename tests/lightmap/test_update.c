@@ -1,6 +1,6 @@
 // Updates of light maps: which texels a change reaches, and how far the others are from a full
 // bake.
-#include "framework/test.h"
+#include "lightmap/lightmap_fixture.h"
 
 #include "lightmap/update/update.h"
 #include "lightmap/write.h"
@@ -33,27 +33,12 @@ static int add_material(struct scene *scene, float albedo, float emission)
     return scene_add_material(scene, &m);
 }
 
-// Sides face out; `inside`: in.
 static int add_box(struct scene *scene, int material, vec3s centre, vec3s size, bool inside)
 {
-    vec3s at[24];
-    uint32_t indices[36];
-    for (uint32_t side = 0; side < 6; side++) {
-        const int a = (int)side / 2, b = (a + 1) % 3, c = (a + 2) % 3;
-        const float sign = side % 2 ? -0.5f : 0.5f;
-        for (uint32_t k = 0; k < 4; k++) {
-            vec3s *p = &at[4 * side + k];
-            p->raw[a] = sign * size.raw[a];
-            p->raw[b] = (k == 1 || k == 2 ? 0.5f : -0.5f) * size.raw[b];
-            p->raw[c] = (k > 1 ? 0.5f : -0.5f) * size.raw[c];
-        }
-        const bool turned = (sign < 0.0f) != inside;
-        const uint32_t order[2][6] = { { 0, 1, 2, 0, 2, 3 }, { 0, 2, 1, 0, 3, 2 } };
-        for (uint32_t k = 0; k < 6; k++) indices[6 * side + k] = 4 * side + order[turned][k];
-    }
-    const struct mesh mesh = { .positions = at,
+    struct fixture_box box = fixture_box(size, inside);
+    const struct mesh mesh = { .positions = box.at,
                                .vertex_count = 24,
-                               .indices = indices,
+                               .indices = box.indices,
                                .index_count = 36,
                                .material = material };
     struct node node = node_default();

@@ -6,22 +6,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Area in the atlas, in texels.
-static double texels_of(const struct chart_triangle *t)
-{
-    struct raster_triangle in;
-    for (int k = 0; k < 3; k++) {
-        in.at[k][0] = (double)t->place[k].x;
-        in.at[k][1] = (double)t->place[k].y;
-    }
-    return 0.5 * fabs(raster_area2(&in));
-}
-
 static float density_of(const struct charts *charts, const struct chart *chart)
 {
-    double texels = 0.0;
-    for (uint32_t i = 0; i < chart->triangle_count; i++)
-        texels += texels_of(&charts->triangles[chart->first_triangle + i]);
+    double texels = 0.0; // area in the atlas
+    for (uint32_t i = 0; i < chart->triangle_count; i++) {
+        const struct raster_polygon polygon =
+            raster_polygon_of(charts->triangles[chart->first_triangle + i].place);
+        texels += raster_polygon_area(&polygon);
+    }
     return chart->area_m2 > 0.0f ? (float)sqrt(texels / (double)chart->area_m2) : 0.0f;
 }
 

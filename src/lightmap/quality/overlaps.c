@@ -3,7 +3,6 @@
 
 #include "scene/charts/raster.h"
 
-#include <math.h>
 #include <string.h>
 
 // Parts of a texel that rounding may give to its neighbour, in texels.
@@ -26,49 +25,34 @@ static void count_once(struct overlaps *o, size_t place, uint8_t mark, uint32_t 
     ++*sum;
 }
 
-static void touch(struct overlaps *o, size_t place)
+static bool is_in_atlas(const struct charts *charts, int32_t x, int32_t y)
 {
-    const uint32_t chart = o->charts->triangles[o->current].chart;
-    if (o->chart[place] == CHART_NONE) o->chart[place] = chart;
-    if (o->chart[place] != chart) count_once(o, place, COUNTED_SHARED, &o->out->shared);
+    return x >= 0 && y >= 0 && (uint32_t)x < charts->width && (uint32_t)y < charts->height;
 }
 
-static void range_of(const struct raster_polygon *polygon, int axis, uint32_t end, uint32_t *first,
-                     uint32_t *last)
+static bool touch(void *user, int32_t x, int32_t y, const struct raster_polygon *part)
 {
-    double least = INFINITY, most = 0.0;
-    for (int i = 0; i < polygon->count; i++) {
-        least = fmin(least, polygon->at[i][axis]);
-        most = fmax(most, polygon->at[i][axis]);
-    }
-    *first = (uint32_t)fmax(fmin(least, (double)end), 0.0);
-    *last = (uint32_t)fmin(ceil(most), (double)end);
+    struct overlaps *o = user;
+    const struct charts *charts = o->charts;
+    const uint32_t chart = charts->triangles[o->current].chart;
+    if (!is_in_atlas(charts, x, y) || !(raster_polygon_area(part) > ROUNDING)) return true;
+    const size_t place = (size_t)y * charts->width + (size_t)x;
+    if (o->chart[place] == CHART_NONE) o->chart[place] = chart;
+    if (o->chart[place] != chart) count_once(o, place, COUNTED_SHARED, &o->out->shared);
+    return true;
 }
 
 static void touch_texels(struct overlaps *o)
 {
-    const struct charts *charts = o->charts;
-    const struct raster_polygon whole = raster_polygon_of(charts->triangles[o->current].place);
-    uint32_t top, bottom, left, right;
-    range_of(&whole, 1, charts->height, &top, &bottom);
-    for (uint32_t y = top; y < bottom; y++) {
-        const struct raster_polygon row = raster_clip(&whole, 1, (double)y);
-        if (row.count < 3) continue;
-        range_of(&row, 0, charts->width, &left, &right);
-        for (uint32_t x = left; x < right; x++) {
-            const struct raster_polygon part = raster_clip(&row, 0, (double)x);
-            if (part.count >= 3 && raster_polygon_area(&part) > ROUNDING)
-                touch(o, (size_t)y * charts->width + x);
-        }
-    }
+    const struct raster_polygon whole = raster_polygon_of(o->charts->triangles[o->current].place);
+    raster_parts(&whole, touch, o);
 }
 
 static bool cover(void *user, int32_t x, int32_t y)
 {
     struct overlaps *o = user;
     const struct charts *charts = o->charts;
-    if (x < 0 || y < 0 || (uint32_t)x >= charts->width || (uint32_t)y >= charts->height)
-        return true;
+    if (!is_in_atlas(charts, x, y)) return true;
     const size_t place = (size_t)y * charts->width + (size_t)x;
     const uint32_t before = o->triangle[place];
     o->triangle[place] = o->current;

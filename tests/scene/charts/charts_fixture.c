@@ -31,6 +31,20 @@ struct scene *scene_of(const struct mesh *mesh, int instances)
     return scene;
 }
 
+struct scene *scene_of_triangles(vec3s *positions, uint32_t vertices, uint32_t *indices,
+                                 uint32_t index_count)
+{
+    const struct mesh mesh = { .vertex_count = vertices,
+                               .index_count = index_count,
+                               .positions = positions,
+                               .indices = indices,
+                               .material = -1 };
+    struct scene *scene = scene_of(&mesh, 1);
+    host_free(test_host(), positions);
+    host_free(test_host(), indices);
+    return scene;
+}
+
 struct scene *two_quads(float u_of_second, float first_u, int instances)
 {
     const vec3s positions[8] = {

@@ -19,6 +19,9 @@ struct scene *open_scene(const char *name, struct scene_pose *pose);
 void close_scene(struct scene *scene, struct scene_pose *pose);
 // Instances of one mesh in a row along x, 3 m apart.
 struct scene *scene_of(const struct mesh *mesh, int instances);
+// A scene of one mesh; frees the arrays, which are of test_host.
+struct scene *scene_of_triangles(vec3s *positions, uint32_t vertices, uint32_t *indices,
+                                 uint32_t index_count);
 // Two quads side by side; in TEXCOORD_1 the first begins at u = first_u, the second at u_of_second.
 struct scene *two_quads(float u_of_second, float first_u, int instances);
 

@@ -56,15 +56,7 @@ static struct scene *soup(uint32_t triangles, float size)
         positions[v] = vec3_of(scale * rng_float(&rng), scale * rng_float(&rng), rng_float(&rng));
         indices[v] = v;
     }
-    const struct mesh mesh = { .vertex_count = 3 * triangles,
-                               .index_count = 3 * triangles,
-                               .positions = positions,
-                               .indices = indices,
-                               .material = -1 };
-    struct scene *scene = scene_of(&mesh, 1);
-    host_free(test_host(), positions);
-    host_free(test_host(), indices);
-    return scene;
+    return scene_of_triangles(positions, 3 * triangles, indices, 3 * triangles);
 }
 
 TEST(many_separate_triangles_fit_or_are_refused)

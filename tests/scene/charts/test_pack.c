@@ -23,15 +23,7 @@ static struct scene *heap(uint32_t first)
         at[3] = vec3_of(0, height, at[0].z);
         for (uint32_t k = 0; k < 6; k++) indices[6 * i + k] = 4 * i + order[k];
     }
-    const struct mesh mesh = { .vertex_count = 4 * QUADS,
-                               .index_count = 6 * QUADS,
-                               .positions = positions,
-                               .indices = indices,
-                               .material = -1 };
-    struct scene *scene = scene_of(&mesh, 1);
-    host_free(test_host(), positions);
-    host_free(test_host(), indices);
-    return scene;
+    return scene_of_triangles(positions, 4 * QUADS, indices, 6 * QUADS);
 }
 
 static struct charts heap_charts(uint32_t first)

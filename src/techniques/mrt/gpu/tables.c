@@ -44,16 +44,12 @@ static void fill_texels(const struct mrt_runtime_input *input, void *items)
     mrt_fill_texels(input->images->geometry, (size_t)input->atlas->texels, items);
 }
 
-// Edges from a wall up to which surfaces have its light (MRT_WALL_DISTANCE in
-// gpu/pixels/light_map.glsl).
-static const float NEAR_WALL = 0.15f;
-
 static bool is_near_wall(const struct mrt_runtime_input *input, const struct mrt_tile *tile,
                          vec3s point)
 {
     vec3s cell;
     if (!mrt_warp_inverse(input->map->blocks[tile->block].corner, point, &cell)) return true;
-    return 0.5f - glms_vec3_dot(cube_from_face(tile->face).col[2], cell) <= NEAR_WALL;
+    return 0.5f - glms_vec3_dot(cube_from_face(tile->face).col[2], cell) <= MRT_NEAR_WALL;
 }
 
 // The nearest texel of the tile that stands for its wall; the texel itself where there is none.

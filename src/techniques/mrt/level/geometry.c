@@ -116,8 +116,7 @@ struct mrt_geometry_texel *mrt_geometry_create(struct host *host, const struct m
 
 // ---- surfaces that texels stand for
 
-static const float NEAR_WALL = 0.15f;  // edges, and the cosine from which a surface faces it
-static const float FACES_WALL = 0.35f; // (gpu/pixels/light_map.glsl)
+static const float FACES_WALL = 0.35f; // cosine (gpu/pixels/light_map.glsl)
 static const float WITHIN = 1.5f;      // diagonals of a texel
 static const float SAME_NORMAL = 0.5f; // cosine
 
@@ -150,7 +149,7 @@ bool mrt_geometry_has(const struct mrt_geometry *g, int block, vec3s cell, vec3s
         const mat3s frame = cube_from_face(face);
         const vec3s inwards = vec3_unit(glms_mat3_mulv(jacobian, glms_vec3_negate(frame.col[2])));
         if (tile < 0 || glms_vec3_dot(inwards, normal) < FACES_WALL) continue;
-        if (0.5f - glms_vec3_dot(frame.col[2], cell) < NEAR_WALL) return true;
+        if (0.5f - glms_vec3_dot(frame.col[2], cell) < MRT_NEAR_WALL) return true;
         const vec2s place = { { 0.5f + glms_vec3_dot(frame.col[0], cell),
                                 0.5f + glms_vec3_dot(frame.col[1], cell) } };
         if (tile_has(g, tile, place, point, normal)) return true;

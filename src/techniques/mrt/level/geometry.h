@@ -11,6 +11,10 @@ struct mrt_reflector_row {
     uint32_t first, count;
 };
 
+// Edges of a block up to which a surface has its wall's light: MRT_WALL_DISTANCE in
+// gpu/pixels/light_map.glsl.
+#define MRT_NEAR_WALL 0.15f
+
 struct mrt_geometry_texel {
     vec3s position;    // world
     vec3s normal;      // unit, towards the middle of the block
