@@ -1,4 +1,5 @@
-// afterglow reference: progressive path tracing.
+// afterglow reference: progressive path tracing; with other processes, as a bake.
+#include "cli/bake/baking.h"
 #include "commands.h"
 #include "images.h"
 #include "cli/files/interrupt.h"
@@ -18,7 +19,9 @@ static const double WRITE_EVERY_S = 10.0; // while sampling
 struct job {
     const struct arguments *arguments;
     struct session session;
+    struct ag_camera camera;
     struct tracing tracing;
+    struct baking baking; // of a team
     struct output output;
     char path[PATH_SIZE];
     float exposure_ev;
@@ -35,6 +38,9 @@ static enum status plan(struct job *job)
         snprintf(job->path, sizeof job->path, "%s", a->output);
     else
         output_default(a->positional[0], "-reference.exr", job->path);
+    if (a->resume && a->team)
+        return wrong_usage("cannot use --resume with afterglow-mpi: the same command continues an "
+                           "interrupted one; leave it out");
     bool exr = has_extension(job->path, "exr");
     if (a->resume && !exr)
         return wrong_usage("cannot use --resume with %s: only an .exr can be resumed", job->path);
@@ -48,11 +54,9 @@ static enum status plan(struct job *job)
 static enum status prepare(struct job *job)
 {
     const struct arguments *a = job->arguments;
-    struct ag_camera camera;
     enum status status = session_load(&job->session, a->positional[0], a->scene_scale);
     if (status == DONE) status = session_light(&job->session);
-    if (status == DONE) status = session_camera(&job->session, a->time_s, &camera);
-    return status == DONE ? tracing_begin(&job->tracing, &job->session, &camera, a->spp) : status;
+    return status == DONE ? session_camera(&job->session, a->time_s, &job->camera) : status;
 }
 
 static enum status resume(struct job *job)
@@ -115,6 +119,8 @@ static enum status write_output(void *user)
     return FAILED;
 }
 
+// ---- the samples
+
 // Ctrl-C stops sampling and keeps the samples.
 static enum status converge(struct job *job)
 {
@@ -124,6 +130,43 @@ static enum status converge(struct job *job)
     if (status != DONE || t->done >= t->wanted) return status;
     return fail("reference of %s: interrupted after %d of %d samples; --resume continues %s",
                 job->arguments->positional[0], t->done, t->wanted, job->path);
+}
+
+static enum status trace_alone(struct job *job)
+{
+    enum status status =
+        tracing_begin(&job->tracing, &job->session, &job->camera, job->arguments->spp);
+    if (status == DONE) status = resume(job);
+    if (status == DONE) session_say(&job->session);
+    return status == DONE ? converge(job) : status;
+}
+
+static enum status take_samples(struct job *job)
+{
+    struct ag_reference *reference = NULL;
+    struct ag_bake_info info = { 0 };
+    const struct baking *b = &job->baking;
+    const enum ag_result result = ag_reference_from_bake(b->bake, &reference);
+    if (result != AG_OK) return fail_library(job->session.context, result);
+    ag_bake_get_info(b->bake, &info);
+    tracing_take(&job->tracing, &job->session, &job->camera, reference, info.seconds);
+    const enum status status = write_output(job);
+    if (status == DONE) ag_bake_remove_checkpoint(b->bake);
+    return status;
+}
+
+// Rank 0 has the samples and writes the image.
+static enum status trace_together(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    const struct ag_reference_desc desc = tracing_describe(&job->session, &job->camera);
+    enum status status =
+        baking_begin_reference(&job->baking, &job->session, &desc, a->spp, job->path);
+    if (status != DONE) return status;
+    if (baking_is_followed(a)) return baking_follow(&job->baking);
+    session_say(&job->session);
+    status = baking_complete(&job->baking, false);
+    return status == DONE ? take_samples(job) : status;
 }
 
 // ---- results
@@ -173,13 +216,13 @@ static enum status reference(const struct arguments *arguments)
     job->arguments = arguments;
     enum status status = session_begin(&job->session, arguments);
     if (status == DONE) status = plan(job);
-    if (status == DONE) status = whole_file_check(job->path);
+    const bool follows = baking_is_followed(arguments);
+    if (status == DONE && !follows) status = whole_file_check(job->path);
     if (status == DONE) status = prepare(job);
-    if (status == DONE) status = resume(job);
-    if (status == DONE) session_say(&job->session);
-    if (status == DONE) status = converge(job);
-    if (status == DONE) status = report(job);
+    if (status == DONE) status = arguments->team ? trace_together(job) : trace_alone(job);
+    if (status == DONE && !follows) status = report(job);
     tracing_end(&job->tracing);
+    baking_end(&job->baking);
     session_end(&job->session);
     free(job);
     return status;
@@ -194,7 +237,9 @@ const struct command command_reference = {
     .text = "Path-traces SCENE on all cores, with materials, lights and camera as in render.\n"
             "Writes the image after the first sample, every ten seconds, and at the end.\n"
             "Ctrl-C keeps the samples; --resume continues with them.\n"
-            "Neither the number of cores nor interruptions change the result, up to rounding.\n",
+            "Neither the number of cores nor interruptions change the result, up to rounding.\n"
+            "mpirun -n N afterglow-mpi reference … takes the same options but --resume and shares\n"
+            "the pixels among N processes, also of several machines: see docs/clusters.md.\n",
     .examples = "  afterglow reference @cornell --size 256x256 --spp 256\n"
                 "      into cornell-reference.exr, direct and indirect light as layers\n"
                 "  afterglow reference @atrium --size 640x360 --spp 1024 --resume -o atrium.exr\n"

@@ -66,8 +66,9 @@ static enum status run_informing(int count, char **words, bool *done)
 
 static enum status check_team(const struct command *command, const struct team *team)
 {
-    if (!team || command->bit == BAKE || team->ranks.count == 1) return DONE;
-    return wrong_usage("cannot run %s on %d ranks: only bake works on several; use afterglow %s",
+    if (!team || (command->bit & (BAKE | REFERENCE)) || team->ranks.count == 1) return DONE;
+    return wrong_usage("cannot run %s on %d ranks: only bake and reference work on several; use "
+                       "afterglow %s",
                        command->name, team->ranks.count, command->name);
 }
 

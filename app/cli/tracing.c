@@ -33,13 +33,10 @@ uint64_t tracing_bytes_per_pixel(int layer_count)
     return 18 * 8 + 16 + 16 * (uint64_t)layer_count;
 }
 
-enum status tracing_begin(struct tracing *t, struct session *session,
-                          const struct ag_camera *camera, int wanted)
+struct ag_reference_desc tracing_describe(const struct session *session,
+                                          const struct ag_camera *camera)
 {
     const struct arguments *a = session->arguments;
-    *t = (struct tracing){ .session = session,
-                           .wanted = wanted,
-                           .fov_rad = camera->vertical_fov_rad };
     struct ag_reference_desc desc;
     ag_reference_desc_default(&desc);
     desc.width = a->width;
@@ -56,8 +53,28 @@ enum status tracing_begin(struct tracing *t, struct session *session,
     desc.occlusion_decay_per_m = a->occlusion_decay_per_m;
     desc.obscurance_sphere = a->obscurance_sphere;
     desc.seed = a->seed;
+    return desc;
+}
+
+enum status tracing_begin(struct tracing *t, struct session *session,
+                          const struct ag_camera *camera, int wanted)
+{
+    *t = (struct tracing){ .session = session,
+                           .wanted = wanted,
+                           .fov_rad = camera->vertical_fov_rad };
+    const struct ag_reference_desc desc = tracing_describe(session, camera);
     enum ag_result result = ag_reference_create(session->scene, &desc, &t->reference);
     return result == AG_OK ? DONE : fail_library(session->context, result);
+}
+
+void tracing_take(struct tracing *t, struct session *session, const struct ag_camera *camera,
+                  struct ag_reference *reference, double seconds)
+{
+    *t = (struct tracing){ .session = session,
+                           .reference = reference,
+                           .seconds = seconds,
+                           .fov_rad = camera->vertical_fov_rad };
+    t->wanted = t->done = samples_of(t);
 }
 
 void tracing_end(struct tracing *t)

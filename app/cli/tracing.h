@@ -21,6 +21,12 @@ uint64_t tracing_bytes_per_pixel(int layer_count);
 // Requires a loaded and lit scene. The reference has no samples yet.
 enum status tracing_begin(struct tracing *tracing, struct session *session,
                           const struct ag_camera *camera, int wanted);
+// The reference of the options; camera: of the session.
+struct ag_reference_desc tracing_describe(const struct session *session,
+                                          const struct ag_camera *camera);
+// Takes over a reference that has all samples already.
+void tracing_take(struct tracing *tracing, struct session *session, const struct ag_camera *camera,
+                  struct ag_reference *reference, double seconds);
 void tracing_end(struct tracing *tracing); // accepts zero
 // Loads the samples of a checkpoint.
 enum ag_result tracing_resume(struct tracing *tracing, const char *path);

@@ -158,6 +158,9 @@ AG_API enum ag_result ag_bake_export(const struct ag_bake *bake, const char *fol
 /// that it lacks from a bake of any scene. AG_ERROR_FORMAT where some are still missing: those of
 /// the file stay, and ag_bake_run does the others alone. Thread: the context's.
 AG_API enum ag_result ag_bake_load(struct ag_bake *bake, const char *path);
+/// Removes the checkpoint, as ag_bake_save does, where the result is kept in another way.
+/// Thread: the context's.
+AG_API enum ag_result ag_bake_remove_checkpoint(struct ag_bake *bake);
 /// Writes the finished tasks of a shard. A shard runs its part of the first tasks of the bake; with
 /// all parts merged, its part of the next tasks that are worth splitting, and so on until
 /// ag_bake_info.split_stage is NULL. A bake without a shard does the rest. Thread: the context's.

@@ -5,6 +5,7 @@
 #ifndef AFTERGLOW_REFERENCE_H
 #define AFTERGLOW_REFERENCE_H
 
+#include <afterglow/bake.h>
 #include <afterglow/image.h>
 #include <afterglow/scene.h>
 
@@ -38,6 +39,19 @@ AG_API void ag_reference_desc_default(struct ag_reference_desc *desc);
 AG_API enum ag_result ag_reference_create(struct ag_scene *scene,
                                           const struct ag_reference_desc *desc,
                                           struct ag_reference **out);
+/// The `samples` ≥ 1 of every pixel of a reference as the tasks of a bake, so that several
+/// processes share them (ag_bake_run_team), or machines by shards, and a checkpoint keeps them. Of
+/// `desc` (NULL: the defaults) the members threads, shard, shard_count, checkpoint_every_s and
+/// max_memory_bytes count; the seed is that of the reference. As for ag_bake_create.
+/// Thread: the context's.
+AG_API enum ag_result ag_bake_create_reference(struct ag_scene *scene,
+                                               const struct ag_reference_desc *of, int samples,
+                                               const struct ag_bake_desc *desc,
+                                               struct ag_bake **out);
+/// A reference with the samples of a complete bake: its layers are those of ag_reference_render, to
+/// the bit, and it takes more samples. AG_ERROR_FORMAT: the bake was loaded from a file with values
+/// that are not finite. The bake may be destroyed before. Thread: the context's.
+AG_API enum ag_result ag_reference_from_bake(const struct ag_bake *bake, struct ag_reference **out);
 /// Accepts NULL. Thread: the context's.
 AG_API void ag_reference_destroy(struct ag_reference *reference);
 

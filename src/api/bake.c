@@ -103,7 +103,7 @@ static bool find_term(struct ag_bake *b, const char *gi, const char *technique)
                      technique);
 }
 
-static struct bake_run_options run_options(const struct ag_bake_desc *desc)
+struct bake_run_options api_bake_run_options(const struct ag_bake_desc *desc)
 {
     return (struct bake_run_options){ .threads = desc->threads,
                                       .shard = desc->shard,
@@ -170,7 +170,7 @@ static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *
     if (desc->all_objects && b->spec.technique[b->term]->role != ROLE_DELTA)
         return host_fail(host, FAIL_ARGUMENT, "cannot bake objects of %s: it bakes none",
                          b->spec.technique[b->term]->name);
-    b->options = run_options(desc);
+    b->options = api_bake_run_options(desc);
     if (!api_pose_at(b->scene, &b->pose, desc->animation, desc->time_s)) return false;
     if (!gi_bake_resolve(host, b->spec.technique[b->term], &b->pose, b->spec.options[b->term]))
         return false;
@@ -192,8 +192,8 @@ static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *
     return b->bake != NULL;
 }
 
-static enum ag_result desc_check(const char *function, const struct ag_scene *scene,
-                                 const struct ag_bake_desc *desc)
+enum ag_result api_bake_check(const char *function, const struct ag_scene *scene,
+                              const struct ag_bake_desc *desc)
 {
     struct ag_context *context = scene->context;
     AG_REQUIRE_KNOWN(function, context, desc);
@@ -237,7 +237,7 @@ enum ag_result ag_bake_create(struct ag_scene *scene, const char *gi,
     struct ag_bake_desc fallback;
     ag_bake_desc_default(&fallback);
     if (!desc) desc = &fallback;
-    enum ag_result checked = desc_check(__func__, scene, desc);
+    enum ag_result checked = api_bake_check(__func__, scene, desc);
     if (checked != AG_OK) return checked;
 
     struct ag_bake *b = host_alloc(&context->host, 1, sizeof *b);
@@ -423,6 +423,14 @@ enum ag_result ag_bake_set_checkpoint(struct ag_bake *b, const char *path)
     return api_done(context, !path || b->checkpoint);
 }
 
+enum ag_result ag_bake_remove_checkpoint(struct ag_bake *b)
+{
+    struct ag_context *context = context_of(b);
+    AG_REQUIRE(context, b, "bake is NULL");
+    bake_forget_checkpoint(b->bake);
+    return AG_OK;
+}
+
 enum ag_result ag_bake_save_partial(struct ag_bake *b, const char *path)
 {
     struct ag_context *context = context_of(b);
@@ -503,6 +511,7 @@ enum ag_result ag_bake_partial_origin(struct ag_context *context, const char *pa
 
 static const char *name_of(const struct ag_bake *b)
 {
+    if (api_bake_is_reference(b)) return REFERENCE_BAKE_NAME;
     return b->lightmap_samples > 0 ? LIGHTMAP_NAME : gi_bake_name(b->spec.technique[b->term]);
 }
 
@@ -587,18 +596,31 @@ static void report_stages(struct report *report, const struct bake *bake)
     report_end(report);
 }
 
+static void report_reference_options(struct report *report, const struct reference_bake *traced)
+{
+    report_begin_object(report, "options");
+    report_number(report, "width", traced->width);
+    report_number(report, "height", traced->height);
+    report_number(report, "samples", traced->samples);
+    report_end(report);
+}
+
 static bool write_report(struct ag_bake *b)
 {
-    const struct technique *technique = b->spec.technique[b->term];
+    const struct technique *technique =
+        api_bake_is_reference(b) ? NULL : b->spec.technique[b->term];
+    const char *name = technique && b->lightmap_samples == 0 ? technique->name : name_of(b);
     if (!bake_is_complete(b->bake))
         return host_fail(&b->context->host, FAIL_ARGUMENT,
-                         "cannot report on the bake of %s: it is incomplete", technique->name);
+                         "cannot report on the bake of %s: it is incomplete", name);
     report_destroy(b->report);
     b->report = report_create(&b->context->host);
     if (!b->report) return false;
-    report_text_value(b->report, "technique",
-                      b->lightmap_samples > 0 ? LIGHTMAP_NAME : technique->name);
-    report_options(b->report, technique, b->spec.options[b->term]);
+    report_text_value(b->report, "technique", name);
+    if (technique)
+        report_options(b->report, technique, b->spec.options[b->term]);
+    else
+        report_reference_options(b->report, &b->traced);
     report_stages(b->report, b->bake);
     report_number(b->report, "seconds", bake_seconds(b->bake));
     report_number(b->report, "threads",
@@ -606,7 +628,7 @@ static bool write_report(struct ag_bake *b)
     report_number(b->report, "prepare_seconds", bake_prepare_seconds(b->bake));
     report_number(b->report, "peak_memory_bytes", peak_memory_bytes());
     report_number(b->report, "bytes", (double)bake_bytes(b->bake));
-    return b->lightmap_samples > 0 || !technique->bake_report ||
+    return !technique || b->lightmap_samples > 0 || !technique->bake_report ||
            technique->bake_report(b->report, b->bake, &b->how);
 }
 

@@ -33,6 +33,7 @@ enum ag_result ag_bake_export(const struct ag_bake *b, const char *folder)
     struct ag_context *context = b ? b->context : NULL;
     AG_REQUIRE(context, b, "bake is NULL");
     AG_REQUIRE(context, folder && folder[0], "folder is empty");
+    AG_REQUIRE(context, !api_bake_is_reference(b), "the bake is of a reference, not a technique");
     AG_REQUIRE(context, b->lightmap_samples == 0,
                "the bake is of a light map: use ag_lightmap_write");
     return api_done(context, export_to(b, folder));

@@ -1,19 +1,21 @@
-// State of a bake, shared by bake.c and renderer/bakes.c.
+// State of a bake, shared by bake.c, reference_bake.c, renderer/bakes.c and light maps.
 #pragma once
 
 #include "api/objects.h"
 
 #include "bake/bake.h"
 #include "lightmap/update/update.h"
+#include "reference/stages.h"
 #include "techniques/gi.h"
 
 struct ag_bake {
     struct ag_context *context;
     struct ag_scene *scene;
-    struct gi_spec spec;
-    int term;             // of the spec
-    int lightmap_samples; // 0: the data of the technique
-    float lightmap_noise; // bound; 0: none
+    struct gi_spec spec;          // empty: of a reference
+    int term;                     // of the spec
+    int lightmap_samples;         // 0: the data of the technique
+    float lightmap_noise;         // bound; 0: none
+    struct reference_bake traced; // of a reference: its samples are not 0
     struct scene_pose pose;
     struct technique_bake how; // refers to spec and pose
     struct bake *bake;
@@ -26,6 +28,16 @@ struct ag_bake {
     bool updates; // an earlier light map
     struct lightmap_change change;
 };
+
+static inline bool api_bake_is_reference(const struct ag_bake *b)
+{
+    return b->traced.samples > 0;
+}
+
+// Checks of ag_bake_create and ag_bake_create_reference.
+enum ag_result api_bake_check(const char *function, const struct ag_scene *scene,
+                              const struct ag_bake_desc *desc);
+struct bake_run_options api_bake_run_options(const struct ag_bake_desc *desc);
 
 // The version of the library, as bake files state it.
 const char *api_program(void);

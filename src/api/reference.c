@@ -1,20 +1,12 @@
 // The path-traced reference: checks arguments and forwards to trace/.
-#include "api/objects.h"
+#include "api/reference_state.h"
 
 #include "core/option.h"
 #include "image/exr.h"
-#include "trace/trace.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-
-struct ag_reference {
-    struct ag_context *context;
-    struct ag_scene *scene;
-    struct reference *reference;
-    char checkpoint[48];
-};
 
 // The number changes with the sampling, so that older checkpoints are refused.
 static const char CHECKPOINT_SAMPLING[] = "reference 3 ";
@@ -34,28 +26,72 @@ void ag_reference_desc_default(struct ag_reference_desc *desc)
                                             .obscurance_radius_m = 0.5f };
 }
 
-static bool build(struct ag_reference *r, const struct ag_scene *scene,
-                  const struct ag_reference_desc *desc)
+struct reference_options api_reference_options(const struct ag_reference_desc *desc)
 {
-    struct host *host = &r->context->host;
+    return (struct reference_options){ .bounces = desc->bounces,
+                                       .direct_only = desc->direct_only,
+                                       .indirect_only = desc->indirect_only,
+                                       .guiding = desc->guiding,
+                                       .antialias = desc->antialias,
+                                       .obscurance_radius_m = desc->obscurance_radius_m,
+                                       .occlusion_decay_per_m = desc->occlusion_decay_per_m,
+                                       .obscurance_sphere = desc->obscurance_sphere,
+                                       .seed = desc->seed };
+}
+
+static struct reference *build(const struct ag_scene *scene, const struct ag_reference_desc *desc)
+{
     struct scene_pose pose = { 0 };
-    if (!api_pose_at(scene, &pose, desc->animation, desc->time_s)) return false;
-    struct world_camera camera = api_camera(&desc->camera);
-    struct reference_options options = { .bounces = desc->bounces,
-                                         .direct_only = desc->direct_only,
-                                         .indirect_only = desc->indirect_only,
-                                         .guiding = desc->guiding,
-                                         .antialias = desc->antialias,
-                                         .obscurance_radius_m = desc->obscurance_radius_m,
-                                         .occlusion_decay_per_m = desc->occlusion_decay_per_m,
-                                         .obscurance_sphere = desc->obscurance_sphere,
-                                         .seed = desc->seed };
-    r->reference = reference_create(host, &pose, &camera, desc->width, desc->height, &options);
+    if (!api_pose_at(scene, &pose, desc->animation, desc->time_s)) return NULL;
+    const struct world_camera camera = api_camera(&desc->camera);
+    const struct reference_options options = api_reference_options(desc);
+    struct reference *reference = reference_create(&scene->context->host, &pose, &camera,
+                                                   desc->width, desc->height, &options);
     pose_finish(&pose);
-    if (!r->reference) return false;
+    return reference;
+}
+
+enum ag_result api_reference_check(const char *function, const struct ag_scene *scene,
+                                   const struct ag_reference_desc *desc)
+{
+    struct ag_context *context = scene->context;
+    AG_REQUIRE_KNOWN(function, context, desc);
+    AG_REQUIRE_FOR(function, context,
+                   desc->width >= 1 && desc->width <= IMAGE_MAX_SIZE && desc->height >= 1 &&
+                       desc->height <= IMAGE_MAX_SIZE,
+                   "width and height must be 1 to %d, not %d and %d", IMAGE_MAX_SIZE, desc->width,
+                   desc->height);
+    AG_REQUIRE_FOR(function, context, desc->bounces >= -1, "bounces %d is less than -1",
+                   desc->bounces);
+    AG_REQUIRE_FOR(function, context, !(desc->direct_only && desc->indirect_only),
+                   "direct_only and indirect_only exclude each other");
+    AG_REQUIRE_FOR(function, context,
+                   desc->obscurance_radius_m > 0.0f && isfinite(desc->obscurance_radius_m),
+                   "obscurance_radius_m %g is not more than 0", (double)desc->obscurance_radius_m);
+    AG_REQUIRE_FOR(function, context,
+                   desc->occlusion_decay_per_m >= 0.0f && isfinite(desc->occlusion_decay_per_m),
+                   "occlusion_decay_per_m %g is less than 0", (double)desc->occlusion_decay_per_m);
+    AG_REQUIRE_FOR(function, context, api_animation_exists(scene, desc->animation),
+                   "animation %d is not one of %d", desc->animation, scene->scene->animation_count);
+    AG_REQUIRE_FOR(function, context, isfinite(desc->time_s), "time_s is not finite");
+    return api_camera_check(context, function, &desc->camera);
+}
+
+enum ag_result api_reference_give(struct ag_scene *scene, struct reference *reference,
+                                  struct ag_reference **out)
+{
+    struct host *host = &scene->context->host;
+    struct ag_reference *r = reference ? host_alloc(host, 1, sizeof *r) : NULL;
+    if (!r) {
+        reference_destroy(reference);
+        return api_done(scene->context, false);
+    }
+    *r = (struct ag_reference){ .context = scene->context, .scene = scene, .reference = reference };
     snprintf(r->checkpoint, sizeof r->checkpoint, "%s%016" PRIx64, CHECKPOINT_SAMPLING,
-             reference_key(r->reference));
-    return true;
+             reference_key(reference));
+    api_scene_use(scene, &scene->references);
+    *out = r;
+    return api_done(scene->context, true);
 }
 
 enum ag_result ag_reference_create(struct ag_scene *scene, const struct ag_reference_desc *desc,
@@ -65,38 +101,9 @@ enum ag_result ag_reference_create(struct ag_scene *scene, const struct ag_refer
     AG_REQUIRE_OUT(context, out);
     AG_REQUIRE_POINTER(context, scene);
     AG_REQUIRE_POINTER(context, desc);
-    AG_REQUIRE_KNOWN(__func__, context, desc);
-    AG_REQUIRE(context,
-               desc->width >= 1 && desc->width <= IMAGE_MAX_SIZE && desc->height >= 1 &&
-                   desc->height <= IMAGE_MAX_SIZE,
-               "width and height must be 1 to %d, not %d and %d", IMAGE_MAX_SIZE, desc->width,
-               desc->height);
-    AG_REQUIRE(context, desc->bounces >= -1, "bounces %d is less than -1", desc->bounces);
-    AG_REQUIRE(context, !(desc->direct_only && desc->indirect_only),
-               "direct_only and indirect_only exclude each other");
-    AG_REQUIRE(context, desc->obscurance_radius_m > 0.0f && isfinite(desc->obscurance_radius_m),
-               "obscurance_radius_m %g is not more than 0", (double)desc->obscurance_radius_m);
-    AG_REQUIRE(context,
-               desc->occlusion_decay_per_m >= 0.0f && isfinite(desc->occlusion_decay_per_m),
-               "occlusion_decay_per_m %g is less than 0", (double)desc->occlusion_decay_per_m);
-    AG_REQUIRE(context, api_animation_exists(scene, desc->animation),
-               "animation %d is not one of %d", desc->animation, scene->scene->animation_count);
-    AG_REQUIRE(context, isfinite(desc->time_s), "time_s is not finite");
-    enum ag_result checked = api_camera_check(context, __func__, &desc->camera);
+    const enum ag_result checked = api_reference_check(__func__, scene, desc);
     if (checked != AG_OK) return checked;
-
-    struct ag_reference *r = host_alloc(&context->host, 1, sizeof *r);
-    if (!r) return api_done(context, false);
-    r->context = context;
-    r->scene = scene;
-    api_scene_use(scene, &scene->references);
-    bool ok = build(r, scene, desc);
-    enum ag_result result = api_done(context, ok);
-    if (ok)
-        *out = r;
-    else
-        ag_reference_destroy(r);
-    return result;
+    return api_reference_give(scene, build(scene, desc), out);
 }
 
 void ag_reference_destroy(struct ag_reference *r)

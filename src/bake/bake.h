@@ -81,6 +81,8 @@ struct bake_team {
 // With a team, rank 0 deals out the tasks and completes the bake, others run those that they are
 // given; theirs stays incomplete. README.md has the protocol.
 bool bake_run(struct bake *bake, const struct bake_run_options *options);
+// Removes the checkpoint where its result is kept in another way.
+void bake_forget_checkpoint(struct bake *bake);
 bool bake_is_complete(const struct bake *bake);
 
 // Partial files: a checkpoint of the finished tasks, by --shard. `merge` adds the tasks of a file;

@@ -109,8 +109,7 @@ bool run_bake_led(struct bake *bake, const struct bake_run_options *options, str
 
 // Takes the finished tasks of a checkpoint and of its journal, unless that has been done.
 bool bake_resume(struct bake *bake, const char *path);
-// Removes both: their tasks are in another file.
-void bake_forget_checkpoint(struct bake *bake);
+// Removes the journal beside a checkpoint.
 void bake_forget_journal(struct host *host, const char *checkpoint);
 
 // ---- estimate.c

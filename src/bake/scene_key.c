@@ -94,3 +94,16 @@ struct hash128 scene_key(const struct scene_pose *pose, unsigned parts)
     }
     return key;
 }
+
+struct hash128 scene_key_lit(const struct scene_pose *pose)
+{
+    struct hash128 key = scene_key(pose, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS);
+    const uint64_t environment = environment_key(&pose->scene->environment);
+    key = hash128_add(key, &environment, sizeof environment);
+    for (int i = 0; i < pose_light_count(pose); i++) {
+        if (i < pose->scene->light_count && pose->scene->lights[i].off) continue;
+        const struct world_light light = pose_light(pose, i);
+        key = scene_key_add_light(key, &light);
+    }
+    return key;
+}

@@ -1,5 +1,5 @@
 // Hashes of a scene for the key of a bake: XXH3-128 of exactly the parts that the bake depends on.
-// Lights, sky, cameras, names and animations are never part of scene_key.
+// Cameras, names and animations are never part of a key, lights and the sky of scene_key_lit alone.
 #pragma once
 
 #include "core/hash.h"
@@ -21,5 +21,7 @@ struct hash128 scene_key_add_shape(struct hash128 key, const struct scene_pose *
 struct hash128 scene_key_add_attributes(struct hash128 key, const struct scene *scene,
                                         int instance);
 struct hash128 scene_key_add_material(struct hash128 key, const struct scene *scene, int material);
+// Geometry, materials and all light: lights that are on, the sky, the environment.
+struct hash128 scene_key_lit(const struct scene_pose *pose);
 // A light of a pose: for bakes of light, whose keys have them besides scene_key.
 struct hash128 scene_key_add_light(struct hash128 key, const struct world_light *light);

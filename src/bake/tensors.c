@@ -14,6 +14,7 @@ static const struct {
 } types[TENSOR_TYPE_COUNT] = {
     [TENSOR_F32] = { "F32", 4 }, [TENSOR_F16] = { "F16", 2 }, [TENSOR_U8] = { "U8", 1 },
     [TENSOR_U16] = { "U16", 2 }, [TENSOR_U32] = { "U32", 4 }, [TENSOR_I32] = { "I32", 4 },
+    [TENSOR_F64] = { "F64", 8 },
 };
 
 const char *tensor_type_name(enum tensor_type type)
@@ -44,6 +45,13 @@ static bool floats_are_finite(const float *values, size_t count)
     return true;
 }
 
+static bool doubles_are_finite(const double *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(values[i])) return false;
+    return true;
+}
+
 static bool halves_are_finite(const uint16_t *values, size_t count)
 {
     static const unsigned EXPONENT = 0x7c00;
@@ -56,6 +64,7 @@ bool tensor_is_finite(const struct tensor *tensor)
 {
     const size_t count = tensor->bytes / tensor_type_bytes(tensor->type);
     if (tensor->type == TENSOR_F32) return floats_are_finite(tensor->data, count);
+    if (tensor->type == TENSOR_F64) return doubles_are_finite(tensor->data, count);
     return tensor->type != TENSOR_F16 || halves_are_finite(tensor->data, count);
 }
 

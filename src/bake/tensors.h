@@ -6,8 +6,16 @@
 
 #include <stdint.h>
 
-enum tensor_type { TENSOR_F32, TENSOR_F16, TENSOR_U8, TENSOR_U16, TENSOR_U32, TENSOR_I32 };
-enum { TENSOR_TYPE_COUNT = TENSOR_I32 + 1, TENSOR_MAX_RANK = 8 };
+enum tensor_type {
+    TENSOR_F32,
+    TENSOR_F16,
+    TENSOR_U8,
+    TENSOR_U16,
+    TENSOR_U32,
+    TENSOR_I32,
+    TENSOR_F64
+};
+enum { TENSOR_TYPE_COUNT = TENSOR_F64 + 1, TENSOR_MAX_RANK = 8 };
 
 struct tensor {
     const char *name; // a path: "cube/1/U_b"
@@ -33,7 +41,7 @@ const char *tensor_type_name(enum tensor_type type); // as in a file: "F32"
 size_t tensor_type_bytes(enum tensor_type type);
 // Product of the shape times the element's size; false on overflow.
 bool tensor_extent(enum tensor_type type, int rank, const uint64_t *shape, size_t *out);
-// F32 and F16: has no NaN and no infinity. Other types are always finite.
+// Floats: has no NaN and no infinity. Other types are always finite.
 bool tensor_is_finite(const struct tensor *tensor);
 
 bool tensor_is_same(const struct tensor *a, const struct tensor *b); // type and shape; NULL: no

@@ -56,20 +56,7 @@ static bool run(const struct bake_task *task)
     return lightmap_run_rows(task, job->charts.side_texel_count, gather, (void *)job);
 }
 
-// ---- dependencies of the light
-
-static struct hash128 key_of(const struct scene_pose *pose)
-{
-    struct hash128 key = scene_key(pose, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS);
-    const uint64_t environment = environment_key(&pose->scene->environment);
-    key = hash128_add(key, &environment, sizeof environment);
-    for (int i = 0; i < pose_light_count(pose); i++) {
-        if (i < pose->scene->light_count && pose->scene->lights[i].off) continue;
-        const struct world_light light = pose_light(pose, i);
-        key = scene_key_add_light(key, &light);
-    }
-    return key;
-}
+// ---- planning
 
 static bool add_stage(struct bake_plan *plan, int samples, uint64_t texels)
 {
@@ -92,7 +79,7 @@ static bool plan_job(struct lightmap_job *job, struct host *host, const struct l
     struct scene_statics statics;
     *job = (struct lightmap_job){ .host = host, .how = *how };
     if (!scene_statics_init(&statics, host, how->pose)) return false;
-    bake_plan_depends(plan, key_of(&statics.pose));
+    bake_plan_depends(plan, scene_key_lit(&statics.pose));
     const bool ok = how->charts(&statics.pose, how->options, host, &job->charts);
     scene_statics_finish(&statics);
     return ok && (!(how->noise > 0.0f) || noise_units_init(&job->units, &job->charts));

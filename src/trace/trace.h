@@ -136,3 +136,21 @@ extern const enum reference_layer reference_kept_layers[REFERENCE_KEPT_COUNT];
 // result equals the uninterrupted one except for rounding.
 bool reference_restore(struct reference *reference,
                        const struct image layers[REFERENCE_KEPT_COUNT]);
+
+// ---- strips: 16 adjacent pixels of an image row, as a task of a bake traces them on any machine
+
+enum {
+    REFERENCE_STRIP = 16,                              // pixels
+    REFERENCE_STRIP_VALUES = REFERENCE_STRIP * 18 + 1, // sums of each pixel, and the rays
+};
+size_t reference_strip_count(const struct reference *reference);
+// Learns where light comes from, on all cores, once; reference_render does it by itself.
+bool reference_train(struct reference *reference);
+// Adds the samples from…to − 1 of a strip's pixels to its values, which begin as zeros. Requires
+// reference_train. Any thread.
+void reference_trace_strip(const struct reference *reference, size_t strip, int from, int to,
+                           double *values);
+// Replaces all samples by those of all strips, [reference_strip_count][REFERENCE_STRIP_VALUES],
+// each with the samples 0…samples − 1: to the bit those of reference_render. FAIL_FORMAT where they
+// are not finite.
+bool reference_set_strips(struct reference *reference, int samples, const double *values);

@@ -407,3 +407,113 @@ TEST(the_reference_of_the_largest_scene_ends_and_is_finite)
     }
     close(&f);
 }
+
+// ---- samples by a bake
+
+static struct ag_bake *create_bake(struct fixture *f, int samples, int shard, int shard_count)
+{
+    struct ag_bake *bake = NULL;
+    struct ag_bake_desc desc;
+    ag_bake_desc_default(&desc);
+    desc.threads = 2;
+    desc.shard = shard;
+    desc.shard_count = shard_count;
+    assert_int_equal(ag_bake_create_reference(f->scene, &f->desc, samples, &desc, &bake), AG_OK);
+    return bake;
+}
+
+static struct ag_reference *reference_of(struct ag_bake *bake)
+{
+    struct ag_reference *r = NULL;
+    assert_int_equal(ag_reference_from_bake(bake, &r), AG_OK);
+    ag_bake_destroy(bake);
+    return r;
+}
+
+static void check_equal_layers(struct fixture *f, struct ag_reference *a, struct ag_reference *b)
+{
+    for (int i = 0; ag_reference_layer_name(i); i++) {
+        struct ag_image *of_a = read_layer(a, ag_reference_layer_name(i));
+        struct ag_image *of_b = read_layer(b, ag_reference_layer_name(i));
+        assert_memory_equal(of_a->pixels, of_b->pixels, float_count(of_a) * sizeof(float));
+        ag_image_destroy(f->context, of_a);
+        ag_image_destroy(f->context, of_b);
+    }
+}
+
+// The image cuts tiles. More samples than a task looks at in one go, and further ones.
+TEST(samples_of_a_bake_are_those_of_a_render)
+{
+    struct fixture f;
+    open(&f, "@cornell");
+    f.desc.antialias = true;
+    f.desc.seed = 3;
+    for (int samples = 5; samples <= 300; samples += 295) {
+        struct ag_reference *plain = create(&f);
+        assert_int_equal(ag_reference_render(plain, samples, NULL, NULL), AG_OK);
+        struct ag_bake *bake = create_bake(&f, samples, 0, 0);
+        assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
+        struct ag_reference *baked = reference_of(bake);
+        assert_string_equal(ag_reference_checkpoint(plain), ag_reference_checkpoint(baked));
+        check_equal_layers(&f, plain, baked);
+        assert_int_equal(ag_reference_render(plain, 2, NULL, NULL), AG_OK);
+        assert_int_equal(ag_reference_render(baked, 2, NULL, NULL), AG_OK);
+        check_equal_layers(&f, plain, baked);
+        ag_reference_destroy(plain);
+        ag_reference_destroy(baked);
+    }
+    close(&f);
+}
+
+TEST(shards_of_a_reference_are_merged)
+{
+    struct fixture f;
+    open(&f, "@cornell");
+    static const char *const parts[2] = { "part0.safetensors", "part1.safetensors" };
+    struct ag_reference *plain = create(&f);
+    assert_int_equal(ag_reference_render(plain, 150, NULL, NULL), AG_OK);
+    for (int i = 0; i < 2; i++) {
+        struct ag_bake *shard = create_bake(&f, 150, i, 2);
+        assert_int_equal(ag_bake_run(shard, NULL, NULL), AG_OK);
+        assert_int_equal(ag_bake_save_partial(shard, test_path(parts[i])), AG_OK);
+        ag_bake_destroy(shard);
+    }
+    struct ag_bake *bake = create_bake(&f, 150, 0, 0);
+    for (int i = 0; i < 2; i++) assert_int_equal(ag_bake_merge(bake, test_path(parts[i])), AG_OK);
+    struct ag_bake_info info;
+    assert_int_equal(ag_bake_get_info(bake, &info), AG_OK);
+    CHECK(info.complete);
+    assert_string_equal(info.technique, "reference");
+    const char *report = NULL;
+    assert_int_equal(ag_bake_report(bake, &report), AG_OK);
+    CHECK(strstr(report, "\"samples\": 150"));
+    assert_int_equal(ag_bake_remove_checkpoint(bake), AG_OK);
+    struct ag_reference *baked = reference_of(bake);
+    check_equal_layers(&f, plain, baked);
+    ag_reference_destroy(plain);
+    ag_reference_destroy(baked);
+    close(&f);
+}
+
+TEST(wrong_bakes_of_a_reference_are_refused)
+{
+    struct fixture f;
+    open(&f, "@cornell");
+    struct ag_bake *bake = NULL, *other = NULL;
+    struct ag_reference *r = NULL;
+    struct ag_bake_desc desc;
+    ag_bake_desc_default(&desc);
+    desc.lightmap_samples = 4;
+    CHECK_REFUSED(f.context, ag_bake_create_reference(f.scene, &f.desc, 0, NULL, &bake));
+    CHECK_REFUSED(f.context, ag_bake_create_reference(f.scene, &f.desc, 1, &desc, &bake));
+    assert_null(bake);
+    bake = create_bake(&f, 1, 0, 0);
+    CHECK_REFUSED(f.context, ag_reference_from_bake(bake, &r)); // it is incomplete
+    CHECK_REFUSED(f.context, ag_bake_export(bake, "."));
+    assert_int_equal(ag_bake_create(f.scene, "radiosity:density=1", NULL, &other), AG_OK);
+    CHECK_REFUSED(f.context, ag_reference_from_bake(other, &r));
+    assert_null(r);
+    ag_bake_destroy(bake);
+    ag_bake_destroy(other);
+    close(&f);
+}

@@ -171,7 +171,7 @@ TEST(safetensors_refuses_hostile_headers_with_the_tensor_and_the_reason)
         { "{\"a\":{\"dtype\":\"F32\",\"shape\":[4.0],\"data_offsets\":[0,16]}}", "no shape" },
         { "{\"a\":{\"dtype\":\"F32\",\"shape\":[1,1,1,1,1,1,1,1,4],\"data_offsets\":[0,16]}}",
           "no shape of at most 8" },
-        { "{\"a\":{\"dtype\":\"F64\",\"shape\":[2],\"data_offsets\":[0,16]}}",
+        { "{\"a\":{\"dtype\":\"I64\",\"shape\":[2],\"data_offsets\":[0,16]}}",
           "tensor a has an unknown dtype" },
         { "{\"a\":{\"dtype\":\"F32\",\"shape\":[4],\"data_offsets\":[0,16],\"x\":1}}",
           "is not described by" },
@@ -214,12 +214,15 @@ TEST(tensors_that_are_not_finite_are_found)
 {
     float floats[3] = { 1, -2, 3 };
     uint16_t halves[2] = { 0x7bff, 0x0001 };
+    double doubles[2] = { 1e300, -0.0 };
     const struct tensor f = { "f", TENSOR_F32, 1, { 3 }, floats, sizeof floats };
+    const struct tensor d = { "d", TENSOR_F64, 1, { 2 }, doubles, sizeof doubles };
     const struct tensor h = { "h", TENSOR_F16, 1, { 2 }, halves, sizeof halves };
-    CHECK(tensor_is_finite(&f) && tensor_is_finite(&h));
+    CHECK(tensor_is_finite(&f) && tensor_is_finite(&h) && tensor_is_finite(&d));
     floats[2] = NAN;
     halves[1] = 0xfc00; // −∞
-    CHECK(!tensor_is_finite(&f) && !tensor_is_finite(&h));
+    doubles[1] = (double)INFINITY;
+    CHECK(!tensor_is_finite(&f) && !tensor_is_finite(&h) && !tensor_is_finite(&d));
 }
 
 TEST(tensors_expect_names_the_tensor_and_the_difference)

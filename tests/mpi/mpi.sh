@@ -41,11 +41,12 @@ alone() {
     "$program" bake $long --force
     mv long.safetensors wanted.safetensors
 }
-# Waits until the journal has $1 bytes, a minute at most.
+# Waits until the journal of the file $2 has $1 bytes, a minute at most.
 wait_for_results() {
     i=0
+    journal=${2:-long.safetensors}.checkpoint.tasks
     while [ $i -lt 600 ]; do
-        [ ! -f long.safetensors.checkpoint.tasks ] || [ "$(wc -c <long.safetensors.checkpoint.tasks)" -lt "$1" ] || return 0
+        [ ! -f "$journal" ] || [ "$(wc -c <"$journal")" -lt "$1" ] || return 0
         sleep 0.1
         i=$((i + 1))
     done
@@ -95,6 +96,14 @@ same_bytes)
         same maps-0/irradiance.exr maps-$count/irradiance.exr
         same maps-0/scene.glb maps-$count/scene.glb
     done
+    # The samples of a reference, of tiles that the image cuts.
+    "$program" reference @cornell --size 50x37 --spp 20 --quiet -o image-0.exr
+    for count in 1 2 3 4; do
+        ranks $count reference @cornell --size 50x37 --spp 20 --quiet -o image-$count.exr 2>messages ||
+            fail "the reference with $count ranks failed"
+        same image-0.exr image-$count.exr
+        [ ! -e image-$count.exr.checkpoint ] && [ ! -e image-$count.exr.checkpoint.tasks ] || fail "a checkpoint is left"
+    done
     # From the cache, which only rank 0 reads.
     ranks 2 bake @cornell --gi radiosity:density=3 --lightmap maps-5 --spp 16 2>messages || fail "the cached light map failed"
     same maps-0/irradiance.exr maps-5/irradiance.exr
@@ -115,6 +124,22 @@ killed)
             resumes
         done
     done
+    # A reference, whose results go on from the journal, too.
+    image='@atrium --size 320x180 --spp 64 -o image.exr'
+    # shellcheck disable=SC2086
+    "$program" reference ${image%image.exr}wanted.exr --quiet
+    # shellcheck disable=SC2086
+    ranks 3 reference $image --quiet >/dev/null 2>messages &
+    run=$!
+    victim=
+    while [ -z "$victim" ] && kill -0 $run; do victim=$(process_of 1); done
+    wait_for_results 500000 image.exr
+    kill -9 "$victim"
+    wait $run && fail "a reference whose rank 1 was killed succeeded"
+    # shellcheck disable=SC2086
+    ranks 2 reference $image --verbose >/dev/null 2>messages || fail "the next reference failed"
+    [ "$(finished_tasks)" -gt 0 ] || fail "the next reference did not continue"
+    same wanted.exr image.exr
     ;;
 signals)
     alone
@@ -171,7 +196,10 @@ refused)
     says 'rank 1: cannot read scene.glb'
     sentences 1
     ranks 2 render @cornell >/dev/null 2>messages && fail "render runs on several ranks"
-    says 'cannot run render on 2 ranks: only bake works on several'
+    says 'cannot run render on 2 ranks: only bake and reference work on several'
+    sentences 1
+    ranks 2 reference @cornell --resume -o a.exr >/dev/null 2>messages && fail "--resume is shared"
+    says 'cannot use --resume with afterglow-mpi'
     sentences 1
     ranks 2 bake @cornell --gi radiosity --shard 0/2 -o a.safetensors >/dev/null 2>messages && fail "parts are shared"
     says 'cannot use --shard with afterglow-mpi'

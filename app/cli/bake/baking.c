@@ -59,18 +59,37 @@ static enum ag_result create(struct baking *b, const char *gi, const struct ag_b
     return ag_bake_create(scene, gi, &all, &b->bake);
 }
 
+static enum status begin_at(struct baking *b, const char *path)
+{
+    const enum status status = find_path(b, path);
+    if (status != DONE || !b->path[0]) return status;
+    char checkpoint[PATH_SIZE + sizeof CHECKPOINT];
+    snprintf(checkpoint, sizeof checkpoint, "%s%s", b->path, CHECKPOINT);
+    const enum ag_result result = ag_bake_set_checkpoint(b->bake, checkpoint);
+    return result == AG_OK ? DONE : fail_bake(b, result);
+}
+
 enum status baking_begin(struct baking *b, struct session *session, const char *gi,
                          const struct ag_bake_desc *desc, const char *path)
 {
     *b = (struct baking){ .session = session, .estimate_seconds = (double)NAN };
-    enum ag_result result = create(b, gi, desc);
-    if (result != AG_OK) return fail_bake(b, result);
-    enum status status = find_path(b, path);
-    if (status != DONE || !b->path[0]) return status;
-    char checkpoint[PATH_SIZE + sizeof CHECKPOINT];
-    snprintf(checkpoint, sizeof checkpoint, "%s%s", b->path, CHECKPOINT);
-    result = ag_bake_set_checkpoint(b->bake, checkpoint);
-    return result == AG_OK ? DONE : fail_bake(b, result);
+    const enum ag_result result = create(b, gi, desc);
+    return result == AG_OK ? begin_at(b, path) : fail_bake(b, result);
+}
+
+enum status baking_begin_reference(struct baking *b, struct session *session,
+                                   const struct ag_reference_desc *of, int samples,
+                                   const char *path)
+{
+    struct ag_bake_desc desc;
+    ag_bake_desc_default(&desc);
+    desc.threads = session->arguments->threads;
+    *b = (struct baking){ .session = session,
+                          .of_reference = true,
+                          .estimate_seconds = (double)NAN };
+    const enum ag_result result =
+        ag_bake_create_reference(session->scene, of, samples, &desc, &b->bake);
+    return result == AG_OK ? begin_at(b, path) : fail_bake(b, result);
 }
 
 void baking_end(struct baking *b)
@@ -198,6 +217,12 @@ enum status baking_merge(struct baking *b)
 
 // ---- the run
 
+// "baking mrt"
+static void print_work(const struct baking *b, char out[64])
+{
+    snprintf(out, 64, "%s %.32s", b->of_reference ? "tracing the" : "baking", b->technique);
+}
+
 // 1234567 as "1.23 million".
 static void print_count(double count, char out[32])
 {
@@ -235,7 +260,7 @@ static enum status estimate(struct baking *b, bool shard)
     const struct arguments *a = b->session->arguments;
     const long long mib = a->max_memory_mib;
     struct ag_bake_estimate needs;
-    char texels[32], rays[32];
+    char texels[32], rays[32], work[64];
     enum ag_result result = ag_bake_estimate_cost(b->bake, false, &needs);
     // Refused before the probe, which takes memory too.
     if (result == AG_OK && mib > 0 && needs.peak_memory_bytes > (uint64_t)mib << 20)
@@ -247,9 +272,11 @@ static enum status estimate(struct baking *b, bool shard)
     b->estimate_seconds = needs.seconds / (a->team ? a->team->ranks.count : 1);
     print_count(needs.texels, texels);
     print_count(needs.rays, rays);
-    note("baking %s: %s texels, %s rays, about %.*f s, %.0f MB of memory, %.1f MB on disk",
-         b->technique, texels, rays, b->estimate_seconds < 10.0 ? 1 : 0, b->estimate_seconds,
-         (double)needs.peak_memory_bytes * 1e-6, (double)needs.file_bytes * 1e-6);
+    print_work(b, work);
+    note("%s: %s %s, %s rays, about %.*f s, %.0f MB of memory, %.1f MB on disk", work, texels,
+         b->of_reference ? "pixels" : "texels", rays, b->estimate_seconds < 10.0 ? 1 : 0,
+         b->estimate_seconds, (double)needs.peak_memory_bytes * 1e-6,
+         (double)needs.file_bytes * 1e-6);
     return DONE;
 }
 
@@ -260,7 +287,9 @@ struct watch {
 
 static enum status interrupted(const struct baking *b)
 {
-    return fail("baking of %s: interrupted; %s", b->technique,
+    char work[64];
+    print_work(b, work);
+    return fail("%s: interrupted; %s", work,
                 b->path[0] ? "the same command continues with what was finished"
                            : "without a cache its results are lost");
 }
@@ -277,8 +306,9 @@ static void leave_if_late(const struct watch *watch)
 static bool show(void *user, const struct ag_bake_progress *p)
 {
     struct watch *watch = user;
-    char what[128];
-    snprintf(what, sizeof what, "baking %.32s, %.64s", watch->baking->technique, p->stage);
+    char what[160], work[64];
+    print_work(watch->baking, work);
+    snprintf(what, sizeof what, "%s, %.64s", work, p->stage);
     progress_share(what, p->done, p->seconds_left);
     if (interrupt_caught() && watch->stopped_s <= 0.0) watch->stopped_s = now_s();
     if (p->stopping) leave_if_late(watch);
@@ -330,7 +360,7 @@ static enum status write_file(struct baking *b, bool shard)
     return DONE;
 }
 
-enum status baking_run(struct baking *b, bool shard)
+enum status baking_complete(struct baking *b, bool shard)
 {
     struct ag_bake_info info;
     ag_bake_get_info(b->bake, &info);
@@ -340,7 +370,12 @@ enum status baking_run(struct baking *b, bool shard)
              b->technique, b->no_cache);
     enum status status = info.complete ? DONE : estimate(b, shard);
     if (status == DONE && run_it) status = run(b);
-    if (status == DONE && !run_it) status = baking_settle(b);
+    return status == DONE && !run_it ? baking_settle(b) : status;
+}
+
+enum status baking_run(struct baking *b, bool shard)
+{
+    const enum status status = baking_complete(b, shard);
     return status == DONE ? write_file(b, shard) : status;
 }
 

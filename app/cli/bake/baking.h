@@ -19,12 +19,17 @@ struct baking {
     bool settled;                  // the other ranks of the team know that it is complete
     bool from_cache;               // that file is in the cache
     bool updates;                  // an earlier light map
+    bool of_reference;             // the samples of the path-traced reference, not data
     double estimate_seconds;       // of the whole run, before it; NaN: nothing was estimated
 };
 // Creates the bake of one technique of the spec. path NULL: a file in the cache. desc: see
 // ag_bake_create.
 enum status baking_begin(struct baking *b, struct session *session, const char *gi,
                          const struct ag_bake_desc *desc, const char *path);
+// The samples of a reference, kept in a checkpoint beside the file that the caller writes.
+enum status baking_begin_reference(struct baking *b, struct session *session,
+                                   const struct ag_reference_desc *of, int samples,
+                                   const char *path);
 void baking_end(struct baking *b); // accepts zero
 // Wrong usage of --shard and --merge. file: a merged bake is written to -o.
 enum status baking_check_parts(const struct arguments *arguments, bool file);
@@ -34,7 +39,10 @@ enum status baking_merge(struct baking *b); // adds the tasks of all parts
 // Reads the file of `path`, or of the cache. False: there is none, or it does not fit, which a note
 // says.
 bool baking_load(struct baking *b);
-// Says what it needs, runs with a progress bar and writes the file. After Ctrl-C it fails; what was
+// Says what it needs and runs with a progress bar. After Ctrl-C it fails; what was finished is kept
+// in the checkpoint.
+enum status baking_complete(struct baking *b, bool shard);
+// The same, and writes the file. After Ctrl-C it fails; what was
 // finished is kept in a checkpoint. shard: write a partial file.
 enum status baking_run(struct baking *b, bool shard);
 

@@ -17,7 +17,9 @@ static const struct bake *find_given(const struct ag_renderer_desc *desc, const 
 {
     for (int i = 0; i < desc->bake_count; i++) {
         const struct ag_bake *given = desc->bakes[i];
-        if (!given || !same_bake(given->spec.technique[given->term], technique)) continue;
+        if (!given || api_bake_is_reference(given) ||
+            !same_bake(given->spec.technique[given->term], technique))
+            continue;
         *of_technique = true;
         if (bake_is_complete(given->bake) && bake_fits(given->bake, wanted)) return given->bake;
     }

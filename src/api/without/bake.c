@@ -127,6 +127,12 @@ enum ag_result ag_bake_load(struct ag_bake *bake, const char *path)
     return ag_bake_set_checkpoint(bake, path);
 }
 
+enum ag_result ag_bake_remove_checkpoint(struct ag_bake *bake)
+{
+    (void)bake;
+    return absent(NULL, __func__);
+}
+
 enum ag_result ag_bake_save_partial(struct ag_bake *bake, const char *path)
 {
     return ag_bake_set_checkpoint(bake, path);
