@@ -289,6 +289,9 @@ static void mrt_update(void *state, struct gpu_cmd *cmd, const struct frame_view
     if (mrt_update_record(mrt, cmd)) mrt->kept.known = false;
     if (!is_kept(mrt, view)) {
         mrt_record_direct(&mrt->runtime, cmd, view, mrt->options.emitters);
+        // Light of the CPU is that of another frame.
+        if (mrt->options.bright && mrt->options.solver == MRT_SOLVER_GPU)
+            mrt_record_bright(&mrt->runtime, cmd);
         record_solution(mrt, cmd, view);
         mrt_record_light_map(&mrt->runtime, cmd);
         mrt_record_outdoors(&mrt->runtime, cmd, view);

@@ -13,6 +13,9 @@
 #define MRT_CLUTTER_LOCAL 64  // workgroup size of r and c of a level with clutter
 #define MRT_FACE_SAMPLES  32  // texels of a face of clutter that lights are computed at, at most
 
+#define MRT_BRIGHT_TEXELS 256   // of a block, at most
+#define MRT_BRIGHT_TIMES  12.0f // their radiosity over the mean of the block's texels, at least
+
 // Specialization constants.
 #define MRT_CONSTANT_HALF     0 // operators are half floats, else floats
 #define MRT_CONSTANT_QUADS_B  1 // k_b / 4
@@ -63,6 +66,12 @@ struct mrt_texel {
 // the block's light that objects hide.
 struct mrt_gpu_area_light {
     vec3s irradiance, along[2], hidden;
+};
+
+// A texel on a wall, and its radiosity above the mean. normal: inwards, of the
+// length of its area.
+struct mrt_gpu_bright_texel {
+    vec3s position, normal, radiosity;
 };
 
 // A wall of a block: `texels` texels from first_texel.
@@ -210,6 +219,7 @@ _Static_assert(sizeof(struct mrt_gpu_reflector_row) == 8, "layout is shared with
 _Static_assert(sizeof(struct mrt_gpu_reflector_share) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_texel) == 132, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_area_light) == 48, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_bright_texel) == 36, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_tile) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_block) == 220, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_probe) == 152, "layout is shared with GLSL");

@@ -206,9 +206,11 @@ TEST_GPU(mrt_lobes_reflect_the_side_that_light_comes_from)
     print_message("towards the lit wall %.2f cd/m2, away from it %.2f\n", towards, away);
     CHECK(towards > 1.5 * away && away > 0.0);
     const double mean = seen_from(gpu, BOUNCE, ",vector=false", 0.4f, 1);
-    CHECK_RELATIVE(mean, seen_from(gpu, BOUNCE, ",vector=false", 0.4f, -1), 0.02);
+    // The middles of both pixels are 2.5 cm apart, over which light from the wall falls by 2 %.
+    static const double BOTH = 0.03;
+    CHECK_RELATIVE(mean, seen_from(gpu, BOUNCE, ",vector=false", 0.4f, -1), BOTH);
     CHECK(mean > away && mean < towards);
-    CHECK_RELATIVE(seen_from(gpu, BOUNCE, "", 0, 1), seen_from(gpu, BOUNCE, "", 0, -1), 0.02);
+    CHECK_RELATIVE(seen_from(gpu, BOUNCE, "", 0, 1), seen_from(gpu, BOUNCE, "", 0, -1), BOTH);
     CHECK(seen_from(gpu, BOUNCE, ",specular=false", 0.4f, 1) == 0.0);
 }
 

@@ -148,6 +148,40 @@ struct trial_error trial_error_of(struct gpu *gpu, trial_build build, const char
     return error;
 }
 
+static double mean_of_square(const struct image *image, int x0, int y0, int size)
+{
+    double sum = 0.0;
+    for (int y = y0; y < y0 + size; y++)
+        for (int x = x0; x < x0 + size; x++) sum += (double)image_at(image, x, y)[1];
+    return sum / (size * size);
+}
+
+static const double DARK = 0.1; // of the mean
+
+struct trial_squares trial_squares_of(struct gpu *gpu, trial_build build, const char *gi,
+                                      int bounces, int samples, int size)
+{
+    struct frame_fixture s;
+    struct image expected, got = technique_image(gpu, build, gi);
+    struct trial_squares out = { .least = HUGE_VAL };
+    build(&s, gpu);
+    trace_reference(&s, bounces, samples, &expected, NULL);
+    fixture_finish(&s);
+    const double mean = mean_of(&expected);
+    for (int y = 0; y + size <= got.height; y += size)
+        for (int x = 0; x + size <= got.width; x += size) {
+            const double light = mean_of_square(&expected, x, y, size);
+            const double share = mean_of_square(&got, x, y, size) / light;
+            if (light < DARK * mean) continue;
+            out.least = fmin(out.least, share);
+            out.most = fmax(out.most, share);
+        }
+    out.mean = mean_of(&got) / mean;
+    image_finish(&got, test_host());
+    image_finish(&expected, test_host());
+    return out;
+}
+
 void trial_check_energy(struct gpu *gpu,
                         void (*build)(struct frame_fixture *s, struct gpu *gpu, bool view),
                         int samples, const struct trial_bounds *bounds, size_t count)

@@ -31,6 +31,14 @@ struct trial_error {
 };
 typedef void (*trial_build)(struct frame_fixture *s, struct gpu *gpu);
 struct trial_error trial_error_of(struct gpu *gpu, trial_build build, const char *gi, int samples);
+// Irradiance (green) over that of the reference with `bounces`: of squares of `size` pixels, whose
+// mean has less noise and is at least a tenth of the image's, and of the image. All pixels see a
+// surface.
+struct trial_squares {
+    double least, most, mean;
+};
+struct trial_squares trial_squares_of(struct gpu *gpu, trial_build build, const char *gi,
+                                      int bounces, int samples, int size);
 // Bounds of the energy of a technique over that of the reference with all bounces.
 struct trial_bounds {
     const char *gi;

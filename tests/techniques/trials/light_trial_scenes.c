@@ -257,6 +257,17 @@ void trial_small_patch(struct frame_fixture *s, struct gpu *gpu)
     fixture_look(s, vec3_of(-2.8f, 2.6f, 1.8f), vec3_of(1, 0.8f, -1));
 }
 
+void trial_patch_beside_corner(struct frame_fixture *s, struct gpu *gpu)
+{
+    fixture_init(s, gpu);
+    s->options.shadow_size = 1024;
+    const int white = fixture_matte(s, grey(0.7f)), brown = fixture_matte(s, grey(0.35f));
+    const int materials[6] = { white, white, brown, white, white, white };
+    add_walls(s, vec3_of(-3, 0, -2.5f), vec3_of(0, 2.8f, 2.5f), materials);
+    fixture_add_spot(s, vec3_of(-1.2f, 2.7f, 0.2f), vec3_of(0, -1, 0), 0.05f, 0.3f, grey(1000));
+    fixture_look(s, vec3_of(-1, 1.6f, 0.5f), vec3_of(-3, 0.2f, -2.5f));
+}
+
 // Rings of quads between the poles.
 static void add_sphere(struct frame_fixture *s, vec3s center, float radius, int material)
 {

@@ -53,6 +53,8 @@ void trial_empty_room(struct frame_fixture *s, struct gpu *gpu);
 
 // A room of 6 × 3 × 4 (albedo 0.7); a spot in the ceiling lights a patch of 0.5 on the floor.
 void trial_small_patch(struct frame_fixture *s, struct gpu *gpu);
+// A corner of a room of 3 x 2.8 x 5 m, with a lit patch on its floor.
+void trial_patch_beside_corner(struct frame_fixture *s, struct gpu *gpu);
 
 // A room of 6 × 3 × 4 (albedo 0.7) with three spheres on its floor, lit by a small bright spot: a
 // point light 12 cm below the ceiling, in a far corner.

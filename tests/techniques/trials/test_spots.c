@@ -20,6 +20,31 @@ TEST_GPU(a_small_sunlit_patch_lights_its_room)
                 1.5);
 }
 
+// Modes of few numbers ring around a patch that is far brighter than the rest of its room: one
+// bounce was black at the feet of walls.
+TEST_GPU(walls_are_not_dark_beside_a_lit_patch)
+{
+    static const struct {
+        const char *gi;
+        int bounces;
+        double least, most;
+    } cases[] = { { "lpv", -1, 0.5, 2.0 },
+                  { "holpv", -1, 0.5, 2.0 },
+                  { "vct", -1, 0.5, 2.0 },
+                  { RADIOSITY, -1, 0.8, 1.25 },
+                  { MRT_FINE, -1, 0.8, 1.25 },
+                  { DRT_FINE, -1, 0.8, 1.25 },
+                  { MRT_FINE ",bounces=1", 1, 0.5, 2.0 },
+                  { DRT_FINE ",bounces=1", 1, 0.5, 2.0 } };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const struct trial_squares e =
+            trial_squares_of(gpu, trial_patch_beside_corner, cases[i].gi, cases[i].bounces, 512, 8);
+        print_message("%s: squares of pixels have %.2f to %.2f of their light, mean %.2f\n",
+                      cases[i].gi, e.least, e.most, e.mean);
+        CHECK(e.least > cases[i].least && e.most < cases[i].most);
+    }
+}
+
 TEST_GPU(many_small_emitters_give_their_light)
 {
     static const struct share_case cases[] = { { "lpv", 0.8 },  { "holpv", 0.9 },

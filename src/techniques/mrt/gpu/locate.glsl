@@ -5,6 +5,7 @@
 #ifndef AG_MRT_LOCATE_GLSL
 #define AG_MRT_LOCATE_GLSL
 
+#include "techniques/mrt/gpu/face.glsl"
 #include "techniques/mrt/gpu/level.glsl"
 #ifdef MRT_BLOCK_ROWS_BINDING
 #include "techniques/mrt/gpu/block_rows.glsl"
@@ -153,15 +154,6 @@ vec3 turned_by(mat3 edges, vec3 direction)
 vec3 direction_in_cell(mrt_place place, vec3 direction)
 {
     return turned_by(world_from_cell(place), direction);
-}
-
-// cube_from_face of dictionary/cube.h: columns u, v and n, n outward.
-mat3 cube_from_face(int face)
-{
-    vec3 n = vec3(0.0), v = vec3(0.0);
-    n[face / 2] = (face & 1) != 0 ? 1.0 : -1.0;
-    v[face / 2 == 1 ? 2 : 1] = 1.0;
-    return mat3(cross(v, n), v, n);
 }
 
 #endif

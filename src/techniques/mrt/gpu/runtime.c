@@ -141,6 +141,9 @@ static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime
         uint32_t constants;
     } all[] = {
         { &p->direct, "direct", &shader_mrt_gpu_direct_comp, 0 },
+        { &p->bright, "bright", lists ? &shader_mrt_gpu_bright_comp : NULL, HALF | QUADS_B },
+        { &p->bright_light, "bright_light", lists ? &shader_mrt_gpu_bright_light_comp : NULL,
+          HALF | QUADS_B | (vector ? VECTOR : VALUES) },
         { &p->project, "project", &shader_mrt_gpu_project_comp, HALF | QUADS_B },
         { &p->bounce, "bounce", &shader_mrt_gpu_bounce_comp, QUADS_B | QUADS_R },
         { &p->couple, "couple", &shader_mrt_gpu_couple_comp, HALF | QUADS_B | QUADS_R },
@@ -169,8 +172,8 @@ static bool make_all(struct mrt_runtime *out, const struct mrt_runtime_input *in
     return mrt_tables_upload(out, input) && mrt_reflectors_upload(out, input) &&
            mrt_lookup_grid_upload(out, input->map) && mrt_probes_upload(out, input) &&
            mrt_outdoors_upload(out, input) && mrt_operators_upload(out, input) &&
-           make_buffers(out, input->operators) && make_images(out) && make_pipelines(out, input) &&
-           mrt_clutter_upload(out, input);
+           make_buffers(out, input->operators) && mrt_bright_upload(out, input->operators->k_b) &&
+           make_images(out) && make_pipelines(out, input) && mrt_clutter_upload(out, input);
 }
 
 bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
@@ -272,6 +275,6 @@ uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
            s.walls * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
            s.texels * s.k_b * s.number * (1 + s.values) + 3 * s.k_b * s.k_b * sizeof(float) +
            MRT_RESPONSES * s.texels * s.k_r * s.number * s.values +
-           map * (size->options.vector ? LIGHT_MAP_LAYERS : 1) + bytes_of_probes(&s) +
-           bytes_of_clutter(&s);
+           map * (size->options.vector ? LIGHT_MAP_LAYERS : 1) + mrt_bright_bytes(s.k_b) +
+           bytes_of_probes(&s) + bytes_of_clutter(&s);
 }

@@ -36,6 +36,7 @@ struct mrt_runtime_options {
 
 struct mrt_runtime_pipelines {
     gpu_pipeline reflectors, reflectors_bounce, direct, project, bounce, couple;
+    gpu_pipeline bright, bright_light; // of affine cubes
     gpu_pipeline reconstruct, reconstruct_vector;
     gpu_pipeline fill;
     gpu_pipeline rows, apply, debug;
@@ -137,6 +138,9 @@ uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size);
 // Radiosity of the texels before any bounce.
 void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                        const struct frame_view *view, bool emitters);
+// Replaces the first bounce of far brighter texels than the others of their block, of which few
+// modes make dark and bright patches. Nothing where blocks are no affine cubes.
+void mrt_record_bright(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
 // feedback: the weight of the last call's indirect light, which the first bounce reflects too;
 // 0: none. rest: that of the last power of the series, 1, or runtime.rest for its remainder, too.
 struct mrt_bounces {

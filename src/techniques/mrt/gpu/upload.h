@@ -113,6 +113,10 @@ struct mrt_scales {
 bool mrt_reflection_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
                            const struct mrt_scales *scales);
 
+// Bright texels of blocks.
+bool mrt_bright_upload(struct mrt_runtime *runtime, int k_b);
+uint64_t mrt_bright_bytes(uint64_t k_b); // of a block; k_b: padded
+
 // Clutter: nothing without openings that are clutter. Direct light of its faces; its light map.
 bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
 bool mrt_clutter_direct_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
