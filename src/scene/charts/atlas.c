@@ -34,6 +34,16 @@ void atlas_finish(struct atlas *atlas)
     *atlas = (struct atlas){ 0 };
 }
 
+void atlas_copy(struct atlas *to, const struct atlas *from)
+{
+    for (uint32_t l = 0; l < ATLAS_LEVELS; l++) {
+        const struct atlas_level *level = &from->level[l];
+        memcpy(to->level[l].bits, level->bits,
+               (size_t)(level->rows + 1) * level->words * sizeof *level->bits);
+        memcpy(to->level[l].lowest, level->lowest, sizeof level->lowest);
+    }
+}
+
 // ---- rows
 
 static uint64_t word_at(const uint64_t *bits, uint32_t words, uint32_t word)

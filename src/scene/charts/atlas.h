@@ -23,6 +23,8 @@ struct atlas_place {
 bool atlas_init(struct atlas *out, struct host *host, uint32_t width, uint32_t height);
 // Accepts zero.
 void atlas_finish(struct atlas *atlas);
+// Both have one size.
+void atlas_copy(struct atlas *to, const struct atlas *from);
 // Lowers *best to the place with the lowest top for a turn of the grid.
 void atlas_find(struct atlas *atlas, const struct footprint_grid *grid, uint32_t turns,
                 struct atlas_place *best);

@@ -105,6 +105,7 @@ static void clear(struct charts *charts)
     host_free(charts->host, charts->front_of);
     host_free(charts->host, charts->triangle_0);
     host_free(charts->host, charts->chart_triangle);
+    host_free(charts->host, charts->pages);
     *charts = (struct charts){ .host = charts->host, .without_area = charts->without_area };
 }
 

@@ -10,11 +10,17 @@
 //
 // Charts that would fit in a texel may be joined to single-texel charts: all corners are at the
 // centre of the texel.
+//
+// An atlas may be divided into pages (pages.c), each an image for an engine: all charts of an
+// instance lie on one of them.
 #pragma once
 
 #include "scene/pose.h"
 
 enum { CHART_GUTTER = 1, CHART_MAX_SIDE = 16384 };
+// Sides of the atlas and of pages: images of such sizes have whole blocks of compression formats,
+// at half size, too.
+enum { CHART_SIDE_MULTIPLE = 8 };
 #define CHART_NONE UINT32_MAX
 
 // Normals within a chart of clusters differ from its plane's by at most acos of this. Lengths are
@@ -60,6 +66,7 @@ struct chart {
     uint32_t first_back;          // of the texels of both sides; CHART_NONE: it has no back
     uint32_t x, y, width, height; // gutters included
     uint32_t turns;               // quarter turns by which it was packed
+    uint32_t page;                // of the atlas
     float area_m2;
     vec3s normal; // unit; the plane's for clusters, the mean for islands
 };
@@ -85,6 +92,11 @@ struct chart_texel {
     vec3s centroid;    // world, of the same surface; beside it where that is curved
 };
 
+// Its place in the atlas. Pages do not overlap.
+struct chart_page {
+    uint32_t x, y, width, height;
+};
+
 struct charts {
     struct host *host;
     float texels_per_m; // reached
@@ -106,6 +118,8 @@ struct charts {
     size_t *triangle_0;       // [instances + 1] first triangle of an instance, in chart_triangle
     uint32_t *chart_triangle; // [triangles of the scene] in `triangles`; CHART_NONE: in no chart
     uint32_t without_area;    // chosen triangles that are in no chart
+    struct chart_page *pages; // [page_count]; NULL: the atlas is the only one
+    uint32_t page_count;
 };
 
 // Deterministic. A warning, one for a scene, names the meshes whose TEXCOORD_1 cannot be used.
@@ -115,12 +129,6 @@ bool charts_init(struct charts *out, struct host *host, const struct scene_pose 
 void charts_finish(struct charts *charts);
 // instance_count: of the scene.
 bool charts_copy(struct charts *out, const struct charts *from, int instance_count);
-// Texels over places of the atlas.
-static inline float charts_utilisation(const struct charts *charts)
-{
-    const float places = (float)charts->width * (float)charts->height;
-    return places > 0.0f ? (float)charts->texel_count / places : 0.0f;
-}
 // The place of a texel in its chart's own frame, gutters included: it does not depend on where
 // other charts are packed.
 struct chart_place {
@@ -148,6 +156,44 @@ struct charts_wish {
 };
 bool charts_init_wanted(struct charts *out, struct host *host, const struct scene_pose *pose,
                         const struct charts_wish *wish);
+
+// ---- pages.c
+
+enum { CHART_LEAST_PAGE = 64 };
+
+static inline uint32_t charts_page_count(const struct charts *charts)
+{
+    return charts->pages ? charts->page_count : 1;
+}
+
+static inline struct chart_page charts_page(const struct charts *charts, uint32_t page)
+{
+    return charts->pages ? charts->pages[page]
+                         : (struct chart_page){ .width = charts->width, .height = charts->height };
+}
+
+// Places of all pages.
+static inline double charts_page_places(const struct charts *charts)
+{
+    double sum = 0.0;
+    for (uint32_t i = 0; i < charts_page_count(charts); i++) {
+        const struct chart_page page = charts_page(charts, i);
+        sum += (double)page.width * page.height;
+    }
+    return sum;
+}
+
+// Texels over places of the pages.
+static inline float charts_utilisation(const struct charts *charts)
+{
+    const double places = charts_page_places(charts);
+    return places > 0.0 ? (float)((double)charts->texel_count / places) : 0.0f;
+}
+
+// Moves the charts onto pages of `side` places' width, a multiple of CHART_SIDE_MULTIPLE; the last
+// page may be less high. Nothing changes where the atlas fits on one page as it is. Charts are not
+// turned, and texels keep their numbers. FAIL_MEMORY names an instance that does not fit on a page.
+bool charts_set_pages(struct charts *charts, const struct scene *scene, uint32_t side);
 
 // ---- sides.c: texels of both sides
 

@@ -30,6 +30,7 @@ bool charts_copy(struct charts *out, const struct charts *from, int instance_cou
     out->triangle_0 = copy(host, from->triangle_0, instances + 1, sizeof *from->triangle_0, &ok);
     out->chart_triangle =
         copy(host, from->chart_triangle, triangles, sizeof *from->chart_triangle, &ok);
+    out->pages = copy(host, from->pages, from->page_count, sizeof *from->pages, &ok);
     if (!ok) charts_finish(out);
     return ok;
 }

@@ -17,13 +17,9 @@ struct packing {
     struct atlas atlas;
 };
 
-// Sides of the atlas: images of such sizes have whole blocks of compression formats, at half size,
-// too.
-enum { SIDE_MULTIPLE = 8 };
-
 static uint32_t round_up(double side)
 {
-    const double rounded = SIDE_MULTIPLE * ceil(side / SIDE_MULTIPLE);
+    const double rounded = CHART_SIDE_MULTIPLE * ceil(side / CHART_SIDE_MULTIPLE);
     return (uint32_t)fmin(rounded, (double)CHART_MAX_SIDE);
 }
 
@@ -60,7 +56,7 @@ static struct extent start_rectangles(const struct packing *p)
 // Half of the places of an atlas are in footprints, at least.
 static double most_side(const struct extent *extent)
 {
-    return 2.0 * sqrt(extent->places) + 2.0 * extent->longest + 2.0 * SIDE_MULTIPLE;
+    return 2.0 * sqrt(extent->places) + 2.0 * extent->longest + 2.0 * CHART_SIDE_MULTIPLE;
 }
 
 // To multiples of the step between floats at the atlas' far end, so that a place plus a whole
@@ -110,30 +106,35 @@ static struct extent draw_all(const struct packing *p)
 
 // ---- order
 
-struct sized {
-    uint32_t longer, shorter, chart;
-};
-
-static int compare_sized(const void *a, const void *b)
+static int compare_items(const void *a, const void *b)
 {
-    const struct sized *p = a, *q = b;
+    const struct pack_item *p = a, *q = b;
+    if (p->group != q->group) return p->group < q->group ? -1 : 1;
     if (p->longer != q->longer) return p->longer > q->longer ? -1 : 1;
     if (p->shorter != q->shorter) return p->shorter > q->shorter ? -1 : 1;
     return p->chart < q->chart ? -1 : p->chart > q->chart;
 }
 
+struct pack_item pack_item_of(const struct charts *charts, uint32_t chart, uint32_t group)
+{
+    const uint32_t w = charts->charts[chart].width, h = charts->charts[chart].height;
+    return (struct pack_item){ group, w > h ? w : h, w > h ? h : w, chart };
+}
+
+void pack_sort(struct pack_item *items, uint32_t count)
+{
+    qsort(items, count, sizeof *items, compare_items);
+}
+
 static bool find_order(struct packing *p)
 {
     const uint32_t count = p->charts->count;
-    struct sized *sized = host_alloc(p->charts->host, count, sizeof *sized);
-    if (!sized) return false;
-    for (uint32_t i = 0; i < count; i++) {
-        const uint32_t w = p->charts->charts[i].width, h = p->charts->charts[i].height;
-        sized[i] = (struct sized){ w > h ? w : h, w > h ? h : w, i };
-    }
-    qsort(sized, count, sizeof *sized, compare_sized);
-    for (uint32_t i = 0; i < count; i++) p->order[i] = sized[i].chart;
-    host_free(p->charts->host, sized);
+    struct pack_item *items = host_alloc(p->charts->host, count, sizeof *items);
+    if (!items) return false;
+    for (uint32_t i = 0; i < count; i++) items[i] = pack_item_of(p->charts, i, 0);
+    pack_sort(items, count);
+    for (uint32_t i = 0; i < count; i++) p->order[i] = items[i].chart;
+    host_free(p->charts->host, items);
     return true;
 }
 
@@ -190,7 +191,7 @@ static bool place_at_best_width(struct packing *p, const struct extent *extent)
     uint64_t least = UINT64_MAX;
     if (tries > WIDTHS) tries = WIDTHS;
     for (uint32_t i = 0; i < tries; i++) {
-        charts->width = first + i * SIDE_MULTIPLE;
+        charts->width = first + i * CHART_SIDE_MULTIPLE;
         if (charts->width > CHART_MAX_SIDE) break;
         if (!place_all(p, extent)) return false;
         const uint64_t places = (uint64_t)charts->width * charts->height;
