@@ -83,7 +83,8 @@ struct arguments {
     const char *report;        // NULL: none
     const char *lightmap;      // a folder; NULL: none
     unsigned lightmap_formats; // enum ag_lightmap_format; 0: all
-    const char *probes;        // likewise
+    int page;                  // side of pages of the light map, texels; 0: one page of any size
+    const char *probes;        // a folder; NULL: none
     const char *exported;      // likewise
     bool denoise;
     bool clear;         // cache

@@ -24,6 +24,7 @@ struct facts {
     struct ag_scene_info info;
     struct defaults defaults;
     struct ag_bake_estimate light_map; // of radiosity at its defaults; 0 texels: none
+    int pages;                         // of it, with --page; 0: not asked
     bool has_environment;
     struct ag_environment_info environment;
 };
@@ -40,6 +41,15 @@ static void find_light_map(struct session *session, double time_s, struct ag_bak
     if (ag_bake_create(session->scene, LIGHT_MAP_GI, &desc, &bake) == AG_OK)
         ag_bake_estimate_cost(bake, false, out);
     ag_bake_destroy(bake);
+}
+
+static enum status count_pages(struct session *session, struct facts *facts)
+{
+    const int page = session->arguments->page;
+    if (page == 0 || facts->light_map.charts == 0) return DONE;
+    const enum ag_result result =
+        ag_lightmap_count_pages(session->scene, LIGHT_MAP_GI, page, &facts->pages);
+    return result == AG_OK ? DONE : fail_library(session->context, result);
 }
 
 // ---- size
@@ -154,13 +164,16 @@ static json_t *bounds_json(const struct ag_scene_info *info)
                      json_floats(info->bounds_max, 3));
 }
 
-static json_t *light_map_json(const struct ag_bake_estimate *map)
+static json_t *light_map_json(const struct facts *facts)
 {
+    const struct ag_bake_estimate *map = &facts->light_map;
     if (map->charts == 0) return json_null();
-    return json_pack("{s:s, s:f, s:I, s:f, s:o, s:o}", "technique", LIGHT_MAP_GI, "texels",
-                     map->texels, "charts", (json_int_t)map->charts, "texels_per_chart",
-                     map->texels / map->charts, "texels_per_m", json_float(map->texels_per_m),
-                     "utilisation", json_float(map->utilisation));
+    json_t *out = json_pack(
+        "{s:s, s:f, s:I, s:f, s:o, s:o}", "technique", LIGHT_MAP_GI, "texels", map->texels,
+        "charts", (json_int_t)map->charts, "texels_per_chart", map->texels / map->charts,
+        "texels_per_m", json_float(map->texels_per_m), "utilisation", json_float(map->utilisation));
+    if (facts->pages > 0) json_object_set_new(out, "pages", json_integer(facts->pages));
+    return out;
 }
 
 static enum status info_json(struct session *session, const struct facts *facts)
@@ -181,7 +194,7 @@ static enum status info_json(struct session *session, const struct facts *facts)
                   "cameras", list_of(session, i->cameras, camera_json), "materials",
                   list_of(session, i->materials, material_json), "animations",
                   list_of(session, i->animations, animation_json), "defaults",
-                  defaults_json(&facts->defaults), "light_map", light_map_json(&facts->light_map),
+                  defaults_json(&facts->defaults), "light_map", light_map_json(facts),
                   "environment", environment_json(facts)));
 }
 
@@ -222,11 +235,13 @@ static void print_counts(const struct facts *facts)
     printf("emissive     %s\n", i->emissive ? "yes" : "no");
 }
 
-static void print_light_map(const struct ag_bake_estimate *map)
+static void print_light_map(const struct facts *facts)
 {
+    const struct ag_bake_estimate *map = &facts->light_map;
     if (map->charts == 0) return;
-    printf("light map    %.0f texels in %u charts, %.3g each, %.3g per metre, %.0f %% of the atlas "
-           "(%s)\n",
+    printf("light map    ");
+    if (facts->pages > 0) printf("%d page%s of ", facts->pages, facts->pages == 1 ? "" : "s");
+    printf("%.0f texels in %u charts, %.3g each, %.3g per metre, %.0f %% of the atlas (%s)\n",
            map->texels, (unsigned)map->charts, map->texels / map->charts, (double)map->texels_per_m,
            100.0 * (double)map->utilisation, LIGHT_MAP_GI);
 }
@@ -328,7 +343,7 @@ static void info_text(struct session *session, const struct facts *facts)
 {
     printf("%s\n", printable(facts->scene).s);
     print_counts(facts);
-    print_light_map(&facts->light_map);
+    print_light_map(facts);
     print_environment(facts);
     print_lights(session, facts->info.lights);
     print_cameras(session, facts->info.cameras);
@@ -371,6 +386,7 @@ static enum status info(const struct arguments *arguments)
     if (status == DONE) status = find_environment(&session, &facts);
     if (status == DONE) status = info_write_blocks(&session);
     if (status == DONE) find_light_map(&session, arguments->time_s, &facts.light_map);
+    if (status == DONE) status = count_pages(&session, &facts);
     if (status == DONE && arguments->json)
         status = info_json(&session, &facts);
     else if (status == DONE)

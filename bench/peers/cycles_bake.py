@@ -74,7 +74,7 @@ def main(path, paths, out, *seeds):
     document = lightmapped.load(path)
     if any(light.type == "SPOT" for light in bpy.data.lights):
         raise SystemExit(f"{path}: Blender's spots have another penumbra than those of glTF")
-    size = glb.light_map(document)
+    size = glb.light_maps(document)[0]
     image = bpy.data.images.new("texels", size["width"], size["height"], alpha=True, float_buffer=True, is_data=True)
     image.generated_color = (0, 0, 0, 0)
     for material in bpy.data.materials:

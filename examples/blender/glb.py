@@ -23,10 +23,20 @@ def write(path, document, rest):
         file.write(text + rest)
 
 
-def light_map(document, side="front", file_format="exr"):
-    """The entry of a map in the file's extras: uri, width, height, and scale, the lux of the value 1. None: there is none."""
+def light_maps(document, side="front", file_format="exr"):
+    """The entries of a map in the file's extras, page by page: uri, width, height, and scale, the lux of the value 1."""
     maps = document.get("extras", {}).get("afterglow_lightmap", {}).get("maps", [])
-    return next((m for m in maps if m["side"] == side and m["format"] == file_format), None)
+    return [m for m in maps if m["side"] == side and m["format"] == file_format]
+
+
+def material_pages(document):
+    """The page of each material that has texels, by its index."""
+    pages = {}
+    for primitive in (p for mesh in document["meshes"] for p in mesh["primitives"]):
+        texels, material = primitive.get("extras", {}).get("afterglow_lightmap"), primitive.get("material")
+        if texels and pages.setdefault(material, texels.get("page", 0)) != texels.get("page", 0):
+            raise SystemExit(f"material {material} is on several pages of the map: bake with --lightmap-format exr,png, which divides it")
+    return pages
 
 
 def light_map_set(mesh):

@@ -18,6 +18,9 @@ def load(path):
     document, rest = glb.read(path)
     for mesh in document.get("meshes", []):  # a property of the mesh in Blender, which names may not identify
         mesh.setdefault("extras", {})["light_map_set"] = glb.light_map_set(mesh)
+    for material, page in glb.material_pages(document).items():
+        if material is not None:
+            document["materials"][material].setdefault("extras", {})["light_map_page"] = page
     bpy.ops.wm.read_factory_settings(use_empty=True)
     with tempfile.TemporaryDirectory() as folder:
         marked = os.path.join(folder, "marked.glb")

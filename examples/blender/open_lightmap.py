@@ -37,23 +37,24 @@ def point(text):
 
 
 class Maps:
-    """The images of a light map, and the lux of their value 1. The back of double-sided surfaces may have its own."""
+    """The images of a light map's pages, and the lux of their value 1. The back of double-sided surfaces may have its own."""
 
     def __init__(self, document, folder):
         self.image, self.scale = {}, {}
         for side in ("front", "back"):
-            entry = glb.light_map(document, side)
-            if entry:
-                self.image[side] = bpy.data.images.load(os.path.join(folder, entry["uri"]))
-                self.image[side].colorspace_settings.name = "Non-Color"  # numbers, not a display's colours
-                self.scale[side] = entry["scale"]
-        if "front" not in self.image:
+            for page, entry in enumerate(glb.light_maps(document, side)):
+                self.image[side, page] = bpy.data.images.load(os.path.join(folder, entry["uri"]))
+                self.image[side, page].colorspace_settings.name = "Non-Color"  # numbers, not a display's colours
+                self.scale[side, page] = entry["scale"]
+        if not self.image:
             raise SystemExit("no light map in EXR format: bake with --lightmap-format exr")
+        self.has_back = ("back", 0) in self.image
 
     def irradiance(self, surface, side):
+        at = side, surface.material.get("light_map_page", 0)
         texels = surface.node("ShaderNodeUVMap", uv_map=lightmapped.UV_MAP)["UV"]
-        colour = surface.node("ShaderNodeTexImage", texels, image=self.image[side], interpolation="Linear", extension="EXTEND")["Color"]
-        return surface.vector("SCALE", colour, self.scale[side])
+        colour = surface.node("ShaderNodeTexImage", texels, image=self.image[at], interpolation="Linear", extension="EXTEND")["Color"]
+        return surface.vector("SCALE", colour, self.scale[at])
 
 
 def show_light(material, maps, white):
@@ -64,7 +65,7 @@ def show_light(material, maps, white):
         surface.unlit.inputs["Strength"].default_value = white
         return
     irradiance = maps.irradiance(surface, "front")
-    if "back" in maps.image and not material.use_backface_culling:
+    if maps.has_back and not material.use_backface_culling:
         is_back = surface.node("ShaderNodeNewGeometry")["Backfacing"]
         irradiance = surface.mix(is_back, irradiance, maps.irradiance(surface, "back"))
     metallic = surface.given("Metallic")  # metals have no diffuse reflection

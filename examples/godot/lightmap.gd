@@ -16,6 +16,9 @@ func open(folder: String, ev: float) -> Node3D:
 	var glb := FileAccess.get_file_as_bytes(folder.path_join("scene.glb"))
 	if document.append_from_buffer(glb, "", _state) != OK:
 		return null
+	if _state.json.extras.afterglow_lightmap.maps.any(func(m): return m.has("page")):
+		push_error("afterglow: the light map has several pages, bake it without --page")
+		return null
 	var scene := document.generate_scene(_state) as Node3D
 	scene.set_meta("folder", folder)
 	return scene

@@ -16,16 +16,21 @@ renderer.toneMappingExposure = 2 ** -parseFloat(of('ev', '0')) / 1.2;
 document.body.append(renderer.domElement);
 
 // A texel times the scale is irradiance in lux, which `lightMap` of three.js is, too.
-async function loadMap({ extras }) {
-  const format = of('format', 'ktx2'), map = extras.afterglow_lightmap.maps.find(m => m.format === format && m.side === 'front');
-  const loader = format === 'ktx2' ? new KTX2Loader().detectSupport(renderer) : new THREE.TextureLoader();
+async function loadMap(map) {
+  const loader = map.format === 'ktx2' ? new KTX2Loader().detectSupport(renderer) : new THREE.TextureLoader();
   const texture = await loader.loadAsync(`${folder}/${map.uri}`);
   // Texels of other charts are near: no mip maps.
   Object.assign(texture, { flipY: false, generateMipmaps: false, minFilter: THREE.LinearFilter, magFilter: THREE.LinearFilter, needsUpdate: true });
   return { texture, intensity: map.scale };
 }
 
-function giveMap(mesh, { texture, intensity }) {
+function loadPages({ extras }) {
+  const format = of('format', 'ktx2'), maps = extras.afterglow_lightmap.maps;
+  return Promise.all(maps.filter(m => m.format === format && m.side === 'front').map(loadMap));
+}
+
+function giveMap(mesh, pages) {
+  const { texture, intensity } = pages[mesh.geometry.userData.afterglow_lightmap?.page ?? 0]; // materials are of one page
   const { material } = mesh, extension = material.userData.gltfExtensions?.MOZ_lightmap; // GLTFLoader keeps what it does not know
   mesh.castShadow = mesh.receiveShadow = true;
   material.shadowSide = THREE.DoubleSide; // walls of one side cast shadows, too
@@ -76,11 +81,11 @@ async function loadProbes() {
 }
 
 const gltf = await new GLTFLoader().loadAsync(`${folder}/scene.glb`), scene = new THREE.Scene(), objects = new THREE.Scene();
-const map = await loadMap(gltf.parser.json), box = new THREE.Box3().setFromObject(gltf.scene);
+const pages = await loadPages(gltf.parser.json), box = new THREE.Box3().setFromObject(gltf.scene);
 const center = box.getCenter(new THREE.Vector3()), size = box.getSize(new THREE.Vector3());
 scene.add(gltf.scene);
 scene.updateMatrixWorld(true);
-scene.traverse(object => object.isMesh && giveMap(object, map));
+scene.traverse(object => object.isMesh && giveMap(object, pages));
 shareLights(scene, objects, box);
 const radiance = gltf.scene.userData.afterglow_sky;
 if (radiance) { // a background colour would have no tone curve

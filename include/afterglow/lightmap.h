@@ -25,6 +25,9 @@ struct ag_lightmap_desc {
                    ///< GPU is needed; ag_lightmap_read and _write are refused; default false
     bool report;   ///< measure what ag_lightmap_report and _read_layer tell, unless no_light; takes
                    ///< rays; default false
+    int page;      ///< divide the map into pages of at most this side in texels, 64 to 16384 and a
+                   ///< multiple of 8; all texels of an instance are on one page. AG_ERROR_MEMORY
+                   ///< names an instance that is too large. Default 0: one page of any size
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 /// Thread: any.
@@ -59,11 +62,24 @@ struct ag_lightmap_info {
     float noise;          ///< of the noisiest chart (ag_bake_desc.lightmap_noise); NaN: not known
     int noisy_charts;     ///< whose noise is above the bound, with the most paths. Small charts of
                           ///< an instance count together, here and for `noise`
+    int pages;            ///< at least 1 (ag_lightmap_desc.page)
     uint64_t reserved[2]; ///< 0; see ABI in types.h
 };
 /// Thread: the context's.
 AG_API enum ag_result ag_lightmap_get_info(const struct ag_lightmap *lightmap,
                                            struct ag_lightmap_info *out);
+/// The pages that a light map of the GI spec would have at time 0 (ag_lightmap_desc.page), and the
+/// same errors: its charts are made, but no light. Thread: the context's.
+AG_API enum ag_result ag_lightmap_count_pages(struct ag_scene *scene, const char *gi, int page,
+                                              int *count);
+/// The place of a page in the images that ag_lightmap_read and others return, in texels.
+struct ag_lightmap_page {
+    int x, y, width, height;
+    uint64_t reserved[2]; ///< 0; see ABI in types.h
+};
+/// page: from 0. Thread: the context's.
+AG_API enum ag_result ag_lightmap_get_page(const struct ag_lightmap *lightmap, int page,
+                                           struct ag_lightmap_page *out);
 /// A copy of a map, 3 channels, lux. Texels of no chart are 0. Thread: the context's.
 AG_API enum ag_result ag_lightmap_read(const struct ag_lightmap *lightmap, bool back,
                                        struct ag_image **out);
@@ -91,7 +107,8 @@ AG_API enum ag_result ag_lightmap_read_layer(const struct ag_lightmap *lightmap,
                                              struct ag_image **out);
 /// Formats of the maps, to be added up.
 enum ag_lightmap_format {
-    AG_LIGHTMAP_EXR = 1, ///< irradiance.exr: 32-bit floats, lux
+    AG_LIGHTMAP_EXR = 1, ///< irradiance.exr, of several pages irradiance.0.exr and so on: 32-bit
+                         ///< floats, lux
     AG_LIGHTMAP_KTX2 =
         2, ///< irradiance.ktx2: VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, lux over a power of two
     AG_LIGHTMAP_PNG = 4 ///< irradiance.png: 8 bits, linear; also the texture of MOZ_lightmap
@@ -108,7 +125,8 @@ AG_API enum ag_result ag_lightmap_write_as(const struct ag_lightmap *lightmap, c
 /// Painted light: first-order irradiance that a program gives the texels of a renderer's light map,
 /// in addition to that of lights, the sky and emissive surfaces.
 struct ag_light_paint {
-    int x, y, width, height; ///< rectangle of texels, as in ag_lightmap_read; default 0: none
+    int x, y, width, height; ///< rectangle of texels, as in ag_lightmap_read without pages; default
+                             ///< 0: none
     bool back;               ///< of the backs of double-sided materials; default false
     /// [height][width][3] irradiance, lux, finite and at least 0; default NULL: 0. Texels on no
     /// surface, as in gutters, and those inside geometry ignore it.

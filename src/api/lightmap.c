@@ -19,9 +19,8 @@ enum ag_result ag_lightmap_technique(struct ag_context *context, const char *gi,
     AG_REQUIRE_POINTER(context, gi);
     struct gi_spec spec;
     const bool ok = gi_spec_parse(&spec, &context->host, gi);
-    for (int i = 0; ok && i < spec.count && !*name; i++)
-        if (technique_has_light_map(spec.technique[i], spec.options[i]))
-            *name = spec.technique[i]->name;
+    const int term = ok ? api_lightmap_term(&spec) : -1;
+    if (term >= 0) *name = spec.technique[term]->name;
     gi_spec_finish(&spec);
     return api_done(context, ok);
 }
@@ -61,6 +60,9 @@ static enum ag_result begin(const char *function, struct ag_scene *scene,
 {
     struct ag_context *context = scene->context;
     AG_REQUIRE_KNOWN(function, context, desc);
+    const enum ag_result checked =
+        desc->page == 0 ? AG_OK : api_lightmap_check_page(function, context, desc->page);
+    if (checked != AG_OK) return checked;
     struct ag_lightmap *l = host_alloc(&context->host, 1, sizeof *l);
     if (!l) return api_done(context, false);
     l->context = context;
@@ -96,6 +98,8 @@ static bool close_seams(struct ag_lightmap *l, bool report)
 static enum ag_result done(struct ag_lightmap *l, const struct ag_lightmap_desc *desc, bool ok,
                            struct ag_lightmap **out)
 {
+    if (desc->page > 0)
+        ok = ok && lightmap_set_pages(&l->map, l->scene->scene, (uint32_t)desc->page);
     if (!desc->no_light) ok = ok && denoise(l, desc) && close_seams(l, desc->report);
     lightmap_tracing_finish(&l->tracing);
     const enum ag_result result = api_done(l->context, ok);
@@ -237,7 +241,8 @@ enum ag_result ag_lightmap_get_info(const struct ag_lightmap *l, struct ag_light
                                       .texels_per_m = charts->texels_per_m,
                                       .paths = l->noise.paths,
                                       .noise = l->noise.largest,
-                                      .noisy_charts = l->noise.above };
+                                      .noisy_charts = l->noise.above,
+                                      .pages = (int)charts_page_count(charts) };
     return AG_OK;
 }
 

@@ -1,4 +1,4 @@
-// State of a light map, shared by lightmap.c and lightmap_report.c.
+// State of a light map, shared by lightmap.c, lightmap_pages.c and lightmap_report.c.
 #pragma once
 
 #include "api/bake_state.h"
@@ -28,3 +28,10 @@ static inline struct ag_context *api_lightmap_context(const struct ag_lightmap *
 
 // lightmap_report.c
 bool api_lightmap_write_report(struct ag_lightmap *l);
+
+// lightmap_pages.c
+
+// The term of a spec that has a light map; -1: none.
+int api_lightmap_term(const struct gi_spec *spec);
+// Checks the side of pages. function: the public one.
+enum ag_result api_lightmap_check_page(const char *function, struct ag_context *context, int page);

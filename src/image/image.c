@@ -30,6 +30,16 @@ void image_finish(struct image *image, struct host *host)
     *image = (struct image){ 0 };
 }
 
+bool image_part(struct image *out, struct host *host, const struct image *from, int x, int y,
+                int width, int height)
+{
+    if (!image_init(out, host, width, height, from->channels)) return false;
+    const size_t row_bytes = (size_t)width * (size_t)from->channels * sizeof(float);
+    for (int row = 0; row < height; row++)
+        memcpy(image_at(out, 0, row), image_at(from, x, y + row), row_bytes);
+    return true;
+}
+
 static void copy_rows(struct image *out, const struct image *in, int x)
 {
     size_t row_bytes = (size_t)in->width * (size_t)in->channels * sizeof(float);

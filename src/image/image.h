@@ -22,6 +22,9 @@ static inline float *image_at(const struct image *image, int x, int y)
     return image->pixels + ((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels;
 }
 
+// The part of width × height from x, y on, which is in `from`.
+bool image_part(struct image *out, struct host *host, const struct image *from, int x, int y,
+                int width, int height);
 // Two images of equal height side by side, with `gap` black columns between.
 bool image_side_by_side(struct image *out, struct host *host, const struct image *a,
                         const struct image *b, int gap);

@@ -81,10 +81,14 @@ static vec2s place_of(const struct charts *charts, uint32_t triangle, uint32_t k
     return chart->single_texel ? place_in_texel(chart, triangle, k) : t->place[k];
 }
 
+// On the chart's page.
 static vec2s coordinates_of(const struct charts *charts, uint32_t triangle, uint32_t k)
 {
     const vec2s place = place_of(charts, triangle, k);
-    return (vec2s){ { place.x / (float)charts->width, place.y / (float)charts->height } };
+    const struct chart *chart = &charts->charts[charts->triangles[triangle].chart];
+    const struct chart_page page = charts_page(charts, chart->page);
+    return (vec2s){ { (place.x - (float)page.x) / (float)page.width,
+                      (place.y - (float)page.y) / (float)page.height } };
 }
 
 static void unwrap_corner(const struct attaching *a, struct unwrapped *u, const struct mesh *mesh,
@@ -280,8 +284,23 @@ static void set_coordinates(struct gltf_doc *doc, json_t *primitive, const struc
     }
     snprintf(name, sizeof name, "TEXCOORD_%d", set);
     gltf_doc_set(doc, attributes, name, json_integer((json_int_t)added));
-    json_t *extras = gltf_doc_child(doc, primitive, "extras");
-    gltf_doc_set(doc, extras, LIGHTMAP_EXTRAS, json_pack("{s:i}", "texCoord", set));
+    gltf_doc_set(doc, gltf_doc_child(doc, primitive, "extras"), LIGHTMAP_EXTRAS,
+                 json_pack("{s:i}", "texCoord", set));
+}
+
+// All charts of an instance are on one page.
+static uint32_t page_of(const struct charts *charts, int instance)
+{
+    size_t t = charts->triangle_0[instance];
+    while (charts->chart_triangle[t] == CHART_NONE) t++;
+    return charts->charts[charts->triangles[charts->chart_triangle[t]].chart].page;
+}
+
+static void set_page(const struct attaching *a, json_t *primitive, int instance)
+{
+    json_t *extras = json_object_get(json_object_get(primitive, "extras"), LIGHTMAP_EXTRAS);
+    if (charts_page_count(a->charts) > 1)
+        gltf_doc_set(a->doc, extras, "page", json_integer(page_of(a->charts, instance)));
 }
 
 static bool gather(struct gltf_doc *doc, json_t *attributes, const struct unwrapped *u,
@@ -342,7 +361,10 @@ static bool attach_instance(const struct attaching *a, int instance)
         if (u.changed)
             ok = replace_vertices(doc, primitive, &u,
                                   scene_mesh_of(a->scene, instance)->index_count);
-        if (ok) set_coordinates(doc, primitive, &u);
+        if (ok) {
+            set_coordinates(doc, primitive, &u);
+            set_page(a, primitive, instance);
+        }
     }
     unwrapped_finish(&u);
     return ok;

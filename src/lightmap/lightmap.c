@@ -8,20 +8,33 @@
 #include <math.h>
 #include <string.h>
 
+// Black.
+static bool init_images(struct lightmap *map)
+{
+    const int width = (int)map->charts.width, height = (int)map->charts.height;
+    bool ok = true;
+    for (int side = 0; ok && side < (map->has_back ? 2 : 1); side++)
+        ok = image_init(&map->irradiance[side], map->host, width, height, 3);
+    return ok;
+}
+
+static void finish_images(struct lightmap *map)
+{
+    for (int side = 0; side < LIGHTMAP_SIDES; side++)
+        image_finish(&map->irradiance[side], map->host);
+}
+
 bool lightmap_init(struct lightmap *out, struct charts *charts, const struct scene *scene)
 {
     struct host *host = charts->host;
     *out = (struct lightmap){ .host = host, .charts = *charts };
     *charts = (struct charts){ 0 };
-    const int width = (int)out->charts.width, height = (int)out->charts.height;
-    bool ok =
-        width > 0 || host_fail(host, FAIL_ARGUMENT,
-                               "light map of %s: the scene has no static triangles", scene->name);
+    bool ok = out->charts.width > 0 ||
+              host_fail(host, FAIL_ARGUMENT, "light map of %s: the scene has no static triangles",
+                        scene->name);
     out->has_back = out->charts.side_texel_count > out->charts.texel_count;
     if (ok) out->texels = host_alloc(host, out->charts.side_texel_count, sizeof *out->texels);
-    ok = out->texels;
-    for (int side = 0; ok && side < (out->has_back ? 2 : 1); side++)
-        ok = image_init(&out->irradiance[side], host, width, height, 3);
+    ok = out->texels && init_images(out);
     if (!ok) lightmap_finish(out);
     return ok;
 }
@@ -29,8 +42,7 @@ bool lightmap_init(struct lightmap *out, struct charts *charts, const struct sce
 void lightmap_finish(struct lightmap *map)
 {
     if (!map->host) return;
-    for (int side = 0; side < LIGHTMAP_SIDES; side++)
-        image_finish(&map->irradiance[side], map->host);
+    finish_images(map);
     host_free(map->host, map->texels);
     charts_finish(&map->charts);
     *map = (struct lightmap){ 0 };
@@ -69,20 +81,43 @@ uint32_t *lightmap_sources(const struct lightmap *map)
     return sources;
 }
 
-static bool fill(struct lightmap *map)
+static void fill_gutters(struct lightmap *map)
 {
     const size_t places = (size_t)map->charts.width * map->charts.height;
+    for (size_t i = 0; i < (map->has_back ? 2 : 1) * places; i++) {
+        const uint32_t owner = chart_texel_of_place(&map->charts, i);
+        float *pixel = map->irradiance[i / places].pixels + 3 * (i % places);
+        if (owner != CHART_NONE) memmove(pixel, texel_at(map, owner), 3 * sizeof *pixel);
+    }
+}
+
+static bool fill(struct lightmap *map)
+{
     uint32_t *nearest_valid = lightmap_sources(map);
     const bool ok = nearest_valid;
     for (uint32_t i = 0; ok && i < map->charts.side_texel_count; i++)
         if (nearest_valid[i] != i)
             memcpy(texel_at(map, i), texel_at(map, nearest_valid[i]), 3 * sizeof(float));
-    for (size_t i = 0; ok && i < (map->has_back ? 2 : 1) * places; i++) {
-        const uint32_t owner = chart_texel_of_place(&map->charts, i);
-        float *pixel = map->irradiance[i / places].pixels + 3 * (i % places);
-        if (owner != CHART_NONE) memmove(pixel, texel_at(map, owner), 3 * sizeof *pixel);
-    }
+    if (ok) fill_gutters(map);
     host_free(map->host, nearest_valid);
+    return ok;
+}
+
+// ---- pages
+
+bool lightmap_set_pages(struct lightmap *map, const struct scene *scene, uint32_t side)
+{
+    const uint32_t count = map->charts.side_texel_count;
+    float *light = host_alloc(map->host, count, 3 * sizeof *light);
+    if (!light) return false;
+    for (uint32_t i = 0; i < count; i++)
+        memcpy(light + 3 * (size_t)i, texel_at(map, i), 3 * sizeof *light);
+    finish_images(map);
+    const bool ok = charts_set_pages(&map->charts, scene, side) && init_images(map);
+    for (uint32_t i = 0; ok && i < count; i++)
+        memcpy(texel_at(map, i), light + 3 * (size_t)i, 3 * sizeof *light);
+    if (ok) fill_gutters(map);
+    host_free(map->host, light);
     return ok;
 }
 

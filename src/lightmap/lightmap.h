@@ -59,6 +59,9 @@ void lightmap_finish(struct lightmap *map);
 // one. After lightmap_set_paths or _layers; owned by the caller, NULL without memory.
 uint32_t *lightmap_sources(const struct lightmap *map);
 
+// Divides the map into pages (charts.h). Texels keep the light that they have.
+bool lightmap_set_pages(struct lightmap *map, const struct scene *scene, uint32_t side);
+
 // World positions of a side's texels, m; NaN where there is none. *out is zero before.
 bool lightmap_positions(const struct lightmap *map, enum lightmap_side side, struct image *out);
 

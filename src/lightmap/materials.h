@@ -10,8 +10,10 @@ struct lightmap_image {
     const uint8_t *png;
     size_t size;
     float range; // lux of the value 1
+    const char *name;
 };
-// Gives it to the materials of all primitives with coordinates of the map, whose extras state them.
-// A material that others use without the map, or with another set of coordinates, is copied for
-// them. Unlit materials stay as they are.
-bool lightmap_materials(struct gltf_doc *doc, const struct lightmap_image *image);
+// Gives the images of the map's pages to the materials of all primitives with coordinates of the
+// map, whose extras state them and the page. A material that others use without the map, on another
+// page, or with another set of coordinates, is copied for them. Unlit materials stay as they are.
+bool lightmap_materials(struct gltf_doc *doc, const struct lightmap_image *pages,
+                        uint32_t page_count);

@@ -15,11 +15,15 @@
 
 static const char *const names[LIGHTMAP_SIDES] = { LIGHTMAP_FRONT_FILE, LIGHTMAP_BACK_FILE };
 static const char *const sides[LIGHTMAP_SIDES] = { "front", "back" };
-enum { FORMATS = 3, MAX_FACTS = 6 };
+enum { FORMATS = 3, MAX_FACTS = 7 };
 static const char *const endings[FORMATS] = { "exr", "ktx2", "png" }; // in the order of the bits
 
-struct side {
-    const struct image *image;
+// A side of a page.
+struct map {
+    int side;
+    uint32_t page;
+    char name[40]; // of its files, without the ending
+    int width, height;
     float scale[FORMATS]; // lux of the value 1
     uint8_t *png;
     size_t png_size;
@@ -31,8 +35,9 @@ struct writing {
     const struct lightmap_facts *facts;
     const char *folder;
     unsigned formats;
-    struct side sides[LIGHTMAP_SIDES];
-    int side_count;
+    uint32_t page_count;
+    struct map *maps; // [map_count] side by side, in each page by page
+    size_t map_count;
 };
 
 static const char *light_text(const struct lightmap_facts *facts)
@@ -59,23 +64,25 @@ static void mark_lights(struct gltf_doc *doc, const struct lightmap_facts *facts
     }
 }
 
-static json_t *map_json(const struct writing *w, int side, int format)
+static json_t *map_json(const struct writing *w, const struct map *map, int format)
 {
-    const struct image *image = w->sides[side].image;
     char uri[64];
-    snprintf(uri, sizeof uri, "%s.%s", names[side], endings[format]);
-    return json_pack("{s:s, s:s, s:s, s:i, s:i, s:f}", "uri", uri, "format", endings[format],
-                     "side", sides[side], "width", image->width, "height", image->height, "scale",
-                     (double)w->sides[side].scale[format]);
+    snprintf(uri, sizeof uri, "%s.%s", map->name, endings[format]);
+    json_t *out = json_pack("{s:s, s:s, s:s, s:i, s:i, s:f}", "uri", uri, "format", endings[format],
+                            "side", sides[map->side], "width", map->width, "height", map->height,
+                            "scale", (double)map->scale[format]);
+    if (w->page_count > 1) json_object_set_new(out, "page", json_integer(map->page));
+    return out;
 }
 
 static json_t *maps_json(struct gltf_doc *doc, const struct writing *w)
 {
     json_t *maps = json_array();
-    for (int i = 0; i < FORMATS * w->side_count; i++)
-        if (w->formats >> i % FORMATS & 1u &&
-            json_array_append_new(maps, map_json(w, i / FORMATS, i % FORMATS)) != 0)
-            doc->failed = true;
+    for (size_t i = 0; i < w->map_count; i++)
+        for (int format = 0; format < FORMATS; format++)
+            if (w->formats >> format & 1u &&
+                json_array_append_new(maps, map_json(w, &w->maps[i], format)) != 0)
+                doc->failed = true;
     return maps;
 }
 
@@ -89,11 +96,19 @@ static void describe(struct gltf_doc *doc, const struct writing *w)
     gltf_doc_set(doc, gltf_doc_child(doc, doc->root, "extras"), LIGHTMAP_EXTRAS, out);
 }
 
-static bool give_texture(struct gltf_doc *doc, const struct writing *w)
+// The textures of fronts.
+static bool give_textures(struct gltf_doc *doc, const struct writing *w)
 {
-    const struct side *front = &w->sides[LIGHTMAP_FRONT];
-    const struct lightmap_image image = { front->png, front->png_size, front->scale[2] };
-    return !(w->formats & LIGHTMAP_PNG) || lightmap_materials(doc, &image);
+    if (!(w->formats & LIGHTMAP_PNG)) return true;
+    struct lightmap_image *images = host_alloc(w->map->host, w->page_count, sizeof *images);
+    for (uint32_t i = 0; images && i < w->page_count; i++)
+        images[i] = (struct lightmap_image){ .png = w->maps[i].png,
+                                             .size = w->maps[i].png_size,
+                                             .range = w->maps[i].scale[2],
+                                             .name = w->maps[i].name };
+    const bool ok = images && lightmap_materials(doc, images, w->page_count);
+    host_free(w->map->host, images);
+    return ok;
 }
 
 static bool write_scene(const struct writing *w, const char *path)
@@ -104,7 +119,7 @@ static bool write_scene(const struct writing *w, const char *path)
     bool ok = gltf_doc_of_file(&doc, host, w->scene, &same) &&
               (same || gltf_doc_of_scene(&doc, host, w->scene));
     if (ok) lightmap_forget(&doc);
-    ok = ok && lightmap_attach(&doc, &w->map->charts, w->scene) && give_texture(&doc, w);
+    ok = ok && lightmap_attach(&doc, &w->map->charts, w->scene) && give_textures(&doc, w);
     if (ok) mark_lights(&doc, w->facts);
     if (ok) describe(&doc, w);
     ok = ok && gltf_doc_write(&doc, path);
@@ -114,77 +129,112 @@ static bool write_scene(const struct writing *w, const char *path)
 
 // ---- maps
 
+struct texts {
+    char samples[16], page[16], scale[24];
+};
+
 // Text of a map's header.
-static int facts_of(const struct writing *w, int side, char samples[16],
+static int facts_of(const struct writing *w, const struct map *map, struct texts *texts,
                     struct exr_attribute out[MAX_FACTS])
 {
     const struct exr_attribute all[] = {
         { "afterglow.quantity", "irradiance" },
         { "afterglow.unit", "lx" },
         { "afterglow.light", light_text(w->facts) },
-        { "afterglow.side", sides[side] },
+        { "afterglow.side", sides[map->side] },
         { "afterglow.gi", w->facts->gi },
-        { "afterglow.samples", samples },
     };
-    const int count = (int)(sizeof all / sizeof *all) - (w->facts->samples == 0);
-    snprintf(samples, 16, "%d", w->facts->samples);
-    memcpy(out, all, (size_t)count * sizeof *out);
+    int count = (int)(sizeof all / sizeof *all);
+    memcpy(out, all, sizeof all);
+    snprintf(texts->samples, sizeof texts->samples, "%d", w->facts->samples);
+    snprintf(texts->page, sizeof texts->page, "%u", map->page);
+    if (w->facts->samples > 0)
+        out[count++] = (struct exr_attribute){ "afterglow.samples", texts->samples };
+    if (w->page_count > 1) out[count++] = (struct exr_attribute){ "afterglow.page", texts->page };
     return count;
 }
 
-static bool write_exr(const struct writing *w, int side, const char *path)
+static bool write_exr(const struct writing *w, const struct map *map, const struct image *image,
+                      const char *path)
 {
-    char samples[16];
+    struct texts texts;
     struct exr_attribute attributes[MAX_FACTS];
-    const struct exr_layer layer = { "color", w->sides[side].image };
-    const int count = facts_of(w, side, samples, attributes);
+    const struct exr_layer layer = { "color", image };
+    const int count = facts_of(w, map, &texts, attributes);
     return exr_write(w->map->host, path, &layer, 1, attributes, count);
 }
 
-static bool write_ktx2(const struct writing *w, int side, const char *path)
+static bool write_ktx2(const struct writing *w, const struct map *map, const struct image *image,
+                       const char *path)
 {
-    char samples[16], scale[24];
+    struct texts texts;
     struct exr_attribute attributes[MAX_FACTS];
     struct ktx2_entry entries[MAX_FACTS + 1];
-    const int count = facts_of(w, side, samples, attributes);
+    const int count = facts_of(w, map, &texts, attributes);
     for (int i = 0; i < count; i++)
         entries[i] = (struct ktx2_entry){ attributes[i].name, attributes[i].value };
-    text_float(w->sides[side].scale[1], scale, sizeof scale);
-    entries[count] = (struct ktx2_entry){ "afterglow.scale", scale };
-    return ktx2_write(w->map->host, path, w->sides[side].image, w->sides[side].scale[1], entries,
-                      count + 1);
+    text_float(map->scale[1], texts.scale, sizeof texts.scale);
+    entries[count] = (struct ktx2_entry){ "afterglow.scale", texts.scale };
+    return ktx2_write(w->map->host, path, image, map->scale[1], entries, count + 1);
 }
 
-static bool write_png(const struct writing *w, int side, const char *path)
+static bool write_png(const struct writing *w, const struct map *map, const struct image *image,
+                      const char *path)
 {
     struct file_writer file = { 0 };
+    (void)image; // encoded before
     if (!file_begin(&file, w->map->host, path)) return false;
-    file_write(&file, w->sides[side].png, w->sides[side].png_size);
+    file_write(&file, map->png, map->png_size);
     return file_commit(&file);
 }
 
-static bool write_map(const struct writing *w, int side, int format)
+static bool write_file(const struct writing *w, const struct map *map, const struct image *image,
+                       int format)
 {
-    static bool (*const write[FORMATS])(const struct writing *, int,
+    static bool (*const write[FORMATS])(const struct writing *, const struct map *,
+                                        const struct image *,
                                         const char *) = { write_exr, write_ktx2, write_png };
     if (!(w->formats >> format & 1u)) return true;
-    char *path = host_sprintf(w->map->host, "%s/%s.%s", w->folder, names[side], endings[format]);
-    const bool ok = path && write[format](w, side, path);
+    char *path = host_sprintf(w->map->host, "%s/%s.%s", w->folder, map->name, endings[format]);
+    const bool ok = path && write[format](w, map, image, path);
     host_free(w->map->host, path);
     return ok;
 }
 
-// ---- all files
-
-static bool prepare(struct writing *w, int side)
+static bool write_image(const struct writing *w, struct map *map, const struct image *image)
 {
-    struct side *s = &w->sides[side];
-    s->image = &w->map->irradiance[side];
-    s->scale[0] = 1.0f;
-    s->scale[1] = ktx2_scale(s->image);
-    return !(w->formats & LIGHTMAP_PNG) ||
-           lightmap_texture(w->map->host, s->image, &s->png, &s->png_size, &s->scale[2]);
+    bool ok = true;
+    map->width = image->width;
+    map->height = image->height;
+    map->scale[0] = 1.0f;
+    map->scale[1] = ktx2_scale(image);
+    if (w->formats & LIGHTMAP_PNG)
+        ok = lightmap_texture(w->map->host, image, &map->png, &map->png_size, &map->scale[2]);
+    for (int format = 0; ok && format < FORMATS; format++) ok = write_file(w, map, image, format);
+    return ok;
 }
+
+static bool write_map(const struct writing *w, size_t index)
+{
+    struct map *map = &w->maps[index];
+    map->side = (int)(index / w->page_count);
+    map->page = (uint32_t)(index % w->page_count);
+    const struct image *all = &w->map->irradiance[map->side];
+    if (w->page_count == 1) {
+        snprintf(map->name, sizeof map->name, "%s", names[map->side]);
+        return write_image(w, map, all);
+    }
+    const struct chart_page at = charts_page(&w->map->charts, map->page);
+    struct image page = { 0 };
+    snprintf(map->name, sizeof map->name, "%s.%u", names[map->side], map->page);
+    const bool ok =
+        image_part(&page, w->map->host, all, (int)at.x, (int)at.y, (int)at.width, (int)at.height) &&
+        write_image(w, map, &page);
+    image_finish(&page, w->map->host);
+    return ok;
+}
+
+// ---- all files
 
 static bool write_record(const struct writing *w)
 {
@@ -192,6 +242,14 @@ static bool write_record(const struct writing *w)
     char *path = host_sprintf(w->map->host, "%s/" LIGHTMAP_RECORD_FILE, w->folder);
     const bool ok = path && lightmap_record_write(w->facts->record, path);
     host_free(w->map->host, path);
+    return ok;
+}
+
+static bool write_maps(struct writing *w)
+{
+    w->maps = host_alloc(w->map->host, w->map_count, sizeof *w->maps);
+    bool ok = w->maps;
+    for (size_t i = 0; ok && i < w->map_count; i++) ok = write_map(w, i);
     return ok;
 }
 
@@ -203,15 +261,13 @@ bool lightmap_write(const struct lightmap *map, const struct scene *scene,
                          .facts = facts,
                          .folder = folder,
                          .formats = formats,
-                         .side_count = map->has_back ? 2 : 1 };
-    bool ok = true;
-    for (int side = 0; ok && side < w.side_count; side++) ok = prepare(&w, side);
-    for (int i = 0; ok && i < FORMATS * w.side_count; i++)
-        ok = write_map(&w, i / FORMATS, i % FORMATS);
-    ok = ok && write_record(&w);
+                         .page_count = charts_page_count(&map->charts) };
+    w.map_count = (size_t)w.page_count * (map->has_back ? 2 : 1);
+    bool ok = write_maps(&w) && write_record(&w);
     char *path = ok ? host_sprintf(map->host, "%s/%s", folder, LIGHTMAP_SCENE_FILE) : NULL;
     ok = path && write_scene(&w, path);
     host_free(map->host, path);
-    for (int side = 0; side < LIGHTMAP_SIDES; side++) host_free(map->host, w.sides[side].png);
+    for (size_t i = 0; w.maps && i < w.map_count; i++) host_free(map->host, w.maps[i].png);
+    host_free(map->host, w.maps);
     return ok;
 }

@@ -4,7 +4,7 @@
 #include "lightmap/lightmap.h"
 
 #define LIGHTMAP_SCENE_FILE "scene.glb"
-#define LIGHTMAP_FRONT_FILE "irradiance" // and the format's ending
+#define LIGHTMAP_FRONT_FILE "irradiance" // and the number of several pages, and the format's ending
 #define LIGHTMAP_BACK_FILE  "irradiance_back"
 
 // Formats of the maps, to be or'ed.

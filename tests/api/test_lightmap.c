@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -250,6 +251,159 @@ TEST(light_map_functions_refuse_wrong_arguments)
     assert_int_equal(ag_lightmap_write(lightmap, test_path("absent")), AG_ERROR_FILE);
     ag_lightmap_destroy(lightmap);
     ag_lightmap_destroy(NULL);
+    ag_bake_destroy(bake);
+    ag_scene_destroy(scene);
+    ag_context_destroy(context);
+}
+
+// ---- pages
+
+// A texel's position and its light.
+struct place {
+    float position[3], light[3];
+};
+
+static int compare_places(const void *a, const void *b)
+{
+    return memcmp(a, b, sizeof((const struct place *)a)->position);
+}
+
+// Sorted by position. Each is on one page. Owned by the caller.
+static struct place *places_of(const struct ag_lightmap *lightmap, int *count)
+{
+    struct ag_image *positions = NULL, *light = NULL;
+    struct ag_lightmap_info info;
+    *count = 0;
+    assert_int_equal(ag_lightmap_get_info(lightmap, &info), AG_OK);
+    assert_int_equal(ag_lightmap_positions(lightmap, false, &positions), AG_OK);
+    assert_int_equal(ag_lightmap_read(lightmap, false, &light), AG_OK);
+    struct place *out = calloc((size_t)info.texels, sizeof *out);
+    assert_non_null(out);
+    for (int i = 0; i < info.pages; i++) {
+        struct ag_lightmap_page page;
+        assert_int_equal(ag_lightmap_get_page(lightmap, i, &page), AG_OK);
+        CHECK(page.x + page.width <= info.width && page.y + page.height <= info.height);
+        for (int y = page.y; y < page.y + page.height; y++)
+            for (int x = page.x; x < page.x + page.width; x++) {
+                const size_t at = 3 * ((size_t)y * (size_t)info.width + (size_t)x);
+                if (isnan(positions->pixels[at])) continue;
+                assert_true(*count < info.texels);
+                memcpy(out[*count].position, positions->pixels + at, sizeof out->position);
+                memcpy(out[(*count)++].light, light->pixels + at, sizeof out->light);
+            }
+    }
+    assert_int_equal(*count, info.texels);
+    ag_image_destroy(NULL, positions);
+    ag_image_destroy(NULL, light);
+    qsort(out, (size_t)*count, sizeof *out, compare_places);
+    return out;
+}
+
+// Destroys both. Closing of seams sums in another order.
+static void check_equal_light(struct ag_lightmap *a, struct ag_lightmap *b)
+{
+    int count, other;
+    struct place *one = places_of(a, &count), *paged = places_of(b, &other);
+    double mean = 0.0, largest = 0.0;
+    assert_int_equal(count, other);
+    for (int i = 0; i < count; i++) {
+        assert_int_equal(compare_places(&one[i], &paged[i]), 0);
+        for (int c = 0; c < 3; c++) {
+            largest = fmax(largest, fabs((double)one[i].light[c] - (double)paged[i].light[c]));
+            mean += (double)one[i].light[c] / (3.0 * count);
+        }
+    }
+    print_message("mean %.1f lx, largest difference %.2g lx\n", mean, largest);
+    CHECK(mean > 0.0 && largest < 1e-3 * mean);
+    free(one);
+    free(paged);
+    ag_lightmap_destroy(a);
+    ag_lightmap_destroy(b);
+}
+
+TEST(texels_of_pages_have_the_light_of_one_map)
+{
+    struct ag_context *context = fixture_context();
+    struct ag_scene *scene = NULL;
+    struct ag_bake *bake = NULL;
+    struct ag_bake_desc desc;
+    struct ag_lightmap *one = NULL, *paged = NULL;
+    struct ag_lightmap_desc how;
+    struct ag_lightmap_info info;
+    int count = 0;
+    assert_int_equal(ag_scene_load(context, "@cornell", &scene), AG_OK);
+    ag_bake_desc_default(&desc);
+    desc.lightmap_samples = 4;
+    assert_int_equal(ag_bake_create(scene, SPEC, &desc, &bake), AG_OK);
+    assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
+    ag_lightmap_desc_default(&how);
+    how.denoise = true;
+    assert_int_equal(ag_lightmap_from_bake(bake, &how, &one), AG_OK);
+    how.page = 64;
+    assert_int_equal(ag_lightmap_from_bake(bake, &how, &paged), AG_OK);
+    assert_int_equal(ag_lightmap_get_info(paged, &info), AG_OK);
+    assert_int_equal(ag_lightmap_count_pages(scene, SPEC, 64, &count), AG_OK);
+    CHECK(count == info.pages && count >= 3);
+    assert_int_equal(ag_lightmap_get_info(one, &info), AG_OK);
+    assert_int_equal(info.pages, 1);
+    check_equal_light(one, paged);
+    ag_bake_destroy(bake);
+    ag_scene_destroy(scene);
+    ag_context_destroy(context);
+}
+
+TEST_GPU(pages_of_a_renderer_have_the_light_of_one_map)
+{
+    (void)gpu;
+    struct renderer_fixture s = fixture_open(NULL, NULL);
+    struct ag_lightmap *one = NULL, *paged = NULL;
+    const struct ag_lightmap_desc how = { .page = 64 };
+    open_renderer(&s, SPEC);
+    for (int i = 0; i < 2; i++) assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    assert_int_equal(ag_lightmap_from_renderer(s.renderer, NULL, &one), AG_OK);
+    assert_int_equal(ag_lightmap_from_renderer(s.renderer, &how, &paged), AG_OK);
+    check_equal_light(one, paged);
+    ag_renderer_destroy(s.renderer);
+    s.renderer = NULL;
+    fixture_close(&s);
+}
+
+TEST(pages_that_cannot_be_are_refused)
+{
+    static const int wrong[] = { -64, 0, 56, 100, 16392 };
+    struct ag_context *context = fixture_context();
+    struct ag_scene *scene = NULL;
+    struct ag_bake *bake = NULL;
+    struct ag_bake_desc desc;
+    struct ag_lightmap *lightmap = NULL;
+    struct ag_lightmap_desc how;
+    struct ag_lightmap_page page;
+    int count = 1;
+    assert_int_equal(ag_scene_load(context, "@cornell", &scene), AG_OK);
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        assert_int_equal(ag_lightmap_count_pages(scene, SPEC, wrong[i], &count), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_lightmap_count_pages(NULL, SPEC, 64, &count), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_lightmap_count_pages(scene, "vct", 64, &count), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_lightmap_count_pages(scene, "radiosity:texels=65536", 64, &count),
+                     AG_ERROR_MEMORY);
+    CHECK(count == 0 && strstr(ag_context_last_error(context), "does not fit on a page of 64x64"));
+    ag_bake_desc_default(&desc);
+    desc.lightmap_samples = 1;
+    assert_int_equal(ag_bake_create(scene, "radiosity:texels=65536", &desc, &bake), AG_OK);
+    assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
+    ag_lightmap_desc_default(&how);
+    how.page = 100;
+    assert_int_equal(ag_lightmap_from_bake(bake, &how, &lightmap), AG_ERROR_ARGUMENT);
+    how.page = 64;
+    assert_int_equal(ag_lightmap_from_bake(bake, &how, &lightmap), AG_ERROR_MEMORY);
+    CHECK(!lightmap);
+    how.page = 2048;
+    assert_int_equal(ag_lightmap_from_bake(bake, &how, &lightmap), AG_OK);
+    assert_int_equal(ag_lightmap_get_page(lightmap, 0, &page), AG_OK);
+    CHECK(page.x == 0 && page.y == 0 && page.width > 64);
+    assert_int_equal(ag_lightmap_get_page(lightmap, 1, &page), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_lightmap_get_page(lightmap, 0, NULL), AG_ERROR_ARGUMENT);
+    ag_lightmap_destroy(lightmap);
     ag_bake_destroy(bake);
     ag_scene_destroy(scene);
     ag_context_destroy(context);

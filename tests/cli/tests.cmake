@@ -2,7 +2,7 @@
 add_library(ag_test_program STATIC ${CMAKE_CURRENT_LIST_DIR}/program.c ${CMAKE_CURRENT_LIST_DIR}/screen.c)
 target_compile_definitions(ag_test_program PRIVATE AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow>")
 target_link_libraries(ag_test_program PUBLIC ag_test_framework PkgConfig::JANSSON PRIVATE afterglow_flags)
-foreach(name usage info environment diff reference render interrupt hostile lightmap lightmap_lights lightmap_report probes export unwrap scale complete tonemap)
+foreach(name usage info environment diff reference render interrupt hostile lightmap lightmap_lights lightmap_pages lightmap_report probes export unwrap scale complete tonemap)
   ag_test(cli/${name} USES image LIBRARIES ag_test_program)
 endforeach()
 foreach(name folders references report)

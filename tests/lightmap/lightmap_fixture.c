@@ -1,5 +1,7 @@
 #include "lightmap/lightmap_fixture.h"
 
+#include <math.h>
+
 bool fixture_charts(const struct scene_pose *statics, const void *options, struct host *host,
                     struct charts *out)
 {
@@ -56,4 +58,19 @@ double fixture_luminance(const float *rest, size_t texel)
 {
     const float *row = rest + LIGHTMAP_COLUMNS * texel;
     return (double)luminance(vec3_of(row[0], row[1], row[2]));
+}
+
+vec3s fixture_lookup(const struct image *map, vec2s uv)
+{
+    const float x = uv.x * (float)map->width - 0.5f, y = uv.y * (float)map->height - 0.5f;
+    vec3s sum = vec3_of(0, 0, 0);
+    for (int k = 0; k < 4; k++) {
+        const float column = floorf(x) + (float)(k & 1), row = floorf(y) + (float)(k >> 1);
+        const float weight = (1.0f - fabsf(x - column)) * (1.0f - fabsf(y - row));
+        if (!(weight > 0.0f)) continue;
+        CHECK(column >= 0 && row >= 0 && column < (float)map->width && row < (float)map->height);
+        const float *at = image_at(map, (int)column, (int)row);
+        sum = glms_vec3_muladds(vec3_of(at[0], at[1], at[2]), weight, sum);
+    }
+    return sum;
 }

@@ -28,3 +28,6 @@ struct bake *fixture_bake(const struct fixture_bake *of);
 const float *fixture_tensor(const struct bake *bake, const char *name);
 // Luminance of a row of LIGHTMAP_REST, lux.
 double fixture_luminance(const float *rest, size_t texel);
+
+// As another engine: bilinear, v downwards. Texels that it reads are in the map.
+vec3s fixture_lookup(const struct image *map, vec2s uv);

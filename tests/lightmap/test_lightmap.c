@@ -118,22 +118,6 @@ TEST(light_map_of_a_furnace_is_uniform)
 
 // ---- as another engine
 
-// Bilinear, clamped, v downwards.
-static vec3s lookup(const struct image *map, vec2s uv)
-{
-    const float x = uv.x * (float)map->width - 0.5f, y = uv.y * (float)map->height - 0.5f;
-    vec3s sum = vec3_of(0, 0, 0);
-    for (int k = 0; k < 4; k++) {
-        const float column = floorf(x) + (float)(k & 1), row = floorf(y) + (float)(k >> 1);
-        const float weight = (1.0f - fabsf(x - column)) * (1.0f - fabsf(y - row));
-        if (!(weight > 0.0f)) continue;
-        CHECK(column >= 0 && row >= 0 && column < (float)map->width && row < (float)map->height);
-        const float *at = image_at(map, (int)column, (int)row);
-        sum = glms_vec3_muladds(vec3_of(at[0], at[1], at[2]), weight, sum);
-    }
-    return sum;
-}
-
 struct files {
     struct scene *scene;
     struct image map;
@@ -199,7 +183,7 @@ static struct agreement compare_points(const struct baked *b, const struct files
         const float weight[3] = { 1.0f - at.x - at.y, at.x, at.y };
         for (uint32_t k = 0; k < 3; k++)
             uv = glms_vec2_muladds(mesh->uv[1][mesh->indices[3 * of->triangle + k]], weight[k], uv);
-        const float a = luminance(lookup(&f->map, uv)), e = luminance(traced);
+        const float a = luminance(fixture_lookup(&f->map, uv)), e = luminance(traced);
         sum.map += (double)(a * of->area_m2);
         sum.traced += (double)(e * of->area_m2);
         sum.difference += fabs((double)(a - e)) * (double)of->area_m2;

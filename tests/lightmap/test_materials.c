@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SET(n) "'extras':{'afterglow_lightmap':{'texCoord':" #n "}}"
+#define ON(n, page) "'extras':{'afterglow_lightmap':{'texCoord':" #n ",'page':" #page "}}"
+#define SET(n)      "'extras':{'afterglow_lightmap':{'texCoord':" #n "}}"
 
 static void begin(struct gltf_doc *doc, const char *text)
 {
@@ -27,7 +28,8 @@ static void begin(struct gltf_doc *doc, const char *text)
 static void give(struct gltf_doc *doc)
 {
     static const uint8_t png[] = { 1, 2, 3 };
-    CHECK(lightmap_materials(doc, &(struct lightmap_image){ png, sizeof png, 250.0f }));
+    const struct lightmap_image page = { png, sizeof png, 250.0f, "irradiance" };
+    CHECK(lightmap_materials(doc, &page, 1));
     CHECK(!doc->failed);
 }
 
@@ -80,6 +82,53 @@ TEST(material_is_divided_where_uses_differ_in_coordinates_or_have_none)
     assert_int_equal(json_array_size(gltf_doc_array(&doc, "textures")), 2);
     assert_int_equal(json_array_size(gltf_doc_array(&doc, "images")), 1);
     assert_int_equal(doc.size, 4); // the bytes of the image, once
+    gltf_doc_finish(&doc);
+}
+
+static json_int_t texture_of(const struct gltf_doc *doc, const json_t *holder)
+{
+    const json_t *material = member(
+        doc->root, "materials", (size_t)json_integer_value(json_object_get(holder, "material")));
+    const json_t *map = json_object_get(json_object_get(material, "extensions"), "MOZ_lightmap");
+    assert_non_null(map);
+    return json_integer_value(json_object_get(map, "index"));
+}
+
+// Page 1 has no use.
+TEST(material_is_divided_where_uses_are_on_different_pages)
+{
+    static const struct lightmap_image pages[] = { { (const uint8_t *)"a", 1, 10.0f, "map.0" },
+                                                   { (const uint8_t *)"b", 1, 20.0f, "map.1" },
+                                                   { (const uint8_t *)"c", 1, 30.0f, "map.2" } };
+    static const struct {
+        json_int_t material, texture;
+    } expected[] = { { 0, 0 }, { 1, 1 }, { 0, 0 }, { 2, 1 }, { 3, 0 } };
+    struct gltf_doc doc;
+    begin(&doc,
+          "{'materials':[{'name':'wall'}],'meshes':[{'primitives':[{'material':0," ON(
+              1, 2) "},{'material':0," ON(1, 0) "},{'material':0," ON(1,
+                                                                      2) "},"
+                                                                         "{'material':0," ON(
+                                                                             2,
+                                                                             0) "},{'material':"
+                                                                                "0," ON(2,
+                                                                                        2) "}]}]}");
+    CHECK(lightmap_materials(&doc, pages, 3) && !doc.failed);
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+        const json_t *primitive = primitive_at(&doc, i);
+        assert_int_equal(json_integer_value(json_object_get(primitive, "material")),
+                         expected[i].material);
+        assert_int_equal(texture_of(&doc, primitive), expected[i].texture);
+    }
+    const json_t *images = json_object_get(doc.root, "images");
+    assert_int_equal(json_array_size(images), 2);
+    CHECK_STRING(json_string_value(json_object_get(json_array_get(images, 0), "name")), "map.2");
+    CHECK_STRING(json_string_value(json_object_get(json_array_get(images, 1), "name")), "map.0");
+    assert_int_equal(json_array_size(json_object_get(doc.root, "samplers")), 1);
+    const json_t *map = json_object_get(
+        json_object_get(member(doc.root, "materials", 2), "extensions"), "MOZ_lightmap");
+    CHECK(json_number_value(json_object_get(map, "intensity")) == 10.0);
+    assert_int_equal(json_integer_value(json_object_get(map, "texCoord")), 2);
     gltf_doc_finish(&doc);
 }
 

@@ -1,6 +1,7 @@
 add_library(ag_test_lightmap_fixture STATIC ${CMAKE_CURRENT_LIST_DIR}/lightmap_fixture.c)
 target_link_libraries(ag_test_lightmap_fixture PUBLIC ag_test_framework ag_lightmap PRIVATE afterglow_flags)
 ag_test(lightmap/lightmap USES lightmap LIBRARIES ag_test_lightmap_fixture)
+ag_test(lightmap/pages USES lightmap LIBRARIES ag_test_lightmap_fixture)
 ag_test(lightmap/noise USES lightmap LIBRARIES ag_test_lightmap_fixture)
 ag_test(lightmap/close USES lightmap LIBRARIES ag_test_lightmap_fixture)
 ag_test(lightmap/quality USES lightmap LIBRARIES ag_test_lightmap_fixture)

@@ -107,6 +107,11 @@ same_bytes)
     # From the cache, which only rank 0 reads.
     ranks 2 bake @cornell --gi radiosity:density=3 --lightmap maps-5 --spp 16 2>messages || fail "the cached light map failed"
     same maps-0/irradiance.exr maps-5/irradiance.exr
+    "$program" bake @cornell --gi radiosity:density=6 --lightmap pages-0 --spp 4 --page 64 --quiet
+    rm -rf cache
+    mkdir cache
+    ranks 3 bake @cornell --gi radiosity:density=6 --lightmap pages-3 --spp 4 --page 64 --quiet 2>messages || fail "the pages failed"
+    for file in irradiance.0.exr irradiance.1.exr scene.glb; do same pages-0/$file pages-3/$file; done
     ;;
 killed)
     alone

@@ -32,14 +32,23 @@ def fails(function, *arguments):
 # A GLB that is read and written again is the same document; another file is refused.
 scene = os.path.join(folder, "maps/scene.glb")
 document, rest = glb.read(scene)
-entry = glb.light_map(document)
+[entry] = glb.light_maps(document)
 assert entry["uri"] == "irradiance.exr" and entry["scale"] == 1, entry
-assert glb.light_map(document, "back") is None and glb.sky(document) == [0, 0, 0]
+assert not glb.light_maps(document, "back") and glb.sky(document) == [0, 0, 0]
 assert [glb.light_map_set(mesh) for mesh in document["meshes"]] == [1] * 8
 copy = os.path.join(folder, "copy.glb")
 glb.write(copy, document, rest)
 assert glb.read(copy) == (document, rest) and os.path.getsize(copy) % 4 == 0
 fails(glb.read, os.path.join(folder, "means.json"))
+assert set(glb.material_pages(document).values()) == {0}
+
+# Pages of a map: the materials of scenes with a PNG are divided by them, the others are refused.
+divided = glb.read(os.path.join(folder, "pages/scene.glb"))[0]
+uris = [page["uri"] for page in glb.light_maps(divided)]
+assert len(uris) > 1 and uris == [f"irradiance.{i}.exr" for i in range(len(uris))], uris
+assert set(glb.material_pages(divided).values()) == set(range(len(uris)))
+primitives = [{"material": 0, "extras": {"afterglow_lightmap": {"texCoord": 1, "page": i}}} for i in range(2)]
+fails(glb.material_pages, {"meshes": [{"primitives": primitives}]})
 fails(glb.light_map_set, {"primitives": [{}, {"extras": {"afterglow_lightmap": {"texCoord": 1}}}]})
 
 # A diffuse copy has no specular lobe and the same emission.

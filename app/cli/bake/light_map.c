@@ -15,7 +15,8 @@
 #include <unistd.h>
 
 // A folder with one of them is of an earlier run; the first is named in messages.
-static const char *const MARKS[] = { "irradiance.exr", "irradiance.ktx2", "irradiance.png" };
+static const char *const MARKS[] = { "irradiance.exr",   "irradiance.ktx2",   "irradiance.png",
+                                     "irradiance.0.exr", "irradiance.0.ktx2", "irradiance.0.png" };
 static const char DEFAULT_GI[] = "radiosity";
 
 struct job {
@@ -38,16 +39,27 @@ static double now_s(void)
 
 // ---- checks of the command line
 
+// irradiance, irradiance_back, the number of several pages, and a format.
+static bool is_map(const char *name)
+{
+    static const char *const endings[] = { ".exr", ".ktx2", ".png" };
+    static const char start[] = "irradiance", back[] = "_back";
+    if (strncmp(name, start, sizeof start - 1) != 0) return false;
+    name += sizeof start - 1;
+    if (strncmp(name, back, sizeof back - 1) == 0) name += sizeof back - 1;
+    const size_t digits = name[0] == '.' ? strspn(name + 1, "0123456789") : 0;
+    if (digits > 0) name += 1 + digits;
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+        if (strcmp(name, endings[i]) == 0) return true;
+    return false;
+}
+
 static bool is_ours(const char *name)
 {
-    static const char *const others[] = { "irradiance_back.exr", "irradiance_back.ktx2",
-                                          "irradiance_back.png", "bake.safetensors",
-                                          "scene.glb",           LIGHT_MAP_PAGE };
-    for (size_t i = 0; i < sizeof MARKS / sizeof *MARKS; i++)
-        if (strcmp(name, MARKS[i]) == 0) return true;
+    static const char *const others[] = { "bake.safetensors", "scene.glb", LIGHT_MAP_PAGE };
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         if (strcmp(name, others[i]) == 0) return true;
-    return false;
+    return is_map(name);
 }
 
 // The map that the folder has, of the formats of the run that wrote it.
@@ -80,6 +92,7 @@ static bool has_results(const struct arguments *a)
 enum status light_map_check_others(const struct arguments *a)
 {
     const char *option = a->lightmap_formats > 0 ? "--lightmap-format"
+                         : a->page > 0           ? "--page"
                          : a->has_spp            ? "--spp"
                          : a->indirect_only      ? "--indirect-only"
                          : a->denoise            ? "--denoise"
@@ -113,6 +126,7 @@ static enum status check_part(const struct arguments *a)
     const char *option = a->denoise                ? "--denoise"
                          : a->indirect_only        ? "--indirect-only"
                          : a->lightmap_formats > 0 ? "--lightmap-format"
+                         : a->page > 0             ? "--page"
                                                    : NULL;
     if (is_part(a) && !a->has_spp)
         return wrong_usage("cannot use --shard with --lightmap: only a light map by paths has "
@@ -181,6 +195,19 @@ static enum status check_scene(const struct job *job)
     ag_scene_get_info(job->session.scene, -1, 0.0, &info);
     if (info.triangles > 0) return DONE;
     return fail("cannot bake a light map of %s: it has no triangles", job->session.name);
+}
+
+// Before the work that would be lost.
+static enum status check_pages(const struct job *job)
+{
+    const int page = job->arguments->page;
+    int count = 0;
+    if (page == 0 || baking_is_followed(job->arguments)) return DONE;
+    const enum ag_result result =
+        ag_lightmap_count_pages(job->session.scene, gi_of(job), page, &count);
+    if (result == AG_OK) return DONE;
+    fail_library(job->session.context, result);
+    return FAILED;
 }
 
 static enum status fail_call(const struct job *job, enum ag_result result)
@@ -296,6 +323,18 @@ static double texels_per_chart(const struct ag_lightmap_info *info)
     return (double)info->texels / fmax((double)info->charts, 1.0);
 }
 
+static json_t *pages_json(const struct job *job, int count)
+{
+    json_t *pages = json_array();
+    for (int i = 0; i < count; i++) {
+        struct ag_lightmap_page page;
+        ag_lightmap_get_page(job->lightmap, i, &page);
+        json_array_append_new(pages, json_pack("{s:[i, i], s:[i, i]}", "size", page.width,
+                                               page.height, "at", page.x, page.y));
+    }
+    return pages;
+}
+
 static json_t *json_of(const struct job *job, const struct ag_lightmap_info *info,
                        double utilisation, const struct ag_bake_update_info *update)
 {
@@ -306,6 +345,8 @@ static json_t *json_of(const struct job *job, const struct ag_lightmap_info *inf
                   json_double(texels_per_chart(info)), "texels_per_m",
                   json_double((double)info->texels_per_m), "utilisation", json_double(utilisation),
                   "back", info->has_back, "formats", formats_json(formats_of(job->arguments)));
+    if (out && job->arguments->page > 0)
+        json_object_set_new(out, "pages", pages_json(job, info->pages));
     if (out && info->paths > 0.0f)
         json_object_set_new(out, "paths", json_double((double)info->paths));
     if (out && update) json_object_set_new(out, "update", update_json(update));
@@ -323,11 +364,22 @@ struct outcome {
     struct ag_bake_update_info update;
 };
 
+static double page_places(const struct job *job, int count)
+{
+    double sum = 0.0;
+    for (int i = 0; i < count; i++) {
+        struct ag_lightmap_page page = { 0 };
+        ag_lightmap_get_page(job->lightmap, i, &page);
+        sum += (double)page.width * (double)page.height;
+    }
+    return sum;
+}
+
 static struct outcome outcome_of(const struct job *job)
 {
     struct outcome out = { 0 };
     ag_lightmap_get_info(job->lightmap, &out.info);
-    out.utilisation = (double)out.info.texels / ((double)out.info.width * (double)out.info.height);
+    out.utilisation = (double)out.info.texels / page_places(job, out.info.pages);
     out.updated = job->baking.updates && ag_bake_get_update(job->baking.bake, &out.update) == AG_OK;
     return out;
 }
@@ -336,10 +388,16 @@ static void say(const struct job *job, const struct outcome *o)
 {
     const struct ag_lightmap_info *info = &o->info;
     if (o->updated) say_update(&o->update);
-    note("light map of %dx%d, %d texels in %d charts, %.3g each, %.0f %% of it, %.3g texels per "
+    char size[64];
+    if (info->pages == 1)
+        snprintf(size, sizeof size, "%dx%d", info->width, info->height);
+    else
+        snprintf(size, sizeof size, "%d pages of %dx%d", info->pages, job->arguments->page,
+                 job->arguments->page);
+    note("light map of %s, %d texels in %d charts, %.3g each, %.0f %% of it, %.3g texels per "
          "metre; written: %s",
-         info->width, info->height, info->texels, info->charts, texels_per_chart(info),
-         100.0 * o->utilisation, (double)info->texels_per_m, job->folder.shown);
+         size, info->texels, info->charts, texels_per_chart(info), 100.0 * o->utilisation,
+         (double)info->texels_per_m, job->folder.shown);
     say_noise(info);
 }
 
@@ -404,6 +462,7 @@ static enum status prepare(struct job *job)
         status = session_load(&job->session, a->merge ? job->origin.scene_name : a->positional[0],
                               a->merge ? job->origin.scene_scale : a->scene_scale);
     if (status == DONE) status = check_scene(job);
+    if (status == DONE) status = check_pages(job);
     return status == DONE ? session_light(&job->session) : status;
 }
 
@@ -415,6 +474,7 @@ static enum status run(struct job *job)
     desc.indirect_only = a->indirect_only;
     desc.denoise = a->denoise;
     desc.report = true;
+    desc.page = a->page;
     enum status status = prepare(job);
     if (status == DONE)
         status = a->has_spp || a->merge ? take_paths(job, &desc) : take_technique(job, &desc);

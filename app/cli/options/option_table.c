@@ -359,6 +359,12 @@ static bool set_lightmap_format(struct arguments *a, const char *value, const ch
     }
 }
 
+static bool set_page(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be a multiple of 8, from 64 to 16384 texels";
+    return set_int(value, 64, 16384, &a->page) && a->page % 8 == 0;
+}
+
 static bool set_probes(struct arguments *a, const char *value, const char **why)
 {
     *why = "it must be the name of a folder";

@@ -19,6 +19,14 @@ enum ag_result ag_lightmap_technique(struct ag_context *context, const char *gi,
     return absent(context, __func__);
 }
 
+enum ag_result ag_lightmap_count_pages(struct ag_scene *scene, const char *gi, int page, int *count)
+{
+    (void)gi;
+    (void)page;
+    if (count) *count = 0;
+    return absent(scene ? scene->context : NULL, __func__);
+}
+
 enum ag_result ag_lightmap_from_bake(const struct ag_bake *bake,
                                      const struct ag_lightmap_desc *desc, struct ag_lightmap **out)
 {
@@ -40,6 +48,15 @@ enum ag_result ag_lightmap_from_renderer(struct ag_renderer *renderer,
 void ag_lightmap_destroy(struct ag_lightmap *lightmap)
 {
     (void)lightmap;
+}
+
+enum ag_result ag_lightmap_get_page(const struct ag_lightmap *lightmap, int page,
+                                    struct ag_lightmap_page *out)
+{
+    (void)lightmap;
+    (void)page;
+    (void)out;
+    return absent(NULL, __func__);
 }
 
 enum ag_result ag_lightmap_get_info(const struct ag_lightmap *lightmap,

@@ -31,6 +31,8 @@ static void write_chart(const struct naming *n, const char *name, uint32_t chart
     report_number(n->report, "instance", instance);
     report_text_value(n->report, "name", or_empty(n->scene->nodes[of->node].name));
     report_text_value(n->report, "mesh", or_empty(n->scene->meshes[of->mesh].name));
+    if (charts_page_count(n->charts) > 1)
+        report_number(n->report, "page", n->charts->charts[chart].page);
     report_end(n->report);
 }
 
@@ -111,7 +113,7 @@ static void write_texels(struct report *report, const struct lightmap_quality *q
 {
     report_begin_object(report, "texels");
     report_number(report, "count", map->charts.side_texel_count);
-    report_number(report, "atlas", (double)map->charts.width * map->charts.height);
+    report_number(report, "atlas", charts_page_places(&map->charts));
     report_number(report, "utilisation", (double)charts_utilisation(&map->charts));
     report_number(report, "filled", q->filled);
     report_number(report, "partly_inside", q->partly);

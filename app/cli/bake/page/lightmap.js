@@ -8,12 +8,16 @@ const short = value => isNumber(value) ? String(+value.toPrecision(3)) : '–';
 
 // ---- header
 
+const pages = report.pages ?? [];
+const sizeText = size => `${size[0]} × ${size[1]} texels`;
+const sizesText = () => pages.length > 1 ? `${pages.length} pages, the largest of ${sizeText(pages[0].size)}` : Array.isArray(report.size) ? sizeText(report.size) : null;
+
 function buildHead() {
   const scene = String(report.scene ?? 'Light map');
   byId('scene').textContent = scene;
   document.title = `${scene} – Afterglow light map`;
   const facts = [
-    ['Size', Array.isArray(report.size) ? `${report.size[0]} × ${report.size[1]} texels` : null],
+    ['Size', sizesText()],
     ['GI', report.gi], ['Light', report.light || null],
     ['Paths per texel', isNumber(report.paths) ? `${whole(report.paths)}${isNumber(report.noise) ? ' in the mean' : ''}` : null],
     ['Threads', report.threads], ['Time', isNumber(report.seconds) ? secondsText(report.seconds) : null],
@@ -118,6 +122,8 @@ function figureOf(name, title, meaning, keys, side) {
 }
 
 function buildImages() {
+  if (pages.length > 1)
+    byId('pages').textContent = `Pages lie side by side, row by row, from page 0 at the upper left: ${pages.map((page, i) => `${i} at ${page.at.join(', ')}`).join('; ')}.`;
   for (const side of [0, 1])
     byId('images').append(...ATLAS.map(([name, title, meaning, keys]) => figureOf(name, title, meaning, keys, side)).filter(Boolean));
 }
@@ -145,7 +151,8 @@ function buildHistograms() {
 
 // ---- tables
 
-const nameOf = chart => [chart.name || `instance ${chart.instance}`, chart.mesh && chart.mesh !== chart.name ? chart.mesh : null].filter(Boolean).join(', ');
+const nameOf = chart => [chart.name || `instance ${chart.instance}`, chart.mesh && chart.mesh !== chart.name ? chart.mesh : null,
+  isNumber(chart.page) ? `page ${chart.page}` : null].filter(Boolean).join(', ');
 const placeOf = item => (item.position ?? []).map(value => numberText(value, 2)).join(', ');
 const namesOf = charts => [...new Set((charts ?? []).map(nameOf))].join(' | ');
 const numbersOf = charts => (charts ?? []).map(chart => chart.chart).join(' | ');
