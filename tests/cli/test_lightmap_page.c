@@ -45,5 +45,15 @@ TEST(page_shows_checks_images_and_tables)
     CHECK(browser_true(browser, "getComputedStyle(document.body).backgroundColor !== "
                                 "'rgb(252, 252, 252)'"));
     CHECK_STRING(browser_complaints(browser), "");
+    // The number and places of several pages, and the page of each instance.
+    run_expect(0, "bake @cornell --gi radiosity:texels=4096 --spp 8 --page 64 --quiet --lightmap",
+               path_of("page-maps"), NULL);
+    browser_load(browser, page, WIDTH, HEIGHT);
+    CHECK(browser_true(browser,
+                       "/^[2-9] pages/.test(document.querySelector('#facts dd').innerText)"));
+    CHECK(browser_true(browser, "/0 at 0, 0; 1 at 64, 0/.test(document.body.innerText)"));
+    CHECK(browser_true(browser, "/page [0-9]/.test(document.querySelector('#noise').innerText)"));
+    CHECK(browser_true(browser, "!/NaN|undefined|null|Infinity/.test(document.body.innerText)"));
+    CHECK(browser_true(browser, "document.documentElement.scrollWidth <= innerWidth"));
     browser_close(browser);
 }

@@ -101,6 +101,27 @@ TEST(pages_of_an_update_are_those_of_a_bake)
     CHECK(count_maps("pages-updated", "irradiance", "exr") == 0);
 }
 
+// Also after a change, which is found by the copy of the earlier scene: its materials are divided.
+TEST(an_update_of_pages_bakes_the_same_texels_again)
+{
+    static const char words[] = "bake --gi radiosity:density=8 --spp 4 --quiet --sky 100,100,100";
+    char line[300];
+    use_cache("pages-moved");
+    for (int paged = 0; paged < 2; paged++) {
+        const char *folder = paged ? "moved-pages" : "moved-one";
+        const char *pages = paged ? " --page 72" : "";
+        snprintf(line, sizeof line, "%s%s", words, pages);
+        bake_to(line, folder, write_screen("pages-from.gltf", -3.0));
+        snprintf(line, sizeof line, "%s%s --update --json --lightmap", words, pages);
+        json_t *report = run_json(
+            run_expect(0, line, path_of(folder), write_screen("pages-to.gltf", -2.4), NULL));
+        CHECK(number(json_object_get(report, "update"), "texels_again") > 0.0);
+        json_decref(report);
+    }
+    check_equal("moved-one", "moved-pages", "bake.safetensors");
+    CHECK(count_maps("moved-pages", "irradiance", "exr") >= 2);
+}
+
 TEST(a_map_that_fits_on_a_page_is_the_one_without_pages)
 {
     static const char *const files[] = { "irradiance.exr", "irradiance.ktx2", "irradiance.png",
