@@ -35,7 +35,7 @@ def material_pages(document):
     for primitive in (p for mesh in document["meshes"] for p in mesh["primitives"]):
         texels, material = primitive.get("extras", {}).get("afterglow_lightmap"), primitive.get("material")
         if texels and pages.setdefault(material, texels.get("page", 0)) != texels.get("page", 0):
-            raise SystemExit(f"material {material} is on several pages of the map: bake with --lightmap-format exr,png, which divides it")
+            raise SystemExit(f"material {material} is on several pages of the map: another program has joined its copies")
     return pages
 
 

@@ -82,6 +82,7 @@ static size_t add_texture(struct materials *m, const struct lightmap_image *imag
 static void give_map(struct materials *m, json_t *material, int use)
 {
     const int page = use / MAX_SETS;
+    if (!m->pages[page].png) return;
     if (m->textures[page] == 0) m->textures[page] = 1 + add_texture(m, &m->pages[page]);
     json_t *extensions = gltf_doc_child(m->doc, material, "extensions");
     gltf_doc_use_extension(m->doc, EXTENSION);

@@ -7,7 +7,7 @@
 void lightmap_forget(struct gltf_doc *doc);
 
 struct lightmap_image {
-    const uint8_t *png;
+    const uint8_t *png; // NULL: none; materials are divided alone
     size_t size;
     float range; // lux of the value 1
     const char *name;

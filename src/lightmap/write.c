@@ -96,10 +96,10 @@ static void describe(struct gltf_doc *doc, const struct writing *w)
     gltf_doc_set(doc, gltf_doc_child(doc, doc->root, "extras"), LIGHTMAP_EXTRAS, out);
 }
 
-// The textures of fronts.
+// The textures of fronts. Materials on several pages are divided without them, too.
 static bool give_textures(struct gltf_doc *doc, const struct writing *w)
 {
-    if (!(w->formats & LIGHTMAP_PNG)) return true;
+    if (!(w->formats & LIGHTMAP_PNG) && w->page_count == 1) return true;
     struct lightmap_image *images = host_alloc(w->map->host, w->page_count, sizeof *images);
     for (uint32_t i = 0; images && i < w->page_count; i++)
         images[i] = (struct lightmap_image){ .png = w->maps[i].png,

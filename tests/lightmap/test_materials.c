@@ -132,6 +132,24 @@ TEST(material_is_divided_where_uses_are_on_different_pages)
     gltf_doc_finish(&doc);
 }
 
+TEST(materials_of_pages_without_a_texture_are_divided_too)
+{
+    static const struct lightmap_image pages[2] = { { .range = 1.0f, .name = "map.0" },
+                                                    { .range = 1.0f, .name = "map.1" } };
+    struct gltf_doc doc;
+    begin(&doc, "{'materials':[{'name':'wall'}],'meshes':[{'primitives':[{'material':0," ON(
+                    1, 0) "},{'material':0," ON(1, 1) "},{'material':0," ON(1, 0) "}]}]}");
+    CHECK(lightmap_materials(&doc, pages, 2) && !doc.failed);
+    for (size_t i = 0; i < 3; i++) {
+        assert_int_equal(json_integer_value(json_object_get(primitive_at(&doc, i), "material")),
+                         i % 2);
+        CHECK_STRING(name_of(&doc, primitive_at(&doc, i)), "wall");
+    }
+    CHECK(!json_object_get(member(doc.root, "materials", 1), "extensions"));
+    CHECK(!json_object_get(doc.root, "textures") && !json_object_get(doc.root, "extensionsUsed"));
+    gltf_doc_finish(&doc);
+}
+
 TEST(primitive_without_a_material_gets_the_default_one_with_the_map)
 {
     struct gltf_doc doc;

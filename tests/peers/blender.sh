@@ -19,7 +19,7 @@ shows() {
     "$program" bake "$scene" --gi $gi --quiet --lightmap-format exr --lightmap "$work/given"
     python3 -c 'import sys; sys.path.insert(0, sys.argv[1]); import glb; glb.make_diffuse(*sys.argv[2:])' \
         "$root/examples/blender" "$work/given/scene.glb" "$work/$name.glb"
-    "$program" bake "$work/$name.glb" --gi $gi --quiet --lightmap-format exr,png --lightmap "$work/$name" "$@"
+    "$program" bake "$work/$name.glb" --gi $gi --quiet --lightmap-format exr --lightmap "$work/$name" "$@"
     "$program" render "$work/$name.glb" --gi $gi --size 320x180 --antialias 16 --tonemap linear --exposure 8.2 --quiet -o "$work/$name.png"
     blender --background --factory-startup --python-exit-code 1 --python "$root/examples/blender/open_lightmap.py" -- \
         "$work/$name/scene.glb" "$work/$name-blender.png" --exposure 8.2 --size 320x180 >"$work/log" 2>&1 || { tail "$work/log"; exit 1; }

@@ -42,7 +42,7 @@ assert glb.read(copy) == (document, rest) and os.path.getsize(copy) % 4 == 0
 fails(glb.read, os.path.join(folder, "means.json"))
 assert set(glb.material_pages(document).values()) == {0}
 
-# Pages of a map: the materials of scenes with a PNG are divided by them, the others are refused.
+# Pages of a map divide materials; a material on two of them is refused.
 divided = glb.read(os.path.join(folder, "pages/scene.glb"))[0]
 uris = [page["uri"] for page in glb.light_maps(divided)]
 assert len(uris) > 1 and uris == [f"irradiance.{i}.exr" for i in range(len(uris))], uris

@@ -9,7 +9,7 @@ trap 'rm -rf "$work"' EXIT
 export AFTERGLOW_CACHE="$work/cache" PYTHONDONTWRITEBYTECODE=1
 "$program" bake @cornell --gi radiosity:texels=4096 --spp 2 --quiet --lightmap-format exr --lightmap "$work/maps"
 "$program" diff --json "$work/maps/irradiance.exr" "$work/maps/irradiance.exr" >"$work/means.json"
-"$program" bake @cornell --gi radiosity:texels=8192 --spp 2 --page 64 --quiet --lightmap-format exr,png --lightmap "$work/pages"
+"$program" bake @cornell --gi radiosity:texels=8192 --spp 2 --page 64 --quiet --lightmap-format exr --lightmap "$work/pages"
 python3 "$here/scripts.py" "$root" "$work"
 # The diffuse copy is a scene, with the light of the first.
 "$program" info --json "$work/diffuse.glb" >"$work/info.json"
