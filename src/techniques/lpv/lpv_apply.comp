@@ -43,8 +43,6 @@
 #define LPV_WALLS_BINDING 6
 #include "techniques/lpv/lpv_lookup.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
-
 // Constants, because drivers without branches would evaluate both.
 layout(constant_id = LPV_CONSTANT_CUBIC) const bool LPV_CUBIC = false;
 layout(constant_id = LPV_CONSTANT_DAMPED) const bool LPV_DAMPED = false;
@@ -55,6 +53,10 @@ layout(push_constant, scalar) uniform push_block
 };
 lpv_apply_push push; // a copy, as FRAME_CONSTANTS_COPIED
 layout(set = 0, binding = 2) uniform sampler2D depth;
+#define COLUMNS_WIDTH LPV_APPLY_LOCAL
+#define COLUMNS_ROWS  push.rows
+#define COLUMNS_HAS   has_light_of_cascade
+#include "techniques/common/light_map/columns.glsl"
 layout(set = 0, binding = 3) uniform sampler2D normal;
 layout(set = 0, binding = 4) uniform sampler3D light;
 layout(set = 0, binding = 5, rgba16f) uniform image2D irradiance;
@@ -66,12 +68,24 @@ layout(set = 0, binding = 11, rgba16f) uniform image2D specular;
 #include "techniques/common/reflected.glsl"
 #endif
 
-bool covered_by_finer(vec3 surface)
+bool is_between(vec3 low, vec3 position, vec3 high)
 {
-    if (push.finer_cell_m == 0.0) return false;
-    ivec3 cells = ivec3(push.finer_cells_x, push.finer_cells_y, push.finer_cells_z);
-    return lpv_cascade_weight((surface - push.finer_origin_m) / push.finer_cell_m, cells,
-                              push.finer_open) == 1.0;
+    return all(lessThan(low, position)) && all(lessThan(position, high));
+}
+
+// Whether the cascade lights the pixel's surface, and finer ones do not light it alone.
+bool has_light_of_cascade(ivec2 pixel, float z)
+{
+    vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
+    return z > 0.0 && is_between(push.low_m, position, push.high_m) &&
+           !is_between(push.finer_low_m, position, push.finer_high_m);
+}
+
+// Weight against the next coarser cascade: 1, falling to 0 before open sides.
+float weight_at(vec3 position)
+{
+    vec3 inside = min(position - push.low_m, push.high_m - position) / lpv.cell_m;
+    return smoothstep(0.0, LPV_TRANSITION, min(inside.x, min(inside.y, inside.z)));
 }
 
 vec3 linear_irradiance(vec3 at, vec3 n)
@@ -169,30 +183,25 @@ void store(ivec2 pixel, vec3 arriving, vec3 reflected, float weight)
 #endif
 }
 
+void shade(ivec2 pixel)
+{
+    vec3 surface = frame_world_position(frame_uv(uvec2(pixel)), texelFetch(depth, pixel, 0).r);
+    vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
+    vec3 at = lookup_of(surface, n);
+    vec3 arriving = surface_irradiance(at, n), reflected = vec3(0.0);
+#if SPECULAR
+    reflected = surface_reflected(pixel, surface, n, at, arriving);
+#endif
+    float weight = weight_at(surface);
+    store(pixel, arriving, reflected, weight > 0.999999 ? 1.0 : weight);
+}
+
 // Dispatched from the coarsest cascade to the finest; each blends over the previous ones. Outside
-// of the coarsest cascade there is no light.
+// of the coarsest cascade there is no light: the host has cleared the images.
 void main()
 {
     frame = frame_block;
     lpv = lpv_block;
     push = push_of_all;
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
-    float z = texelFetch(depth, pixel, 0).r, weight = 1.0;
-    vec3 arriving = vec3(0.0), reflected = vec3(0.0);
-    if (z > 0.0) {
-        vec3 surface = frame_world_position(frame_uv(uvec2(pixel)), z);
-        weight = lpv_cascade_weight(lpv_cells_from_world(surface), lpv_cells(), push.open);
-        if (covered_by_finer(surface) || (weight == 0.0 && push.coarsest == 0u)) return;
-        if (weight > 0.999999) weight = 1.0;
-        if (weight > 0.0) {
-            vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-            vec3 at = lookup_of(surface, n);
-            arriving = surface_irradiance(at, n);
-#if SPECULAR
-            reflected = surface_reflected(pixel, surface, n, at, arriving);
-#endif
-        }
-    }
-    store(pixel, arriving, reflected, weight);
+    shade_column(ivec2(frame.width, frame.height));
 }

@@ -55,6 +55,20 @@ void lpv_grid_around(struct box3 bounds, int dim, float margin, float cell_m, ve
     }
 }
 
+struct box3 lpv_grid_inside(const struct lpv_grid *grid, float distance)
+{
+    const float FAR_M = 1e30f;
+    struct box3 box;
+    for (int axis = 0; axis < 3; axis++) {
+        const float first = grid->origin_m.raw[axis], cells = (float)grid->cells[axis];
+        box.min.raw[axis] =
+            grid->open & LPV_OPEN(axis, 0) ? first + distance * grid->cell_m : -FAR_M;
+        box.max.raw[axis] =
+            grid->open & LPV_OPEN(axis, 1) ? first + (cells - distance) * grid->cell_m : FAR_M;
+    }
+    return box;
+}
+
 bool lpv_grid_equal(const struct lpv_grid *a, const struct lpv_grid *b)
 {
     return a->cell_m == b->cell_m && memcmp(a->cells, b->cells, sizeof a->cells) == 0 &&

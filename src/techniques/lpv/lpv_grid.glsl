@@ -45,19 +45,6 @@ bool lpv_outermost(ivec3 cell, uint sides)
     return false;
 }
 
-// Weight of a cascade against the next coarser one at a position in its cells: 1, falling to 0
-// before open sides.
-float lpv_cascade_weight(vec3 at, ivec3 cells, uint open)
-{
-    float inside = LPV_TRANSITION; // cells from the outermost ones
-    for (int axis = 0; axis < 3; axis++) {
-        if ((open & LPV_OPEN(axis, 0)) != 0u) inside = min(inside, at[axis] - 1.0);
-        if ((open & LPV_OPEN(axis, 1)) != 0u)
-            inside = min(inside, float(cells[axis]) - 1.0 - at[axis]);
-    }
-    return smoothstep(0.0, LPV_TRANSITION, inside);
-}
-
 // First cell of an invocation that takes `run` cells along z (lpv_dispatch_cells); may be outside
 // of the grid.
 ivec3 lpv_cell_of_invocation(int run)

@@ -27,6 +27,8 @@ bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *ou
 // two cells at a time, one cell of the next coarser cascade.
 void lpv_grid_around(struct box3 bounds, int dim, float margin, float cell_m, vec3s camera,
                      struct lpv_grid *out);
+// The part more than `distance` cells before open sides; without bound at the others.
+struct box3 lpv_grid_inside(const struct lpv_grid *grid, float distance);
 bool lpv_grid_equal(const struct lpv_grid *a, const struct lpv_grid *b);
 
 // Injection sums integers, so that order does not matter. A block of LPV_TEXELS² texels of a

@@ -5,6 +5,7 @@
 #include "core/shared.h"
 
 #define LPV_LOCAL       8  // workgroup size in x and y of shaders over pixels
+#define LPV_APPLY_LOCAL 64 // workgroup size in x of lpv_apply.comp
 #define LPV_CELLS_LOCAL 64 // workgroup size of shaders over cells
 // Side of the block of reflective shadow map texels that one invocation takes.
 #define LPV_TEXELS         4
@@ -92,13 +93,12 @@ struct lpv_refine_push {
 
 // Push constants of lpv_apply.comp.
 struct lpv_apply_push {
-    vec3s finer_origin_m; // the next finer cascade
-    float finer_cell_m;   // 0: this is the finest
-    int32_t finer_cells_x, finer_cells_y, finer_cells_z;
-    uint32_t finer_open;
-    uint32_t open;     // LPV_OPEN sides of this cascade
-    uint32_t coarsest; // 1: writes every pixel
+    // World-space boxes: positions that this cascade lights, and those that finer ones light alone.
+    vec3s low_m, high_m;
+    vec3s finer_low_m, finer_high_m;
+    uint32_t coarsest; // 1: nothing is before it in the images
     uint32_t has_dielectric;
+    int32_t rows; // of pixels, of an invocation: columns.glsl
 };
 
 // Views of lpv_debug.comp.
@@ -116,7 +116,7 @@ struct lpv_view_push {
 _Static_assert(sizeof(struct lpv_reprojection) == 9 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_params) == 82 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_refine_push) == 7 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct lpv_apply_push) == 11 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_apply_push) == 15 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_view_push) == 8, "layout is shared with GLSL");
 #endif
 
