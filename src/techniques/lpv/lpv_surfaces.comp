@@ -1,6 +1,7 @@
 // Reflecting surfaces by cell: Σ ρ A n_a² and Σ A n_a² over the surfaces that inject into the cell,
 // for each of six directions ±a by the sign of their normals n. ρ is diffuse reflectance in RGB, A
-// area in cells². The three n_a² sum to 1: a surface of normal n counts as three along the axes.
+// area in cells². The three n_a² sum to 1: a surface of normal n counts as three along the axes,
+// scaled to the light of a slope.
 //
 // A triangle is sampled where lines along its largest axis cross it, LPV_SURFACE_LINES² per face of
 // a cell. Sums are integers: the order of triangles does not change a bit. One invocation takes one
@@ -22,6 +23,7 @@ layout(set = 0, binding = 12, scalar) buffer lpv_surfaces
     uint surfaces[];
 };
 
+layout(constant_id = LPV_CONSTANT_CLOSURE) const int LPV_CLOSURE = LPV_NO_CLOSURE;
 const int LINES = LPV_SURFACE_LINES;
 const int MAX_LINES = 64; // that one invocation tests alone
 
@@ -112,10 +114,20 @@ vec3 reflectance_at(triangle t, vec3 weight)
     return scene_reflectance(m, colour, roughness_metallic);
 }
 
+// Area and reflectance of a slope over those of its sides, in light that fills its hemisphere: the
+// side of axis a receives (1 + |n_a|)/2 of E(n), and as much of the cosine around a leaves the
+// slope. With three closed bands the rest returns to lookups at the slope.
+vec4 slope_over_sides(vec3 normal)
+{
+    float factor = 2.0 / (1.0 + dot(normal * normal, abs(normal)));
+    return LPV_CLOSURE == LPV_PRODUCT_CLOSURE ? vec4(1.0) : vec4(vec3(factor * factor), factor);
+}
+
 void add_side(vec3 position, vec3 normal, vec4 amount)
 {
     ivec3 cell = ivec3(floor(position + 0.5 * normal));
     if (!lpv_inside(cell)) return;
+    amount *= slope_over_sides(normal);
     for (int axis = 0; axis < 3; axis++) {
         int at = 24 * lpv_index(cell) + 4 * (2 * axis + (normal[axis] < 0.0 ? 1 : 0));
         uvec4 fixed_amount = uvec4(round(amount * normal[axis] * normal[axis] * LPV_SURFACE_UNIT));
