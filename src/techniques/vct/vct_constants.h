@@ -7,7 +7,7 @@
 #define VCT_CONSTANT_COLUMNS        8  // cones/gather.comp: along columns, otherwise rows
 #define VCT_CONSTANT_EACH_PIXEL     9  // cones/gather.comp: at full resolution
 #define VCT_CONSTANT_ANISOTROPIC    10 // volume/directions.glsl
-#define VCT_CONSTANT_HAS_DYNAMIC    11 // volume/prefilter.glsl: there are dynamic voxels
+#define VCT_CONSTANT_HAS_DYNAMIC    11 // volume/prefilter.glsl, rays/ray.glsl: dynamic voxels
 #define VCT_CONSTANT_OCCLUSION      12 // volume/directions.glsl: opacity alone (vctao)
 #define VCT_CONSTANT_CLIPS          13 // clipmap/clipmap.glsl: levels of the clip map
 #define VCT_CONSTANT_SMALL_EMITTERS 14 // voxelize/add.glsl, cones/small_emitters.glsl

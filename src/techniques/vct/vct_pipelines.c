@@ -99,6 +99,13 @@ static void add_octree(uint32_t directions, struct gpu_objects *out)
             PIPELINE(svo.mip, "svo_mip", &shader_vct_octree_mip_comp, directions));
 }
 
+// A pass that traces, by vct_light_variant. still: bits of those without moving voxels.
+#define VARIANTS(member, name, shader, shader_more, bits, still, more)                             \
+    PIPELINE(member[0], name, shader, (bits) | (still)),                                           \
+        PIPELINE(member[1], name "_dynamic", shader, bits),                                        \
+        PIPELINE(member[2], name "_more", shader_more, (bits) | (still) | (more)),                 \
+        PIPELINE(member[3], name "_more_dynamic", shader_more, (bits) | (more))
+
 // Passes that fill or sample the light. An octree has no rays.
 static void add_light(const struct vct_options *o, struct gpu_objects *out)
 {
@@ -106,22 +113,22 @@ static void add_light(const struct vct_options *o, struct gpu_objects *out)
     const uint32_t directions = o->anisotropic ? 0 : ISOTROPIC,
                    kind = directions | (lit ? 0 : (uint32_t)OCCLUSION),
                    rays = vct_has_rays(o) ? (uint32_t)RAYS : 0,
-                   pixel_rays = vct_pixels_have_rays(o) ? (uint32_t)RAYS : 0;
+                   pixel_rays = vct_pixels_have_rays(o) ? (uint32_t)RAYS : 0,
+                   still = svo ? 0 : (uint32_t)NO_DYNAMIC;
 #define STORED(name) (svo ? &shader_vct_##name##_svo_comp : &shader_vct_##name##_mips_comp)
     const struct gpu_shader *bounce = lit ? STORED(lighting_bounce) : NULL, *cones = STORED(cones),
                             *specular = lit ? STORED(cones_specular) : NULL,
                             *average = o->temporal ? &shader_vct_cones_lobe_average_temporal_comp
                                                    : &shader_vct_cones_lobe_average_frame_comp;
-    GPU_ADD(out, 0, PIPELINE(bounce[0], "bounce", bounce, directions | CLIPS | rays),
-            PIPELINE(bounce[1], "bounce_more", bounce, directions | CLIPS | rays | MORE_LIGHT),
-            PIPELINE(cones[0], "cones", cones, kind | CLIPS | pixel_rays),
-            PIPELINE(cones[1], "cones_more", lit ? cones : NULL,
-                     directions | CLIPS | pixel_rays | MORE_LIGHT),
-            PIPELINE(specular[0], "specular", specular, directions | CLIPS | rays),
-            PIPELINE(specular[1], "specular_more", specular, directions | CLIPS | rays | MAP),
-            PIPELINE(lobe_average, "lobe_average", lit && rays ? average : NULL, 0),
-            PIPELINE(reflect, "reflect", lit ? &shader_vct_cones_reflect_comp : NULL, rays),
-            PIPELINE(debug, "debug", STORED(debug), CLIPS));
+    GPU_ADD(
+        out, 0,
+        VARIANTS(bounce, "bounce", bounce, bounce, directions | CLIPS | rays, still, MORE_LIGHT),
+        VARIANTS(cones, "cones", cones, lit ? cones : NULL, kind | CLIPS | pixel_rays, still,
+                 MORE_LIGHT),
+        VARIANTS(specular, "specular", specular, specular, directions | CLIPS | rays, still, MAP),
+        PIPELINE(lobe_average, "lobe_average", lit && rays ? average : NULL, 0),
+        PIPELINE(reflect, "reflect", lit ? &shader_vct_cones_reflect_comp : NULL, rays),
+        PIPELINE(debug, "debug", STORED(debug), CLIPS));
     if (svo)
         add_octree(directions, out);
     else

@@ -63,7 +63,7 @@ struct vct {
     gpu_pipeline texel_lists, planes, blocks, parts, mip;
     gpu_pipeline fill[2];                          // without and with moving voxels
     gpu_pipeline inject[2];                        // without and with lights
-    gpu_pipeline cones[2], bounce[2], specular[2]; // by vct_has_more_light
+    gpu_pipeline cones[4], bounce[4], specular[4]; // by vct_light_variant
     gpu_pipeline lobe_average, reflect;
     gpu_pipeline edges, gather_rows, gather_columns, blur, upsample, debug;
     struct vct_temporal_pipelines history;
@@ -106,9 +106,11 @@ struct vct {
     struct vct_overflow overflow;
 };
 
-// Whether the frame has small emitters or a map of the environment: variants of passes handle both.
-static inline bool vct_has_more_light(const struct vct *vct, const struct frame_view *view)
+// Number of the variant of a pass that traces: + 1 if there are moving voxels, + 2 if the frame has
+// small emitters or a map of the environment.
+static inline int vct_light_variant(const struct vct *vct, const struct frame_view *view)
 {
-    return !vct->options.occlusion &&
-           (vct->small_emitters.count > 0 || view->constants->environment_scale > 0.0f);
+    const bool more = !vct->options.occlusion &&
+                      (vct->small_emitters.count > 0 || view->constants->environment_scale > 0.0f);
+    return (vct->moving_draws > 0) + 2 * more;
 }

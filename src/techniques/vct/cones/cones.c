@@ -85,7 +85,7 @@ static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame
     const uint32_t side = (uint32_t)vct->options.interleave; // of a block
     gpu_scope_begin(cmd, "cones");
     gpu_dispatch(
-        cmd, vct->cones[vct_has_more_light(vct, view)],
+        cmd, vct->cones[vct_light_variant(vct, view)],
         GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), p->clipmap, view->constants_binding,
                  view->environment_binding, p->cones, p->depth, p->normal, p->cone_normal,
                  { .name = "light", .image = vct->light, .sampler = vct->linear },

@@ -86,7 +86,8 @@ void main()
         mat3 world_from_set = mat3(set.set_axes[0], set.set_axes[1], set.set_axes[2]);
 #endif
         uint first = part * 7u % parts % set.cone_count;
-        for (uint i = first; i < set.cone_count; i += parts) {
+        uint i = first;
+        do {
             vec3 direction = set.cone_count == 1u ? up : set.cones[i].xyz;
 #if !VCT_SVO
             if (VCT_RAYS) {
@@ -109,7 +110,8 @@ void main()
                 traced.rgb + (1.0 - traced.a) * environment_lobe(direction, set.environment_sigma);
             if (VCT_OCCLUSION) radiance = 1.0 - traced.rgb;
             vct_add_cone(sum, radiance, set.cones[i].w * direction);
-        }
+            i += parts;
+        } while (i < set.cone_count);
         if (VCT_HAS_SMALL_EMITTERS) add_small_emitters(sum, part, parts, at, up, start.level);
     }
     if (side == 1u && set.step == 1u) {

@@ -49,7 +49,7 @@ void vct_record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct fram
     const uint32_t across = gpu_groups(view->width, VCT_LOCAL_2D),
                    down = gpu_groups(view->height, VCT_LOCAL_2D);
     gpu_scope_begin(cmd, "specular");
-    gpu_dispatch(cmd, vct->specular[vct_has_more_light(vct, view)],
+    gpu_dispatch(cmd, vct->specular[vct_light_variant(vct, view)],
                  GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), vct_clipmap_binding(vct, cmd),
                           set, FRAME_SURFACE_BINDINGS(view), view->environment_binding,
                           { .name = "light", .image = vct->light, .sampler = vct->linear },

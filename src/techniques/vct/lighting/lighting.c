@@ -90,7 +90,7 @@ static void bounce(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd 
                    struct gpu_binding cones, bool in_turns)
 {
     gpu_dispatch_indirect(
-        cmd, vct->bounce[vct_has_more_light(vct, view)],
+        cmd, vct->bounce[vct_light_variant(vct, view)],
         GPU_BIND(vct_grid_binding(vct, clip, cmd), vct_lit_clipmap_binding(vct, cmd),
                  view->constants_binding, view->environment_binding, cones,
                  { .name = "light", .image = vct->light, .sampler = vct->linear },

@@ -22,6 +22,8 @@ layout(set = 0, binding = 29) uniform usampler2D static_lit_voxels;
 layout(set = 0, binding = 30) uniform usampler2D dynamic_lit_voxels;
 
 layout(constant_id = VCT_CONSTANT_RAYS) const bool VCT_RAYS = false;
+layout(constant_id = VCT_CONSTANT_HAS_DYNAMIC) const
+    bool VCT_HAS_DYNAMIC = true;   // false: the second set is empty
 const float VCT_RAY_LIFT = 0.25;   // of the start along the normal, voxels
 const float VCT_RAY_OPAQUE = 0.98; // a ray of this opacity ends
 // A ray meets a plane up to this far beyond the voxel, so that none passes between the planes of
@@ -85,7 +87,7 @@ struct vct_ray_voxel {
     ivec3 at;
     float first, last; // distances
     uvec2 words;       // of the masks of both sets
-    uvec2 below;       // the block's words before them, or 0
+    uvec2 slots;       // of the words' first faces
     uint faces;        // 6 bits of the static set, 6 of the other
 };
 
@@ -94,28 +96,35 @@ uint vct_ray_shift(ivec3 voxel)
     return 8u * uint(voxel.x & 1 | (voxel.y & 1) << 1);
 }
 
-// The next voxel with such a face from v.last on. False: none is left.
-bool vct_ray_next(vct_ray ray, inout vct_ray_voxel v)
+// Loops test at their end: on software drivers the body of one that tests at its start runs once
+// more than it has iterations, for no invocation.
+
+// The next voxel with such a face from v.last on, if there is one.
+void vct_ray_next(vct_ray ray, inout vct_ray_voxel v)
 {
-    v.faces = 0u;
-    while (v.faces == 0u && v.last < ray.end) {
+    uvec4 masks;
+    do {
         v.first = v.last;
         v.at = ivec3(ray.from + ray.direction * (v.first + VCT_RAY_STEP));
-        uvec4 masks = texelFetch(vct_blocks, v.at >> 1, 0);
+        masks = texelFetch(vct_blocks, v.at >> 1, 0);
         bool empty = (masks.x & VCT_BLOCK_EMPTY) != 0u;
         uvec4 aligned = masks >> 6u & VCT_EACH_VOXEL;
         aligned = (aligned << 6u) - aligned; // all faces of aligned voxels
         uvec4 facing = masks & (ray.facing ^ ((ray.facing ^ ray.facing_aligned) & aligned));
+        if (!VCT_HAS_DYNAMIC) facing.zw = uvec2(0u);
         bool none = empty || facing == uvec4(0u);
-        v.words = (v.at.z & 1) != 0 ? masks.yw : masks.xz;
-        v.below = (v.at.z & 1) != 0 ? masks.xz : uvec2(0u);
         uvec2 faces = ((v.at.z & 1) != 0 ? facing.yw : facing.xz) >> vct_ray_shift(v.at) & 63u;
-        v.faces = none ? 0u : faces.x | faces.y << 6;
+        v.faces = none || v.first >= ray.end ? 0u : faces.x | faces.y << 6;
         uint level = empty ? (masks.x & 7u) + 1u : none ? 1u : 0u;
         v.last = max(vct_ray_exit(ray, vec3(v.at >> level << level), float(1u << level)),
                      v.first + VCT_RAY_STEP);
-    }
-    return v.faces != 0u;
+    } while (v.faces == 0u && v.last < ray.end);
+    const uint all_faces = VCT_EACH_VOXEL * 63u;
+    bool upper = (v.at.z & 1) != 0;
+    v.words = (upper ? masks.yw : masks.xz) & all_faces;
+    v.slots = upper ? uvec2(bitCount(masks.xz & all_faces)) : uvec2(0u);
+    v.slots.x += texelFetch(static_first_slots, v.at >> 1, 0).r;
+    if (VCT_HAS_DYNAMIC) v.slots.y += texelFetch(dynamic_first_slots, v.at >> 1, 0).r;
 }
 
 const uint VCT_RAY_DYNAMIC = 0x80000000u; // bit of a face's number
@@ -123,16 +132,10 @@ const uint VCT_RAY_DYNAMIC = 0x80000000u; // bit of a face's number
 // Slot of a face, and the bit for the dynamic set.
 uint vct_ray_face(vct_ray_voxel v, uint face)
 {
-    bool dynamic = face >= VCT_FACES;
+    bool dynamic = VCT_HAS_DYNAMIC && face >= VCT_FACES;
     uint bit = 1u << (vct_ray_shift(v.at) + (dynamic ? face - VCT_FACES : face));
-    uint word = (dynamic ? v.words.y : v.words.x) & VCT_EACH_VOXEL * 63u;
-    uint before = uint(bitCount(word & (bit - 1u))); // in the block
-    if (dynamic)
-        before += texelFetch(dynamic_first_slots, v.at >> 1, 0).r;
-    else
-        before += texelFetch(static_first_slots, v.at >> 1, 0).r;
-    return (before + uint(bitCount((dynamic ? v.below.y : v.below.x) & VCT_EACH_VOXEL * 63u))) |
-           (dynamic ? VCT_RAY_DYNAMIC : 0u);
+    uint before = uint(bitCount((dynamic ? v.words.y : v.words.x) & (bit - 1u)));
+    return dynamic ? v.slots.y + before | VCT_RAY_DYNAMIC : v.slots.x + before;
 }
 
 vct_plane vct_ray_plane(uint face)
@@ -141,7 +144,7 @@ vct_plane vct_ray_plane(uint face)
     uvec2 packed = uvec2(0u);
     ivec2 at = vct_face_texel(slot);
     if (slot < vct.capacity) {
-        if (face >= VCT_RAY_DYNAMIC)
+        if (VCT_HAS_DYNAMIC && face >= VCT_RAY_DYNAMIC)
             packed = texelFetch(dynamic_planes, at, 0).rg;
         else
             packed = texelFetch(static_planes, at, 0).rg;
@@ -196,7 +199,7 @@ vec3 vct_ray_light(uint face, uint place)
 #endif
     ivec2 at = vct_face_texel(face & ~VCT_RAY_DYNAMIC);
     uvec4 packed = uvec4(0u);
-    if (face >= VCT_RAY_DYNAMIC)
+    if (VCT_HAS_DYNAMIC && face >= VCT_RAY_DYNAMIC)
         packed = texelFetch(dynamic_lit_voxels, at, 0);
     else
         packed = texelFetch(static_lit_voxels, at, 0);
@@ -215,40 +218,57 @@ struct vct_ray_sum {
     float distance; // of the last face
 };
 
-void vct_ray_add(inout vct_ray_sum s, uvec2 face, float alpha, float distance)
-{
-    if (alpha <= 0.0) return;
-    if (s.visible > 0.0) s.light += s.visible * vct_ray_light(s.face, s.place);
-    s.face = face.x;
-    s.place = face.y;
-    s.visible = vct_visible_alpha(1.0 - s.opacity, alpha, min(s.previous + alpha, 1.0));
-    s.opacity += s.visible;
-    s.previous = alpha;
-    s.distance = distance;
-}
-
-// The two nearest faces of a voxel that a ray meets.
+// The nearest face of a voxel that a ray meets.
 struct vct_ray_meeting {
-    vec2 distance, alpha;
-    uvec2 faces[2]; // vct_ray_face, vct_ray_place
+    float distance, opacity;
+    uint face, place; // vct_ray_face, vct_ray_place
 };
 
-vct_ray_meeting vct_ray_meet(vct_ray ray, vct_ray_voxel v)
+// Leaves the faces behind it in v.faces.
+vct_ray_meeting vct_ray_meet(vct_ray ray, inout vct_ray_voxel v)
 {
-    vct_ray_meeting m = vct_ray_meeting(vec2(1e6), vec2(0.0), uvec2[2](uvec2(0u), uvec2(0u)));
-    for (; v.faces != 0u; v.faces &= v.faces - 1u) {
-        uint bit = uint(findLSB(v.faces));
-        uvec2 face = uvec2(vct_ray_face(v, bit), vct_ray_place(v.at, bit));
-        vct_plane plane = vct_ray_plane(face.x);
+    vct_ray_meeting m = vct_ray_meeting(1e6, 0.0, 0u, 0u);
+    uint rest = v.faces, met = 0u, nearest = 0u;
+    do {
+        uint bit = uint(max(findLSB(rest), 0));
+        uint face = vct_ray_face(v, bit);
+        vct_plane plane = vct_ray_plane(face);
         float t = vct_ray_meets(ray, v, plane, bit);
-        if (t < 0.0 || plane.opacity == 0.0 || t >= m.distance.y) continue;
-        bool first = t < m.distance.x;
-        m.distance = first ? vec2(t, m.distance.x) : vec2(m.distance.x, t);
-        m.alpha = first ? vec2(plane.opacity, m.alpha.x) : vec2(m.alpha.x, plane.opacity);
-        m.faces[1] = first ? m.faces[0] : face;
-        m.faces[0] = first ? face : m.faces[0];
-    }
+        bool meets = rest != 0u && t >= 0.0 && plane.opacity > 0.0;
+        bool nearer = meets && t < m.distance;
+        met |= meets ? 1u << bit : 0u;
+        nearest = nearer ? 1u << bit : nearest;
+        m.distance = nearer ? t : m.distance;
+        m.opacity = nearer ? plane.opacity : m.opacity;
+        m.face = nearer ? face : m.face;
+        m.place = nearer ? vct_ray_place(v.at, bit) : m.place;
+        rest &= rest - 1u;
+    } while (rest != 0u);
+    v.faces = met & ~nearest;
     return m;
+}
+
+// The next face along a ray, if there is one. Returns whether others may follow.
+bool vct_ray_next_face(vct_ray ray, inout vct_ray_voxel v, inout vct_ray_sum s)
+{
+    vct_ray_meeting m;
+    bool more;
+    do {
+        float end = v.last;
+        if (v.faces == 0u) vct_ray_next(ray, v);
+        s.previous = v.first > end + 1.0 ? 0.0 : s.previous;
+        m = vct_ray_meet(ray, v);
+        more = v.faces != 0u || v.last < ray.end;
+    } while (m.opacity == 0.0 && more);
+    s.visible = m.opacity > 0.0 ? vct_visible_alpha(1.0 - s.opacity, m.opacity,
+                                                    min(s.previous + m.opacity, 1.0))
+                                : 0.0;
+    s.face = m.face;
+    s.place = m.place;
+    s.opacity += s.visible;
+    s.previous = m.opacity;
+    s.distance = m.distance;
+    return more && s.opacity < VCT_RAY_OPAQUE;
 }
 
 // Faces along a ray, without the light of the last one. decay: of occlusion per voxel.
@@ -256,19 +276,17 @@ vct_ray_sum vct_ray_faces(vct_ray ray, float decay)
 {
     vct_ray_voxel v;
     v.last = 0.0;
+    v.faces = 0u;
     vct_ray_sum s = vct_ray_sum(vec3(0.0), 0.0, 0.0, 0u, 0u, 0.0, 0.0);
-    float previous_end = 0.0;
-    while (s.opacity < VCT_RAY_OPAQUE && vct_ray_next(ray, v)) {
-        vct_ray_meeting m = vct_ray_meet(ray, v);
-        s.previous = v.first > previous_end + 1.0 ? 0.0 : s.previous;
-        previous_end = v.last;
-        for (int i = 0; i < 2; i++) {
-            vct_ray_add(s, m.faces[i], m.alpha[i], m.distance[i]);
-            if (!VCT_OCCLUSION) continue;
-            s.light += vec3(s.visible / (1.0 + decay * m.distance[i]));
+    bool more;
+    do {
+        if (s.visible > 0.0) s.light += s.visible * vct_ray_light(s.face, s.place);
+        more = vct_ray_next_face(ray, v, s);
+        if (VCT_OCCLUSION) {
+            s.light += vec3(s.visible / (1.0 + decay * s.distance));
             s.visible = 0.0;
         }
-    }
+    } while (more);
     return s;
 }
 
