@@ -16,5 +16,6 @@
 #define VCT_CONSTANT_RAYS           17 // rays/ray.glsl: rays instead of cones
 #define VCT_CONSTANT_MAP            18 // frame/environment_map.glsl: the environment has a map
 #define VCT_CONSTANT_CLAMP          19 // cones/temporal.comp: the history is clamped
+#define VCT_CONSTANT_INTERLEAVE     20 // cones/gather.comp: side of a block
 
 #endif

@@ -9,10 +9,18 @@
 #define VCT_GRID_BINDING 13
 #endif
 
+#ifdef VCT_GRID_COPIED
+layout(set = 0, binding = VCT_GRID_BINDING, scalar) uniform vct_grid
+{
+    vct_params vct_block;
+};
+vct_params vct; // a copy that main begins with, as FRAME_CONSTANTS_COPIED
+#else
 layout(set = 0, binding = VCT_GRID_BINDING, scalar) uniform vct_grid
 {
     vct_params vct;
 };
+#endif
 
 ivec3 vct_cells()
 {

@@ -27,6 +27,7 @@ enum {
     RAYS = 1 << 12,
     MAP = 1 << 13,
     CLAMP = 1 << 14,
+    LARGEST_INTERLEAVE = 1 << 15,
 };
 // Constants of variants for light that most scenes lack.
 enum { MORE_LIGHT = SMALL_EMITTERS | MAP };
@@ -50,6 +51,7 @@ static void fill_constants(const struct vct_options *options, struct gpu_constan
         { VCT_CONSTANT_RAYS, true },
         { VCT_CONSTANT_MAP, true },
         { VCT_CONSTANT_CLAMP, true },
+        { VCT_CONSTANT_INTERLEAVE, VCT_MAX_INTERLEAVE },
     };
     memcpy(out, of_bit, sizeof of_bit);
 }
@@ -175,9 +177,13 @@ void vct_add_pipelines(const struct vct_options *o, struct gpu_objects *out)
             PIPELINE(inject[0], "inject_unlit", &shader_vct_lighting_inject_comp, UNLIT),
             PIPELINE(inject[1], "inject", lit ? &shader_vct_lighting_inject_comp : NULL, 0),
             PIPELINE(edges, "edges", &shader_vct_cones_edges_comp, CLIPS),
-            PIPELINE(gather_rows, "gather_rows", &shader_vct_cones_gather_comp, kind),
-            PIPELINE(gather_columns, "gather_columns", &shader_vct_cones_gather_comp,
+            PIPELINE(gather_rows[0], "gather_rows", &shader_vct_cones_gather_comp, kind),
+            PIPELINE(gather_rows[1], "gather_rows_largest", &shader_vct_cones_gather_comp,
+                     kind | LARGEST_INTERLEAVE),
+            PIPELINE(gather_columns[0], "gather_columns", &shader_vct_cones_gather_comp,
                      kind | COLUMNS | half),
+            PIPELINE(gather_columns[1], "gather_columns_largest", &shader_vct_cones_gather_comp,
+                     kind | COLUMNS | half | LARGEST_INTERLEAVE),
             PIPELINE(blur, "blur", &shader_vct_cones_blur_comp, CLIPS),
             PIPELINE(upsample, "upsample", half ? &shader_vct_cones_upsample_comp : NULL,
                      kind | CLIPS));

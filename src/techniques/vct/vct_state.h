@@ -65,7 +65,8 @@ struct vct {
     gpu_pipeline inject[2];                        // without and with lights
     gpu_pipeline cones[4], bounce[4], specular[4]; // by vct_light_variant
     gpu_pipeline lobe_average, reflect;
-    gpu_pipeline edges, gather_rows, gather_columns, blur, upsample, debug;
+    gpu_pipeline gather_rows[2], gather_columns[2]; // of any interleave, of the largest
+    gpu_pipeline edges, blur, upsample, debug;
     struct vct_temporal_pipelines history;
 
     // Voxels and the light volume.

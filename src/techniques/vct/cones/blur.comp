@@ -6,6 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define FRAME_CONSTANTS_BINDING 1
+#define FRAME_CONSTANTS_COPIED
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/vct/clipmap/clipmap.glsl"
@@ -15,8 +16,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 2, scalar) uniform vct_cones
 {
-    vct_cone_params set;
+    vct_cone_params set_block;
 };
+vct_cone_params set; // a copy that main begins with, as FRAME_CONSTANTS_COPIED
 layout(set = 0, binding = 3) uniform sampler2D depth;
 layout(set = 0, binding = 4) uniform sampler2D normal;
 layout(set = 0, binding = 5) uniform sampler2D gathered; // irradiance, fraction of the cone set
@@ -72,6 +74,8 @@ vec3 blurred(ivec2 pixel)
 
 void main()
 {
+    frame = frame_block;
+    set = set_block;
     ivec2 first = ivec2(gl_WorkGroupID.xy) * TILE;
     if (gl_LocalInvocationIndex == 0u) listed_count = 0u;
     barrier();

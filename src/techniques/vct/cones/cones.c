@@ -127,11 +127,12 @@ static void find_edges(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
 
 static void gather_cones(struct vct *vct, struct gpu_cmd *cmd, const struct pixels *p)
 {
+    const int largest = vct->options.interleave == VCT_MAX_INTERLEAVE;
     gpu_scope_begin(cmd, "gather");
-    gather(vct, cmd, p, vct->gather_rows, vct->pixels->traced, vct->pixels->gathered,
+    gather(vct, cmd, p, vct->gather_rows[largest], vct->pixels->traced, vct->pixels->gathered,
            gpu_groups(vct->pixels->width, VCT_LOCAL_2D * VCT_GATHER_ROW), p->down);
-    gather(vct, cmd, p, vct->gather_columns, vct->pixels->gathered, vct->pixels->traced, p->across,
-           gpu_groups(vct->pixels->height, VCT_LOCAL_2D * VCT_GATHER_ROW));
+    gather(vct, cmd, p, vct->gather_columns[largest], vct->pixels->gathered, vct->pixels->traced,
+           p->across, gpu_groups(vct->pixels->height, VCT_LOCAL_2D * VCT_GATHER_ROW));
     gpu_scope_end(cmd);
 }
 

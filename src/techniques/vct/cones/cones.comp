@@ -14,6 +14,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define FRAME_CONSTANTS_BINDING 1
+#define FRAME_CONSTANTS_COPIED
 #include "frame/frame.glsl"
 #include "techniques/vct/vct_constants.h"
 layout(constant_id = VCT_CONSTANT_MAP) const bool VCT_HAS_MAP = false;
@@ -22,6 +23,7 @@ layout(constant_id = VCT_CONSTANT_MAP) const bool VCT_HAS_MAP = false;
 #include "frame/environment_map.glsl"
 #include "frame/octahedral.glsl"
 #define VCT_GRID_BINDING 0
+#define VCT_GRID_COPIED
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/cones/cones_shared.h"
 #include "techniques/vct/cones/trace.glsl"
@@ -35,8 +37,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 2, scalar) uniform vct_cones
 {
-    vct_cone_params set;
+    vct_cone_params set_block;
 };
+vct_cone_params set; // a copy that main begins with, as FRAME_CONSTANTS_COPIED
 layout(set = 0, binding = 3) uniform sampler2D depth;
 layout(set = 0, binding = 4) uniform sampler2D normal;
 layout(set = 0, binding = 5) uniform sampler3D light;
@@ -62,10 +65,16 @@ void add_small_emitters(inout vct_cone_sums sum, uint part, uint parts, vec3 at,
 
 void main()
 {
+    frame = frame_block;
+    set = set_block;
+    vct = vct_block;
+    vec3 origin_m = clips.origin_m;
     // Consecutive workgroups trace the sub-images of the same blocks: better cache locality.
     uint side = set.interleave, parts = side * side, part = gl_WorkGroupID.x % parts;
+    // Eight consecutive invocations, which software drivers run together, are 4 x 2 near pixels.
+    uvec2 local = gl_LocalInvocationID.xy;
     uvec2 block = uvec2(gl_WorkGroupID.x / parts, gl_WorkGroupID.y) * gl_WorkGroupSize.xy +
-                  gl_LocalInvocationID.xy;
+                  uvec2(local.x & 3u | (local.y & 1u) << 2u, local.x >> 2u | (local.y & 6u));
     // Each row of blocks shifts the pattern by one pixel, so that thin vertical objects get
     // different cones in successive blocks.
     ivec2 pixel = ivec2(block * side + uvec2((part + block.y) % side, part / side));
@@ -76,8 +85,7 @@ void main()
     vec3 n = vec3(0.0);
     if (z > 0.0) {
         n = octahedral_decode(texelFetch(normal, frame_pixel, 0).rg);
-        vec3 at =
-            (frame_world_position(frame_uv(uvec2(frame_pixel)), z) - clips.origin_m) / set.texel_m;
+        vec3 at = (frame_world_position(frame_uv(uvec2(frame_pixel)), z) - origin_m) / set.texel_m;
         vec3 up = octahedral_decode(texelFetch(cone_normal, pixel, 0).rg);
         vct_start start = vct_start_at(at);
         // Neighbours trace distant parts of the set; 7 is coprime with 4, 9, 16 and 25.
@@ -88,7 +96,7 @@ void main()
         uint first = part * 7u % parts % set.cone_count;
         uint i = first;
         do {
-            vec3 direction = set.cone_count == 1u ? up : set.cones[i].xyz;
+            vec3 direction = set.cone_count == 1u ? up : set_block.cones[i].xyz;
 #if !VCT_SVO
             if (VCT_RAYS) {
                 vec2 jitter = vct_low_discrepancy(tile, part + i * parts);
@@ -109,7 +117,7 @@ void main()
             vec3 radiance =
                 traced.rgb + (1.0 - traced.a) * environment_lobe(direction, set.environment_sigma);
             if (VCT_OCCLUSION) radiance = 1.0 - traced.rgb;
-            vct_add_cone(sum, radiance, set.cones[i].w * direction);
+            vct_add_cone(sum, radiance, set_block.cones[i].w * direction);
             i += parts;
         } while (i < set.cone_count);
         if (VCT_HAS_SMALL_EMITTERS) add_small_emitters(sum, part, parts, at, up, start.level);

@@ -9,6 +9,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define FRAME_CONSTANTS_BINDING 1
+#define FRAME_CONSTANTS_COPIED
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/vct/clipmap/clipmap.glsl"
@@ -18,8 +19,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 2, scalar) uniform vct_cones
 {
-    vct_cone_params set;
+    vct_cone_params set_block;
 };
+vct_cone_params set; // a copy that main begins with, as FRAME_CONSTANTS_COPIED
 layout(set = 0, binding = 3) uniform sampler2D depth;
 layout(set = 0, binding = 4) uniform sampler2D normal;
 layout(set = 0, binding = 5, r8) uniform writeonly image2D edges;
@@ -91,6 +93,8 @@ vec3 cone_normal_at(ivec2 pixel, point here, float texel_m)
 
 void main()
 {
+    frame = frame_block;
+    set = set_block;
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(set.width, set.height)))) return;
     point here = point_at(pixel);

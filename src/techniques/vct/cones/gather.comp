@@ -9,6 +9,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 
 #include "core/half.glsl"
 #include "frame/frame_shared.h"
@@ -20,13 +21,16 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = VCT_CONSTANT_COLUMNS) const bool COLUMNS = false;
+// Side of a block of pixels; 0: set.interleave. With a constant one the weights of pixels are, too.
+layout(constant_id = VCT_CONSTANT_INTERLEAVE) const int INTERLEAVE = 0;
 // At full resolution the column pass writes irradiance.
 layout(constant_id = VCT_CONSTANT_EACH_PIXEL) const bool EACH_PIXEL = true;
 
 layout(set = 0, binding = 2, scalar) uniform vct_cones
 {
-    vct_cone_params set;
+    vct_cone_params set_block;
 };
+vct_cone_params set; // a copy that main begins with, as FRAME_CONSTANTS_COPIED
 layout(set = 0, binding = 3) uniform sampler2D edges;
 layout(set = 0, binding = 4) uniform sampler2D red;
 layout(set = 0, binding = 5) uniform sampler2D green;
@@ -96,13 +100,14 @@ void store_sums(ivec2 pixel, sums s)
 
 void main()
 {
+    set = set_block;
     // Mesa 22.3 evaluates COLUMNS ? ivec2(…) : ivec2(…) to the second operand when COLUMNS is a
     // specialization constant.
     ivec2 axis = ivec2(COLUMNS ? 0 : 1, COLUMNS ? 1 : 0);
     ivec2 size = ivec2(set.width, set.height);
     ivec2 first = ivec2(gl_GlobalInvocationID.xy) * (ivec2(1) + axis * (ROW - 1));
     if (any(greaterThanEqual(first, size))) return;
-    int n = int(set.interleave), here = COLUMNS ? first.y : first.x,
+    int n = INTERLEAVE > 0 ? INTERLEAVE : int(set.interleave), here = COLUMNS ? first.y : first.x,
         count = COLUMNS ? size.y : size.x;
     uint ends = ends_of(first, axis, here, count);
     ivec2 reach[ROW];
@@ -111,11 +116,13 @@ void main()
         reach[o] = reach_of(ends, o + REACH, n);
         s[o] = sums(vec4(0.0), vec4(0.0), vec4(0.0));
     }
-    for (int i = REACH + 1 - n; i < ROW + REACH - 1 + n; i++) {
+    [[unroll]] for (int i = REACH + 1 - n; i < ROW + REACH - 1 + n; i++)
+    {
         ivec2 from = clamp(first + (i - REACH) * axis, ivec2(0), size - 1);
         vec4 r = texelFetch(red, from, 0), g = texelFetch(green, from, 0),
              b = texelFetch(blue, from, 0);
-        for (int o = 0; o < ROW; o++) {
+        [[unroll]] for (int o = 0; o < ROW; o++)
+        {
             float weight = weight_of(i - REACH - o, reach[o], n);
             s[o].red += weight * r;
             s[o].green += weight * g;

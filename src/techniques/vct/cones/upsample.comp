@@ -6,6 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define FRAME_CONSTANTS_BINDING 1
+#define FRAME_CONSTANTS_COPIED
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/vct/cones/cones_shared.h"
@@ -14,8 +15,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 2, scalar) uniform vct_cones
 {
-    vct_cone_params set;
+    vct_cone_params set_block;
 };
+vct_cone_params set; // a copy that main begins with, as FRAME_CONSTANTS_COPIED
 layout(set = 0, binding = 3) uniform sampler2D depth;
 layout(set = 0, binding = 4) uniform sampler2D normal;
 layout(set = 0, binding = 5) uniform sampler2D red;
@@ -59,6 +61,8 @@ vec3 irradiance_from_farther(ivec2 at, vct_surface_point here)
 
 void main()
 {
+    frame = frame_block;
+    set = set_block;
     ivec2 at = ivec2(gl_GlobalInvocationID.xy), size = ivec2(frame.width, frame.height);
     if (any(greaterThanEqual(at, ivec2(set.width, set.height)))) return;
     vct_half_pixel near[4];
