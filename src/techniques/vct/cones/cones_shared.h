@@ -61,6 +61,7 @@ struct vct_denoise_push {
     int32_t stride;   // of the taps, px
     float step_per_m; // width of that many pixels at a distance of 1 m
     float radius_m;   // beyond which light is another
+    float deviations; // of the mean, in which two pixels differ by noise alone
 };
 
 // How the history follows a change of light: see cones/temporal.c.

@@ -3,7 +3,7 @@
 // so that a still image converges to what its pixels see.
 //
 // Two passes of four taps each: along rows and columns, and along diagonals (VCT_DIAGONAL). They
-// average 25 pixels together.
+// average 25 pixels together. In the first frames of a history more pairs of passes follow.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -29,7 +29,6 @@ layout(push_constant, scalar) uniform push_block
 
 // Steps to the four taps: along rows and columns, or diagonals.
 const ivec2 ACROSS = ivec2(1, VCT_DIAGONAL), DOWN = ivec2(-VCT_DIAGONAL, 1);
-const float DEVIATIONS = 4.0;    // of the mean, in which two pixels differ by noise alone
 const float CONVERGED = 512.0;   // frames: their noise does not show
 const float PER_DISTANCE = 0.05; // distance from the plane over that along it
 
@@ -79,7 +78,7 @@ vec3 denoised(ivec2 pixel, vec4 here, vec4 own)
         ivec2 at = pixel + stride * by, inside = clamp(at, ivec2(0), last);
         vec4 there = texelFetch(surface, inside, 0), tap = texelFetch(light, inside, 0);
         float off_plane = abs(at_step(a, by, there.x) - plane);
-        float most = DEVIATIONS * max(own.w, there.w);
+        float most = push.deviations * max(own.w, there.w);
         float unlike = abs(total(tap.rgb) - level) / max(most, 1e-12);
         float weight = tap.w * near * normal_similarity(n, unpacked_normal(there.y)) *
                        max(1.0 - off_plane * per_m, 0.0) * max(1.0 - unlike, 0.0);

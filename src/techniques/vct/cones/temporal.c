@@ -27,6 +27,10 @@
 // pixels are between. After a change of light few frames are left of a mean whose deviation is
 // known.
 static const float RADIUS = 0.07f, CHANGED_RADIUS = 0.14f;
+// Deviations of the mean in which two pixels differ by noise alone; those of the further passes
+// fall to zero over the first frames of a history.
+static const float DEVIATIONS = 4.0f, FURTHER_DEVIATIONS = 3.0f;
+enum { FURTHER_FRAMES = 4 };
 static const float STILL_FRAMES = 4096.0f; // maximum weight while nothing changes
 // Maxima of reflections, whose history does not follow changes of light.
 static const float STILL_LOBE_FRAMES = 64.0f, MOVED_LOBE_FRAMES = 4.0f, MIRROR_FRAMES = 1.0f;
@@ -175,32 +179,55 @@ void vct_temporal_record(struct vct_temporal *t, const struct vct_temporal_pipel
 }
 
 static void record_pass(const struct vct_temporal *t, gpu_pipeline pass, struct gpu_cmd *cmd,
-                        const struct frame_view *view, int32_t stride, float scene_m,
+                        const struct frame_view *view, const struct vct_denoise_push *push,
                         gpu_image from, gpu_image to)
 {
-    const float pixel = frame_camera_pixel(&view->camera, view->width, view->height);
-    const float radius = t->params.follow == VCT_KEEP ? RADIUS : CHANGED_RADIUS;
-    const struct vct_denoise_push push = { stride, (float)stride * pixel, radius * scene_m };
     gpu_dispatch(cmd, pass,
                  GPU_BIND(view->constants_binding, { .name = "light", .image = from },
                           { .name = "surface", .image = t->surface[t->newest] },
                           { .name = "irradiance", .image = to }),
-                 &push, sizeof push, gpu_groups(view->width, VCT_LOCAL_2D),
+                 push, sizeof *push, gpu_groups(view->width, VCT_LOCAL_2D),
                  gpu_groups(view->height, VCT_LOCAL_2D), 1);
 }
 
+// A pass along rows and columns, and one along diagonals. Between them the light is in an image
+// that the next frame begins to write.
+static void record_passes(const struct vct_temporal *t,
+                          const struct vct_temporal_pipelines *pipelines, struct gpu_cmd *cmd,
+                          const struct frame_view *view, const int32_t strides[2], float deviations,
+                          float scene_m, gpu_image from, gpu_image to)
+{
+    const float pixel = frame_camera_pixel(&view->camera, view->width, view->height);
+    const float radius = t->params.follow == VCT_KEEP ? RADIUS : CHANGED_RADIUS;
+    const gpu_image between = t->light[1 - t->newest];
+    for (int i = 0; i < 2; i++) {
+        const struct vct_denoise_push push = { strides[i], (float)strides[i] * pixel,
+                                               radius * scene_m, deviations };
+        record_pass(t, pipelines->denoise[i], cmd, view, &push, i == 0 ? from : between,
+                    i == 0 ? between : to);
+    }
+}
+
 // Strides of 0.8 and 1.2 blocks: pixels of a block share the noise of its rays, and the taps have
-// other places in their blocks, so that the mean shows no lattice of them. Between the passes the
-// light is in an image that the next frame begins to write.
+// other places in their blocks, so that the mean shows no lattice of them.
+//
+// The first frames of a history have more noise than 25 pixels average: a block of which a ray
+// meets a small bright surface would become a star of 25 bright spots. Wider passes average 25
+// times as many pixels, and narrow ones fill the gaps between their taps.
 void vct_temporal_denoise(const struct vct_temporal *t,
                           const struct vct_temporal_pipelines *pipelines, struct gpu_cmd *cmd,
                           const struct frame_view *view, float scene_m, gpu_image result)
 {
     const int32_t block = t->params.block, fifth = (block + 4) / 5;
-    const gpu_image between = t->light[1 - t->newest];
+    const int32_t strides[3][2] = { { block > 1 ? block - fifth : 1, block + fifth },
+                                    { 2 * block - 1, 13 * block / 5 },
+                                    { 1, 2 } };
     gpu_scope_begin(cmd, "denoise");
-    record_pass(t, pipelines->denoise[0], cmd, view, block > 1 ? block - fifth : 1, scene_m,
-                t->light[t->newest], between);
-    record_pass(t, pipelines->denoise[1], cmd, view, block + fifth, scene_m, between, result);
+    record_passes(t, pipelines, cmd, view, strides[0], DEVIATIONS, scene_m, t->light[t->newest],
+                  result);
+    const float left = 1.0f - (float)t->frame / FURTHER_FRAMES;
+    for (int i = 1; i < 3 && left > 0.0f; i++)
+        record_passes(t, pipelines, cmd, view, strides[i], left * FURTHER_DEVIATIONS, scene_m,
+                      result, result);
     gpu_scope_end(cmd);
 }
