@@ -57,7 +57,7 @@ static const struct option_alias occlusion_aliases[] = {
 static const struct technique_preset presets[] = {
     { "low", "resolution=32,half_resolution=true" },
     { "medium", "" },
-    { "high", "resolution=128,interleave=3,half_resolution=true,specular=true" },
+    { "high", "resolution=128,interleave=3,half_resolution=true,specular=true,wide_filter=64" },
     { NULL, NULL },
 };
 static const struct technique_preset occlusion_presets[] = {
@@ -322,7 +322,8 @@ static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view
         vct_temporal_record(vct->temporal, &vct->history, cmd, view, vct_result(vct, view));
     if (vct_denoises(&vct->options))
         vct_temporal_denoise(vct->temporal, &vct->history, cmd, view,
-                             longest_side_m(&vct->clips[0].grid), vct_result(vct, view));
+                             longest_side_m(&vct->clips[0].grid), vct->options.wide_filter,
+                             vct_result(vct, view));
     if (vct->options.specular) record_specular(vct, cmd, view);
 }
 

@@ -30,7 +30,6 @@ static const float RADIUS = 0.07f, CHANGED_RADIUS = 0.14f;
 // Deviations of the mean in which two pixels differ by noise alone; those of the further passes
 // fall to zero over the first frames of a history.
 static const float DEVIATIONS = 4.0f, FURTHER_DEVIATIONS = 3.0f;
-enum { FURTHER_FRAMES = 4 };
 static const float STILL_FRAMES = 4096.0f; // maximum weight while nothing changes
 // Maxima of reflections, whose history does not follow changes of light.
 static const float STILL_LOBE_FRAMES = 64.0f, MOVED_LOBE_FRAMES = 4.0f, MIRROR_FRAMES = 1.0f;
@@ -216,7 +215,8 @@ static void record_passes(const struct vct_temporal *t,
 // times as many pixels, and narrow ones fill the gaps between their taps.
 void vct_temporal_denoise(const struct vct_temporal *t,
                           const struct vct_temporal_pipelines *pipelines, struct gpu_cmd *cmd,
-                          const struct frame_view *view, float scene_m, gpu_image result)
+                          const struct frame_view *view, float scene_m, int32_t wide_frames,
+                          gpu_image result)
 {
     const int32_t block = t->params.block, fifth = (block + 4) / 5;
     const int32_t strides[3][2] = { { block > 1 ? block - fifth : 1, block + fifth },
@@ -225,8 +225,8 @@ void vct_temporal_denoise(const struct vct_temporal *t,
     gpu_scope_begin(cmd, "denoise");
     record_passes(t, pipelines, cmd, view, strides[0], DEVIATIONS, scene_m, t->light[t->newest],
                   result);
-    const float left = 1.0f - (float)t->frame / FURTHER_FRAMES;
-    for (int i = 1; i < 3 && left > 0.0f; i++)
+    const float left = 1.0f - (float)t->frame / fmaxf((float)wide_frames, 1e-3f);
+    for (int i = 1; i < 3 && wide_frames > 0 && left > 0.0f; i++)
         record_passes(t, pipelines, cmd, view, strides[i], left * FURTHER_DEVIATIONS, scene_m,
                       result, result);
     gpu_scope_end(cmd);

@@ -44,7 +44,9 @@ gpu_image vct_temporal_now(const struct vct_temporal *t);
 // Blends it with the history; writes the new history, and `result` where it is not denoised.
 void vct_temporal_record(struct vct_temporal *t, const struct vct_temporal_pipelines *pipelines,
                          struct gpu_cmd *cmd, const struct frame_view *view, gpu_image result);
-// Writes the history to `result`, averaged over pixels. scene_m: longest side of the scene.
+// Writes the history to `result`, averaged over pixels. scene_m: longest side of the scene;
+// wide_frames: first frames of a history with further passes.
 void vct_temporal_denoise(const struct vct_temporal *t,
                           const struct vct_temporal_pipelines *pipelines, struct gpu_cmd *cmd,
-                          const struct frame_view *view, float scene_m, gpu_image result);
+                          const struct frame_view *view, float scene_m, int32_t wide_frames,
+                          gpu_image result);
