@@ -57,5 +57,7 @@ const char *technique_additive(const struct technique *technique)
 {
     if (strcmp(technique->name, "lpv") == 0) return "lpv:closure=linear";
     if (strcmp(technique->name, "holpv") == 0) return "holpv:closure=linear";
+    if (strcmp(technique->name, "mrt") == 0) return "mrt:bright=false";
+    if (strcmp(technique->name, "drt") == 0) return "drt:bright=false";
     return technique_of_one_frame(technique);
 }

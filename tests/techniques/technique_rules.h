@@ -9,6 +9,6 @@ bool technique_is_sound(const struct technique *technique);
 
 // A spec without a history: vct accumulates over frames, else each frame is the same.
 const char *technique_of_one_frame(const struct technique *technique);
-// A spec that adds lights up. The positive closures of lpv and holpv and the filter by variance of
-// vct are homogeneous in light, but lights do not add up.
+// A spec that adds lights up. The positive closures of lpv and holpv, the filter by variance of vct
+// and the bright texels of mrt and drt are homogeneous in light, but lights do not add up.
 const char *technique_additive(const struct technique *technique);
