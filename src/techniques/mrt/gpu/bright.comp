@@ -43,9 +43,10 @@ float mean_brightness(uint first, uint texels, uint lane)
         sum += brightness(direct_table[first + i]);
     sums[lane] = sum;
     barrier();
-    float total = 0.0;
-    for (uint i = 0u; i < MRT_REDUCE_LOCAL; i++) total += sums[i];
-    return total / float(texels);
+    if (lane == 0u)
+        for (uint i = 1u; i < MRT_REDUCE_LOCAL; i++) sums[0] += sums[i];
+    barrier();
+    return sums[0] / float(texels);
 }
 
 bool has_clutter(uint block)
@@ -82,15 +83,15 @@ uint list_texels(uint block, float limit, float mean, uint lane)
 {
     uint first = block_table[block].first_texel, texels = block_table[block].texels;
     uint each = (texels + MRT_REDUCE_LOCAL - 1u) / MRT_REDUCE_LOCAL;
-    uint begin = lane * each, end = min(begin + each, texels), count = 0u, at = 0u, total = 0u;
+    uint begin = lane * each, end = min(begin + each, texels), count = 0u;
     for (uint i = begin; i < end; i++)
         count += brightness(direct_table[first + i]) > limit ? 1u : 0u;
     counts[lane] = count;
     barrier();
-    for (uint i = 0u; i < MRT_REDUCE_LOCAL; i++) {
-        at += i < lane ? counts[i] : 0u;
-        total += counts[i];
-    }
+    if (lane == 0u)
+        for (uint i = 1u; i < MRT_REDUCE_LOCAL; i++) counts[i] += counts[i - 1u];
+    barrier();
+    uint at = counts[lane] - count, total = counts[MRT_REDUCE_LOCAL - 1u];
     for (uint i = begin; i < end; i++) {
         vec3 radiosity = direct_table[first + i];
         if (brightness(radiosity) <= limit || at >= MRT_BRIGHT_TEXELS) continue;
