@@ -24,10 +24,8 @@ async function loadMap(map) {
   return { texture, intensity: map.scale };
 }
 
-function loadPages({ extras }) {
-  const format = of('format', 'ktx2'), maps = extras.afterglow_lightmap.maps;
-  return Promise.all(maps.filter(m => m.format === format && m.side === 'front').map(loadMap));
-}
+const loadPages = ({ extras }) => Promise.all(extras.afterglow_lightmap.maps
+  .filter(map => map.format === of('format', 'ktx2') && map.side === 'front').map(loadMap));
 
 function giveMap(mesh, pages) {
   const { texture, intensity } = pages[mesh.geometry.userData.afterglow_lightmap?.page ?? 0]; // materials are of one page

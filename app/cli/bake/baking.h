@@ -42,8 +42,7 @@ bool baking_load(struct baking *b);
 // Says what it needs and runs with a progress bar. After Ctrl-C it fails; what was finished is kept
 // in the checkpoint.
 enum status baking_complete(struct baking *b, bool shard);
-// The same, and writes the file. After Ctrl-C it fails; what was
-// finished is kept in a checkpoint. shard: write a partial file.
+// The same, and writes the file. shard: a partial one.
 enum status baking_run(struct baking *b, bool shard);
 
 // Whether another process of the team has the results: this one only runs tasks for it.
