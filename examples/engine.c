@@ -25,7 +25,7 @@ enum { WIDTH = 160, HEIGHT = 90, IN_FLIGHT = 2, FIRST = 12, LATER = 24 };
 
 static const char gi_before[] = "lpv:dim=16";
 // The first layout has no motion: its techniques must do without a history.
-static const char *const gi_after[ENGINE_LAYOUTS] = { "vct:resolution=32+vo",
+static const char *const gi_after[ENGINE_LAYOUTS] = { "vct:resolution=32,temporal=false+vo",
                                                       "vct:resolution=32+vo:temporal=true" };
 
 // A frame in flight, with its numbers for the two renderers; 0: none.
