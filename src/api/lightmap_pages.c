@@ -15,8 +15,8 @@ enum ag_result api_lightmap_check_page(const char *function, struct ag_context *
     AG_REQUIRE_FOR(function, context,
                    page >= CHART_LEAST_PAGE && page <= CHART_MAX_SIDE &&
                        page % CHART_SIDE_MULTIPLE == 0,
-                   "page %d is no multiple of %d from %d to %d", page, CHART_SIDE_MULTIPLE,
-                   CHART_LEAST_PAGE, CHART_MAX_SIDE);
+                   "page %d must be %d to %d and a multiple of %d", page, CHART_LEAST_PAGE,
+                   CHART_MAX_SIDE, CHART_SIDE_MULTIPLE);
     return AG_OK;
 }
 

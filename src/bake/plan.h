@@ -138,6 +138,12 @@ static inline uint64_t bake_rows(uint64_t total, size_t index, size_t count, uin
     *rows = part + (index < more ? 1 : 0);
     return first;
 }
+// Tasks of at least one row each for that much work, some of which is a task.
+static inline size_t bake_task_count(uint64_t rows, uint64_t work, uint64_t of_task)
+{
+    const uint64_t tasks = (work + of_task - 1) / of_task;
+    return (size_t)(tasks < rows ? tasks : rows);
+}
 // The rows of output `output` that this task fills, and their number.
 uint64_t bake_task_rows(const struct bake_task *task, int output, uint64_t *rows);
 // Row `row` of those, from 0.

@@ -23,8 +23,7 @@ enum { PATHS_PER_TASK = 16384 };
 
 size_t lightmap_task_count(uint64_t texels, uint64_t paths_of_texel)
 {
-    const uint64_t tasks = (texels * paths_of_texel + PATHS_PER_TASK - 1) / PATHS_PER_TASK;
-    return (size_t)(tasks < texels ? tasks : texels);
+    return bake_task_count(texels, texels * paths_of_texel, PATHS_PER_TASK);
 }
 
 void lightmap_gather_row(const struct gather_scene *scene, const struct gather_points *points,

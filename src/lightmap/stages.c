@@ -26,12 +26,11 @@ static void destroy(void *argument)
     charts_finish(&job->charts);
 }
 
-// A trace scene has Embree's hierarchy, corners and facets of each triangle. About two triangles
-// meet a texel.
+// About two triangles meet a texel.
 size_t lightmap_job_bytes(const struct charts *charts)
 {
-    enum { OF_TRIANGLE = 240, OF_LISTS = 12 };
-    return charts->triangle_count * (sizeof *charts->triangles + OF_TRIANGLE) +
+    enum { OF_LISTS = 12 };
+    return charts->triangle_count * (sizeof *charts->triangles + TRACE_TRIANGLE_BYTES) +
            (size_t)charts->width * charts->height * sizeof *charts->owner +
            charts->texel_count * (sizeof *charts->texels + OF_LISTS);
 }

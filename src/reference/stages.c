@@ -36,20 +36,16 @@ static void finish(void *argument)
     job->reference = NULL;
 }
 
-static int min_int(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 static bool run(const struct bake_task *task)
 {
     const struct job *job = task->job;
     uint64_t count, first = bake_task_rows(task, 0, &count);
     for (uint64_t i = 0; i < count; i++)
-        for (int from = 0; from < job->how.samples; from += SAMPLES_PER_LOOK) {
+        for (int left = job->how.samples, some; left > 0; left -= some) {
+            const int from = job->how.samples - left;
             if (bake_task_cancelled(task)) return false;
-            reference_trace_strip(job->reference, (size_t)(first + i), from,
-                                  min_int(from + SAMPLES_PER_LOOK, job->how.samples),
+            some = left < SAMPLES_PER_LOOK ? left : SAMPLES_PER_LOOK;
+            reference_trace_strip(job->reference, (size_t)(first + i), from, from + some,
                                   bake_row(task, 0, i));
         }
     return true;
@@ -62,21 +58,13 @@ static uint64_t strip_count(const struct reference_bake *how)
     return wide * high * REFERENCE_STRIP;
 }
 
-static size_t task_count(uint64_t strips, uint64_t paths)
-{
-    const uint64_t tasks = (paths + PATHS_PER_TASK - 1) / PATHS_PER_TASK;
-    return (size_t)(tasks < strips ? tasks : strips);
-}
-
-// Embree's hierarchy, corners and facets of each triangle.
 static size_t scene_bytes(const struct scene_pose *pose)
 {
-    enum { OF_TRIANGLE = 240 };
     size_t triangles = 0;
     for (int i = 0; i < pose->scene->instance_count; i++)
         if (pose->scene->instances[i].mesh >= 0)
             triangles += scene_mesh_of(pose->scene, i)->index_count / 3;
-    return triangles * OF_TRIANGLE;
+    return triangles * TRACE_TRIANGLE_BYTES;
 }
 
 char *reference_bake_options(struct host *host, const struct reference_bake *how)
@@ -102,7 +90,7 @@ bool reference_add_stages(struct bake_plan *plan, const struct reference_bake *h
     const uint64_t strips = strip_count(how);
     const double pixels = (double)how->width * (double)how->height;
     const uint64_t paths = (uint64_t)how->width * (uint64_t)how->height * (uint64_t)how->samples;
-    const size_t tasks = task_count(strips, paths);
+    const size_t tasks = bake_task_count(strips, paths, PATHS_PER_TASK);
     const struct bake_output sums = { SUMS,      TENSOR_F64, 2, { strips, REFERENCE_STRIP_VALUES },
                                       BAKE_ROWS, BAKE_SAVED };
     bake_plan_depends(plan, scene_key_lit(how->pose));

@@ -20,6 +20,10 @@ struct trace_scene;
 struct trace_scene *trace_scene_create(struct host *host, const struct scene_pose *pose);
 void trace_scene_destroy(struct trace_scene *scene); // accepts NULL
 
+// Memory of a triangle of a scene, about: Embree's hierarchy (its quads take some 120 bytes for
+// each triangle), corners and facets.
+enum { TRACE_TRIANGLE_BYTES = 240 };
+
 struct trace_hit {
     float distance; // in units of the direction's length
     int instance;

@@ -10,14 +10,14 @@
 #define SPEC "radiosity:texels=8192,rays=128"
 enum { SAMPLES = 64 };
 
-// Complete, of the fixture's scene. samples 0: of the technique.
-static struct ag_bake *bake_of(struct renderer_fixture *s, const char *spec, int samples)
+// Complete. samples 0: of the technique.
+static struct ag_bake *bake_of(struct ag_scene *scene, const char *spec, int samples)
 {
     struct ag_bake *bake = NULL;
     struct ag_bake_desc desc;
     ag_bake_desc_default(&desc);
     desc.lightmap_samples = samples;
-    assert_int_equal(ag_bake_create(s->scene, spec, &desc, &bake), AG_OK);
+    assert_int_equal(ag_bake_create(scene, spec, &desc, &bake), AG_OK);
     assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
     return bake;
 }
@@ -25,7 +25,7 @@ static struct ag_bake *bake_of(struct renderer_fixture *s, const char *spec, int
 static void open_renderer(struct renderer_fixture *s, const char *spec)
 {
     struct ag_renderer_desc desc = fixture_renderer_desc(spec);
-    struct ag_bake *bake = bake_of(s, spec, 0);
+    struct ag_bake *bake = bake_of(s->scene, spec, 0);
     const struct ag_bake *bakes[] = { bake };
     desc.bakes = bakes;
     desc.bake_count = 1;
@@ -74,7 +74,7 @@ TEST_GPU(maps_of_radiosity_and_of_paths_agree)
     struct renderer_fixture s = fixture_open(NULL, NULL);
     open_renderer(&s, SPEC);
     for (int i = 0; i < 2; i++) assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
-    struct ag_bake *paths = bake_of(&s, SPEC, SAMPLES);
+    struct ag_bake *paths = bake_of(s.scene, SPEC, SAMPLES);
     double last = 0.0;
     for (int direct = 0; direct < 2; direct++) {
         struct ag_image *a = map_of_renderer(&s, !direct), *b = map_of_paths(paths, !direct);
@@ -101,7 +101,7 @@ TEST_GPU(scattered_light_has_direct_light_once)
     struct renderer_fixture s = fixture_open(NULL, NULL);
     open_renderer(&s, SCATTERING);
     for (int i = 0; i < 2; i++) assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
-    struct ag_bake *paths = bake_of(&s, SCATTERING, 1);
+    struct ag_bake *paths = bake_of(s.scene, SCATTERING, 1);
     struct ag_image *scattered = map_of_renderer(&s, false), *all = map_of_paths(paths, false),
                     *indirect = map_of_paths(paths, true);
     const double direct = mean_of(all) - mean_of(indirect);
@@ -325,17 +325,12 @@ TEST(texels_of_pages_have_the_light_of_one_map)
 {
     struct ag_context *context = fixture_context();
     struct ag_scene *scene = NULL;
-    struct ag_bake *bake = NULL;
-    struct ag_bake_desc desc;
     struct ag_lightmap *one = NULL, *paged = NULL;
     struct ag_lightmap_desc how;
     struct ag_lightmap_info info;
     int count = 0;
     assert_int_equal(ag_scene_load(context, "@cornell", &scene), AG_OK);
-    ag_bake_desc_default(&desc);
-    desc.lightmap_samples = 4;
-    assert_int_equal(ag_bake_create(scene, SPEC, &desc, &bake), AG_OK);
-    assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
+    struct ag_bake *bake = bake_of(scene, SPEC, 4);
     ag_lightmap_desc_default(&how);
     how.denoise = true;
     assert_int_equal(ag_lightmap_from_bake(bake, &how, &one), AG_OK);

@@ -191,8 +191,9 @@ static inline float charts_utilisation(const struct charts *charts)
 }
 
 // Moves the charts onto pages of `side` places' width, a multiple of CHART_SIDE_MULTIPLE; the last
-// page may be less high. Nothing changes where the atlas fits on one page as it is. Charts are not
-// turned, and texels keep their numbers. FAIL_MEMORY names an instance that does not fit on a page.
+// page may be less high. An atlas that fits on one page stays the same. Charts keep their
+// orientation, and texels keep their numbers. FAIL_MEMORY names an instance that does not fit on a
+// page.
 bool charts_set_pages(struct charts *charts, const struct scene *scene, uint32_t side);
 
 // ---- sides.c: texels of both sides

@@ -143,7 +143,7 @@ static size_t rectangles_of(const struct planning *p, const struct group *group)
     return sum;
 }
 
-// A chart's places, as it is turned in the atlas.
+// The texels of a chart's rectangle that it covers, in its orientation in the atlas.
 static void draw(const struct planning *p, uint32_t index, uint8_t *taken)
 {
     const struct chart *chart = &p->charts->charts[index];

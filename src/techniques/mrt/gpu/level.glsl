@@ -38,6 +38,15 @@ layout(set = 0, binding = MRT_BLOCKS_BINDING, scalar) readonly buffer mrt_blocks
 {
     mrt_gpu_block block_table[];
 };
+
+// Edges of an affine block in world space, a column for each axis.
+mat3 edges_of_block(uint block)
+{
+    mat3 edges;
+    for (int a = 0; a < 3; a++)
+        edges[a] = block_table[block].corner[1 << a] - block_table[block].corner[0];
+    return edges;
+}
 #endif
 
 #ifdef MRT_OPENINGS_BINDING

@@ -77,10 +77,7 @@ vec3 affine_cell(uint block, vec3 world)
 
 mat3 affine_edges(uint block)
 {
-    mat3 edges;
-    for (int a = 0; a < 3; a++)
-        edges[a] = block_table[block].corner[1 << a] - block_table[block].corner[0];
-    return edges;
+    return edges_of_block(block);
 }
 #endif
 

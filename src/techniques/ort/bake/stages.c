@@ -54,12 +54,11 @@ static void destroy(void *argument)
     ort_map_finish(&scene->map);
 }
 
-// The trace scene has Embree's hierarchy, corners and facets of each triangle; the map of each
-// place and texel, of which some are sorted by cells.
+// The trace scene, and the map of each place and texel, of which some are sorted by cells.
 static size_t prepared_bytes(const struct ort_map *map)
 {
-    enum { OF_TRIANGLE = 240, OF_PLACE = 8, OF_TEXEL = 92 };
-    return map->charts.triangle_count * (sizeof *map->charts.triangles + OF_TRIANGLE) +
+    enum { OF_PLACE = 8, OF_TEXEL = 92 };
+    return map->charts.triangle_count * (sizeof *map->charts.triangles + TRACE_TRIANGLE_BYTES) +
            (size_t)map->width * map->height * OF_PLACE + (size_t)map->texel_count * OF_TEXEL;
 }
 

@@ -34,14 +34,13 @@ static void destroy(void *argument)
     prt_receivers_finish(&scene->receivers);
 }
 
-// The trace scene has Embree's hierarchy, corners and facets of each triangle.
 static size_t prepared_bytes(const struct prt_receivers *receivers)
 {
-    enum { OF_TRIANGLE = 240, OF_TEXEL = 60, OF_VERTEX = 120 };
+    enum { OF_TEXEL = 60, OF_VERTEX = 120 };
     const struct charts *charts = receivers->charts;
-    return receivers->vertices.triangle_count * OF_TRIANGLE +
+    return receivers->vertices.triangle_count * TRACE_TRIANGLE_BYTES +
            receivers->vertices.count * (size_t)OF_VERTEX +
-           charts->triangle_count * (sizeof *charts->triangles + OF_TRIANGLE) +
+           charts->triangle_count * (sizeof *charts->triangles + TRACE_TRIANGLE_BYTES) +
            (size_t)charts->width * charts->height * sizeof *charts->owner +
            (size_t)charts->side_texel_count * OF_TEXEL;
 }

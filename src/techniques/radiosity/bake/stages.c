@@ -393,14 +393,12 @@ static bool add_clusters(struct bake_plan *plan, const struct job *job, uint64_t
                                     .scratch_bytes = scratch_size(clusters) });
 }
 
-// Bytes of the map and of a trace scene: the hierarchy (Embree's quads take about 120 bytes for
-// each triangle), corners and facets.
+// Bytes of the map and of a trace scene.
 static size_t prepared_bytes(const struct radiosity_map *map)
 {
-    enum { TRACE_TRIANGLE = 240 };
     const struct charts *charts = &map->charts;
     const size_t atlas = (size_t)charts->width * charts->height;
-    return charts->triangle_count * (sizeof *charts->triangles + TRACE_TRIANGLE) +
+    return charts->triangle_count * (sizeof *charts->triangles + TRACE_TRIANGLE_BYTES) +
            atlas * sizeof *charts->owner + charts->texel_count * sizeof *charts->texels +
            map->texel_count * 2 * sizeof(uint32_t) +
            2 * (size_t)map->cluster_count * (2 * sizeof *map->tree.nodes + sizeof(uint32_t));

@@ -10,10 +10,10 @@
 #define MRT_BRIGHT_COUNTS_BINDING 7
 #define MRT_BRIGHT_TEXELS_BINDING 8
 #define MRT_B_BRIGHT_BINDING      9
-#include "techniques/mrt/gpu/bright.glsl"
+#include "techniques/mrt/gpu/bright/bright.glsl"
 #include "techniques/mrt/gpu/operators.glsl"
 #include "techniques/mrt/gpu/reduce.glsl"
-#include "techniques/mrt/gpu/wall_place.glsl"
+#include "techniques/mrt/gpu/bright/wall_place.glsl"
 
 layout(local_size_x = MRT_REDUCE_LOCAL) in;
 

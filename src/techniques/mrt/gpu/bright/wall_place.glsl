@@ -13,9 +13,7 @@ struct mrt_wall {
 
 mrt_wall wall_of(uint block, int face)
 {
-    mat3 frame = cube_from_face(face), edges;
-    for (int a = 0; a < 3; a++)
-        edges[a] = block_table[block].corner[1 << a] - block_table[block].corner[0];
+    mat3 frame = cube_from_face(face), edges = edges_of_block(block);
     float size = 1.0 / float(level.resolution);
     mrt_wall wall;
     wall.right = edges * frame[0] * size;

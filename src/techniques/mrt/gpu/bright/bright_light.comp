@@ -13,9 +13,9 @@
 #include "core/math.glsl"
 #include "core/sh.glsl"
 #include "frame/octahedral.glsl"
-#include "techniques/mrt/gpu/bright.glsl"
+#include "techniques/mrt/gpu/bright/bright.glsl"
 #include "techniques/mrt/gpu/operators.glsl"
-#include "techniques/mrt/gpu/wall_place.glsl"
+#include "techniques/mrt/gpu/bright/wall_place.glsl"
 
 layout(local_size_x = MRT_LOCAL) in;
 
