@@ -71,7 +71,8 @@ history_sample sample_history(vec2 history_pixel, float distance_m, vec3 n)
         if (VCT_RAYS) sum.deviation += weight * texelFetch(last_surface, at, 0).b;
         if (VCT_FOLLOWS != 0) {
             sum.now += weight * texelFetch(last_now, at, 0).rgb;
-            if (set.change_known != 0u) sum.change += weight * texelFetch(last_change, at, 0).rgb;
+            float known = set.change_known != 0u ? weight : 0.0;
+            if (known > 0.0) sum.change += known * texelFetch(last_change, at, 0).rgb;
         }
         weights += weight;
     }
@@ -107,17 +108,18 @@ float less_certain(float w, vec3 before, vec3 after)
     return w / (1.0 + error * error * w);
 }
 
-// The history after the change of light since the previous frame. `change`: of one frame alone.
-vec4 follow(history_sample history, vec3 now, bool moves, out vec3 change)
+// The history after the change of light since the previous frame, how: VCT_FOLLOW_…. `change`: of
+// one frame alone.
+vec4 follow(history_sample history, vec3 now, bool moves, uint how, out vec3 change)
 {
     change = history.change;
-    if (set.follow == VCT_FOLLOW_KNOWN) {
+    if (how == VCT_FOLLOW_KNOWN) {
         change = mix(change, now - history.now, moves ? MOVED_SHARE : 1.0);
         return followed(history.light, history.now, max(history.now + change, 0.0));
     }
     vec4 light = history.light;
     vec3 expected = max(history.now + change, 0.0);
-    if (set.follow == VCT_FOLLOW_EXPECTED) light = followed(light, history.now, expected);
+    if (how == VCT_FOLLOW_EXPECTED) light = followed(light, history.now, expected);
     change *= LATER_BOUNCE;
     return vec4(light.rgb, less_certain(light.w, history.now, expected));
 }
@@ -183,9 +185,11 @@ void main()
         bool moves = moved.xyz != vec3(0.0);
         vec4 old = vec4(history.light.rgb, min(history.light.w, set.most));
         float added = 1.0; // frames
-        if (VCT_FOLLOWS != 0 && set.follow != VCT_KEEP && old.w > 0.0) {
+        // Branches on uniforms alone would make lavapipe compile the shader in each frame.
+        uint how = old.w > 0.0 ? set.follow : VCT_KEEP;
+        if (VCT_FOLLOWS != 0 && how != VCT_KEEP) {
             history.light = old;
-            old = follow(history, mean, moves, known);
+            old = follow(history, mean, moves, how, known);
             if (!moves) added = set.added;
         }
         if (VCT_RAYS) {
