@@ -8,10 +8,8 @@
 // vctao traces the same cones through opacity alone: ambient occlusion (sec. 2.5.3.3.8).
 #include "techniques/vct/vct.h"
 
-#include "techniques/vct/cones/specular.h"
 #include "techniques/vct/vct_bindings.h"
 #include "techniques/vct/vct_debug.h"
-#include "techniques/vct/vct_diagnostics.h"
 #include "techniques/vct/vct_pipelines.h"
 #include "techniques/vct/vct_resources.h"
 #include "techniques/vct/vct_state.h"
@@ -130,21 +128,6 @@ static bool vct_resize(void *state, int view, uint32_t width, uint32_t height)
     return true;
 }
 
-static void select_view(struct vct *vct, int view)
-{
-    vct->pixels = &vct->views[view].pixels;
-    vct->temporal = &vct->views[view].temporal;
-    vct->begun = view;
-}
-
-static void place_small_emitters(struct vct *vct, const struct frame_view *view)
-{
-    if (vct->options.small_emitters)
-        vct_small_emitters_update(&vct->small_emitters, view, vct->temporal->number);
-    else
-        vct->small_emitters.count = 0;
-}
-
 static void forget_histories(struct vct *vct)
 {
     for (int i = 0; i < FRAME_MAX_VIEWS; i++) vct_temporal_invalidate(&vct->views[i].temporal);
@@ -154,14 +137,13 @@ static bool create(struct vct *vct, const char *name, const struct technique_cre
                    struct vct_options options)
 {
     if (how->pose) vct_log_diagnostics(how->host, name, &options, how->pose);
-    vct->name = name;
-    vct->host = how->host;
-    vct->gpu = how->gpu;
     vct->options = options;
-    vct->clip_count = vct_clip_count(&vct->options);
-    vct_cone_axes(vct->options.cones, vct->cone_axes);
-    vct->svo.params = vct_svo_params(&vct->options);
-    select_view(vct, 0);
+    vct->overflow.host = how->host;
+    vct->overflow.gpu = how->gpu;
+    vct->overflow.technique = name;
+    vct->clipmap.count = vct_clip_count(&options);
+    vct->svo.params = vct_svo_params(&options);
+    vct_cone_axes(options.cones, vct->cones.axes);
     return vct_resize(vct, 0, how->width, how->height);
 }
 
@@ -177,7 +159,7 @@ static bool vctao_create(void *state, const struct technique_create *how)
 
 static void invalidate_voxels(struct vct *vct)
 {
-    for (int i = 0; i < vct->clip_count; i++) vct->clips[i].static_valid = false;
+    vct_voxels_invalidate(&vct->voxels);
     vct->small_emitters.chosen = false;
 }
 
@@ -192,8 +174,8 @@ static void vct_set_options(void *state, const void *options)
     // Options of the light of voxels; those of the pixels' cones alone keep bounced light.
     if (emitters || next.bounces != now->bounces || next.offset != now->offset ||
         next.step_size != now->step_size)
-        vct->light_valid = vct->bounced_valid = false;
-    vct_cone_axes(next.cones, vct->cone_axes);
+        vct_lighting_invalidate(&vct->lighting);
+    vct_cone_axes(next.cones, vct->cones.axes);
     forget_histories(vct);
 }
 
@@ -201,7 +183,7 @@ static void vct_invalidate(void *state, uint32_t changes)
 {
     struct vct *vct = state;
     if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL)) invalidate_voxels(vct);
-    if (changes & CHANGED_OPTIONS) vct->light_valid = vct->bounced_valid = false;
+    if (changes & CHANGED_OPTIONS) vct_lighting_invalidate(&vct->lighting);
     vct->kept.lit = false;
     // The history follows lights and movable geometry.
     if (changes & ~(uint32_t)(CHANGED_LIGHT | CHANGED_MOVABLE)) forget_histories(vct);
@@ -228,103 +210,133 @@ static struct vct_params params_of(const struct vct *vct, const struct frame_vie
     };
 }
 
-// An empty grid: no light, everything visible.
-static void clear(const struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+static struct vct_frame frame_of(struct vct *vct, struct gpu_cmd *cmd,
+                                 const struct frame_view *view)
 {
-    const float open = vct->options.occlusion ? 1.0f : 0.0f;
-    gpu_clear_image(cmd, vct_result(vct, view), (const float[4]){ open, open, open, 1.0f });
-    if (vct->options.specular)
-        gpu_clear_image(cmd, view->layers[FRAME_SPECULAR],
+    return (struct vct_frame){ .options = &vct->options,
+                               .cmd = cmd,
+                               .view = view,
+                               .voxels = &vct->voxels,
+                               .rays = &vct->rays,
+                               .svo = &vct->svo,
+                               .emitters = &vct->small_emitters,
+                               .clipmap = &vct->clipmap,
+                               .volume = &vct->volume,
+                               .params = vct->params };
+}
+
+// An empty grid: no light, everything visible.
+static void clear(const struct vct_frame *frame)
+{
+    const float open = frame->options->occlusion ? 1.0f : 0.0f;
+    gpu_clear_image(frame->cmd, vct_result(frame), (const float[4]){ open, open, open, 1.0f });
+    if (frame->options->specular)
+        gpu_clear_image(frame->cmd, frame->view->layers[FRAME_SPECULAR],
                         (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
 }
 
-static void record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+// The grids of this frame. False: the scene has no extent.
+static bool place_grids(struct vct *vct, const struct frame_view *view)
 {
-    vct_voxelize(vct, cmd, view);
-    vct->revoxelized = false;
-    for (int i = 0; i < vct->clip_count; i++) {
-        if (!vct->clips[i].revoxelized) continue;
-        vct_volume_list_texels(vct, &vct->clips[i], cmd);
-        if (vct_has_rays(&vct->options)) vct_rays_list_blocks(vct, &vct->clips[i], cmd);
-        if (!vct->options.occlusion) vct_list_parts(vct, &vct->clips[i], cmd);
-        vct->revoxelized = true;
+    const uint32_t changes = vct_clipmap_update(&vct->clipmap, vct->options.resolution, view);
+    if (changes & VCT_OTHER_DRAWS) vct->small_emitters.chosen = false;
+    if (changes & VCT_OTHER_GRID) vct_lighting_invalidate(&vct->lighting);
+    return !(changes & VCT_NO_EXTENT);
+}
+
+static void record_voxels(struct vct *vct, const struct vct_frame *frame)
+{
+    vct_voxelize(&vct->voxels, frame, vct->kept.still);
+    for (int i = 0; i < vct->clipmap.count; i++) {
+        if (!vct->voxels.levels[i].revoxelized) continue;
+        vct_volume_list_texels(&vct->volume, frame, i);
+        if (vct_has_rays(&vct->options)) vct_rays_list_blocks(&vct->rays, frame);
+        if (!vct->options.occlusion) vct_list_parts(&vct->lighting, frame, i);
     }
-    if (vct->revoxelized && vct_has_svo(&vct->options)) vct_octree_build(vct, cmd);
-    vct_watch_overflow(vct, cmd);
+    if (vct->voxels.revoxelized && vct_has_svo(&vct->options)) vct_octree_build(&vct->svo, frame);
+    vct_watch_overflow(&vct->overflow, frame);
 }
 
 // Specular cones see small emitters in the light volume. Diffuse cones and the bounces of the next
 // frame must not, as they sample them with shadow cones.
-static void record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+static void record_specular(const struct vct *vct, const struct vct_view *of,
+                            const struct vct_frame *frame)
 {
     const bool emitters = vct->small_emitters.count > 0;
-    vct->params.has_small_emitters = emitters;
-    if (emitters) vct_refill_volume(vct, cmd);
-    vct_record_specular(vct, cmd, view);
-    vct->params.has_small_emitters = false;
-    if (emitters) vct_refill_volume(vct, cmd);
+    struct vct_frame lit = *frame;
+    lit.params.has_small_emitters = emitters;
+    if (emitters) vct_refill_volume(&lit);
+    vct_record_specular(&vct->specular, &of->reflections,
+                        vct->options.temporal ? &of->temporal : NULL, &lit);
+    if (emitters) vct_refill_volume(frame);
+}
+
+static void place_small_emitters(struct vct *vct, const struct frame_view *view)
+{
+    vct->begun = view->number;
+    if (vct->options.small_emitters)
+        vct_small_emitters_update(&vct->small_emitters, view,
+                                  vct->views[view->number].temporal.number);
+    else
+        vct->small_emitters.count = 0;
 }
 
 // The history of a view, and the points on small emitters that its frame samples.
 static void begin_view(struct vct *vct, const struct frame_view *view)
 {
-    select_view(vct, view->number);
-    if (vct->options.temporal)
-        vct_temporal_begin(vct->temporal, view, vct_block(&vct->options), vct->options.frames,
-                           vct->options.clamp, vct->settles);
-    place_small_emitters(vct, view);
-}
-
-// The first view, which the update has begun, after further views.
-static void resume_view(struct vct *vct, const struct frame_view *view)
-{
-    if (vct->begun == view->number) return;
-    select_view(vct, view->number);
+    const struct vct_options *options = &vct->options;
+    if (options->temporal)
+        vct_temporal_begin(&vct->views[view->number].temporal, view, vct_block(options),
+                           options->frames, options->clamp, vct->settles);
     place_small_emitters(vct, view);
 }
 
 static void vct_update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct vct *vct = state;
-    vct->ready = vct_clipmap_update(vct, view);
+    vct->ready = place_grids(vct, view);
     if (!vct->ready) return;
     vct->params = params_of(vct, view);
-    vct->settles = vct->bounces_left > 0;
+    vct->settles = vct->lighting.bounces_left > 0;
     kept_update(&vct->kept, view, view->light_hash);
     begin_view(vct, view);
-    record_voxels(vct, cmd, view);
-    const bool bounced = !vct->options.occlusion && vct_record_bounce(vct, cmd, view);
-    vct_record_light(vct, cmd, view, bounced);
+    struct vct_frame frame = frame_of(vct, cmd, view);
+    record_voxels(vct, &frame);
+    const bool bounced = !vct->options.occlusion && vct_record_bounce(&vct->lighting, &frame);
+    vct_record_light(&vct->lighting, &frame, bounced, vct->kept.same);
+    vct->params = frame.params;
 }
 
-static float longest_side_m(const struct vct_grid *grid)
+static void record_view(struct vct *vct, const struct vct_frame *frame)
 {
-    int cells = grid->cells[0];
-    for (int axis = 1; axis < 3; axis++)
-        if (grid->cells[axis] > cells) cells = grid->cells[axis];
-    return (float)cells * grid->cell_m;
+    const struct vct_options *options = &vct->options;
+    struct vct_view *of = &vct->views[frame->view->number];
+    struct vct_temporal *temporal = options->temporal ? &of->temporal : NULL;
+    const gpu_image result = vct_result(frame);
+    vct_record_cones(&vct->cones, &of->pixels, temporal, frame);
+    if (temporal) vct_temporal_record(temporal, &vct->history, frame->cmd, frame->view, result);
+    if (vct_denoises(options))
+        vct_temporal_denoise(temporal, &vct->history, frame->cmd, frame->view,
+                             vct_clipmap_longest_side_m(&vct->clipmap), options->wide_filter,
+                             result);
+    if (options->specular) record_specular(vct, of, frame);
 }
 
 static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct vct *vct = state;
+    const struct vct_frame frame = frame_of(vct, cmd, view);
     if (!vct->ready) {
-        clear(vct, cmd, view);
+        clear(&frame);
         vct_temporal_invalidate(&vct->views[view->number].temporal);
         return;
     }
+    // The update has begun the first view; after further ones its points are placed again.
     if (view->number > 0)
         begin_view(vct, view);
-    else
-        resume_view(vct, view);
-    vct_record_cones(vct, cmd, view);
-    if (vct->options.temporal)
-        vct_temporal_record(vct->temporal, &vct->history, cmd, view, vct_result(vct, view));
-    if (vct_denoises(&vct->options))
-        vct_temporal_denoise(vct->temporal, &vct->history, cmd, view,
-                             longest_side_m(&vct->clips[0].grid), vct->options.wide_filter,
-                             vct_result(vct, view));
-    if (vct->options.specular) record_specular(vct, cmd, view);
+    else if (vct->begun != view->number)
+        place_small_emitters(vct, view);
+    record_view(vct, &frame);
 }
 
 static void vct_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
@@ -335,7 +347,8 @@ static void vct_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_
         gpu_clear_image(cmd, out, (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
         return;
     }
-    vct_record_debug(vct, cmd, view,
+    const struct vct_frame frame = frame_of(vct, cmd, view);
+    vct_record_debug(vct->debug, &frame,
                      strcmp(name, "normals") == 0    ? VCT_VIEW_NORMAL
                      : strcmp(name, "radiance") == 0 ? VCT_VIEW_RADIANCE
                      : strcmp(name, "overflow") == 0 ? VCT_VIEW_OVERFLOW
@@ -347,7 +360,7 @@ static void vct_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_
 static void vct_destroy(void *state)
 {
     struct vct *vct = state;
-    if (vct->gpu) vct_report_overflow(vct);
+    if (vct->overflow.gpu) vct_report_overflow(&vct->overflow, &vct->options, &vct->clipmap);
 }
 
 static uint32_t vct_more_needs(const void *options)

@@ -1,10 +1,10 @@
 // Debug views of the voxels.
 #pragma once
 
-#include "frame/frame.h"
+#include "gpu/gpu.h"
 
-struct vct;
+struct vct_frame;
 
 // which: VCT_VIEW_…
-void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                      uint32_t which, gpu_image out);
+void vct_record_debug(gpu_pipeline pipeline, const struct vct_frame *frame, uint32_t which,
+                      gpu_image out);

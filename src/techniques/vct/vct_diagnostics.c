@@ -1,6 +1,6 @@
 #include "techniques/vct/vct_diagnostics.h"
 
-#include "techniques/vct/vct_state.h"
+#include "techniques/vct/vct_frame.h"
 
 #include <math.h>
 
@@ -50,40 +50,40 @@ struct counters {
     uint32_t of[VCT_MAX_CLIPS][2]; // static and moving voxels of each level
 };
 
-static void copy_counters(struct vct *vct, struct gpu_cmd *cmd)
+static void copy_counters(struct vct_overflow *overflow, const struct vct_frame *frame)
 {
-    for (int i = 0; i < vct->clip_count; i++) {
-        const struct vct_voxel_set *sets[] = { &vct->clips[i].static_set,
-                                               &vct->clips[i].dynamic_set };
+    for (int i = 0; i < frame->clipmap->count; i++) {
+        const struct vct_level_voxels *voxels = &frame->voxels->levels[i];
+        const struct vct_voxel_set *sets[] = { &voxels->static_set, &voxels->dynamic_set };
         for (int k = 0; k < 2; k++)
             gpu_readback_copy(
-                cmd, &vct->overflow.readback,
+                frame->cmd, &overflow->readback,
                 offsetof(struct counters, of) + (size_t)(2 * i + k) * sizeof(uint32_t),
                 sets[k]->arguments, offsetof(struct vct_voxel_counts, overflow), sizeof(uint32_t));
     }
 }
 
-void vct_watch_overflow(struct vct *vct, struct gpu_cmd *cmd)
+void vct_watch_overflow(struct vct_overflow *overflow, const struct vct_frame *frame)
 {
-    vct_report_overflow(vct);
-    if (vct->revoxelized) vct->overflow.pending = true;
-    if (!vct->overflow.pending || vct->overflow.readback.serial != 0) return;
-    copy_counters(vct, cmd);
-    vct->overflow.pending = false;
+    vct_report_overflow(overflow, frame->options, frame->clipmap);
+    if (frame->voxels->revoxelized) overflow->pending = true;
+    if (!overflow->pending || overflow->readback.serial != 0) return;
+    copy_counters(overflow, frame);
+    overflow->pending = false;
 }
 
-void vct_report_overflow(struct vct *vct)
+void vct_report_overflow(struct vct_overflow *overflow, const struct vct_options *options,
+                         const struct vct_clipmap *clipmap)
 {
     struct counters counters;
-    if (!gpu_readback_poll(vct->gpu, &vct->overflow.readback, &counters, sizeof counters)) return;
-    for (int i = 0; i < vct->clip_count; i++) {
-        if (vct->overflow.reported[i] || (counters.of[i][0] == 0 && counters.of[i][1] == 0))
-            continue;
-        vct->overflow.reported[i] = true;
-        host_log(vct->host, LOG_WARNING,
+    if (!gpu_readback_poll(overflow->gpu, &overflow->readback, &counters, sizeof counters)) return;
+    for (int i = 0; i < clipmap->count; i++) {
+        if (overflow->reported[i] || (counters.of[i][0] == 0 && counters.of[i][1] == 0)) continue;
+        overflow->reported[i] = true;
+        host_log(overflow->host, LOG_WARNING,
                  "gi %s: level %d, voxels of %.3g m: surfaces occupy more faces of voxels than the "
                  "capacity of %u; those beyond along z have no %s; use a lower resolution",
-                 vct->name, i + 1, (double)vct->clips[i].grid.cell_m,
-                 (unsigned)vct_capacity(&vct->options), result_of(&vct->options));
+                 overflow->technique, i + 1, (double)clipmap->levels[i].grid.cell_m,
+                 (unsigned)vct_capacity(options), result_of(options));
     }
 }

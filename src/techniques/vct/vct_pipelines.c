@@ -76,16 +76,16 @@ static void add_voxelize(const struct vct_options *o, struct gpu_objects *out)
           .shader = raster ? &shader_vct_voxelize_##stage##_raster_frag                            \
                            : &shader_vct_voxelize_##stage##_small_comp,                            \
           .consts = (bits) }
-    GPU_ADD(out, 0, VOXELIZE(mark, "mark", mark, 0),
-            VOXELIZE(outermost[0], "outermost", outermost, 0),
-            VOXELIZE(outermost[1], "outermost_masked", outermost, TEXTURED | MASKED),
-            VOXELIZE(add[VCT_PLAIN], "add", add, NOT_EMISSIVE),
-            VOXELIZE(add[VCT_EMISSIVE], "add_emissive", add, 0),
-            VOXELIZE(add[VCT_SMALL_EMITTER], "add_small_emitter", add, SMALL_EMITTERS),
-            VOXELIZE(add[VCT_TEXTURED], "add_textured", add, TEXTURED),
-            VOXELIZE(add[VCT_TEXTURED_SMALL_EMITTER], "add_textured_small_emitter", add,
+    GPU_ADD(out, 0, VOXELIZE(voxels.mark, "mark", mark, 0),
+            VOXELIZE(voxels.outermost[0], "outermost", outermost, 0),
+            VOXELIZE(voxels.outermost[1], "outermost_masked", outermost, TEXTURED | MASKED),
+            VOXELIZE(voxels.add[VCT_PLAIN], "add", add, NOT_EMISSIVE),
+            VOXELIZE(voxels.add[VCT_EMISSIVE], "add_emissive", add, 0),
+            VOXELIZE(voxels.add[VCT_SMALL_EMITTER], "add_small_emitter", add, SMALL_EMITTERS),
+            VOXELIZE(voxels.add[VCT_TEXTURED], "add_textured", add, TEXTURED),
+            VOXELIZE(voxels.add[VCT_TEXTURED_SMALL_EMITTER], "add_textured_small_emitter", add,
                      TEXTURED | SMALL_EMITTERS),
-            VOXELIZE(add[VCT_MASKED], "add_masked", add, TEXTURED | MASKED));
+            VOXELIZE(voxels.add[VCT_MASKED], "add_masked", add, TEXTURED | MASKED));
 }
 
 static void add_octree(uint32_t directions, struct gpu_objects *out)
@@ -124,20 +124,23 @@ static void add_light(const struct vct_options *o, struct gpu_objects *out)
                                                    : &shader_vct_cones_lobe_average_frame_comp;
     GPU_ADD(
         out, 0,
-        VARIANTS(bounce, "bounce", bounce, bounce, directions | CLIPS | rays, still, MORE_LIGHT),
-        VARIANTS(cones, "cones", cones, lit ? cones : NULL, kind | CLIPS | pixel_rays, still,
+        VARIANTS(lighting.bounce, "bounce", bounce, bounce, directions | CLIPS | rays, still,
                  MORE_LIGHT),
-        VARIANTS(specular, "specular", specular, specular, directions | CLIPS | rays, still, MAP),
-        PIPELINE(lobe_average, "lobe_average", lit && rays ? average : NULL, 0),
-        PIPELINE(reflect, "reflect", lit ? &shader_vct_cones_reflect_comp : NULL, rays),
+        VARIANTS(cones.trace, "cones", cones, lit ? cones : NULL, kind | CLIPS | pixel_rays, still,
+                 MORE_LIGHT),
+        VARIANTS(specular.trace, "specular", specular, specular, directions | CLIPS | rays, still,
+                 MAP),
+        PIPELINE(specular.lobe_average, "lobe_average", lit && rays ? average : NULL, 0),
+        PIPELINE(specular.reflect, "reflect", lit ? &shader_vct_cones_reflect_comp : NULL, rays),
         PIPELINE(debug, "debug", STORED(debug), CLIPS));
     if (svo)
         add_octree(directions, out);
     else
         GPU_ADD(out, 0,
-                PIPELINE(fill[0], "fill_static", &shader_vct_volume_fill_comp, kind | NO_DYNAMIC),
-                PIPELINE(fill[1], "fill", &shader_vct_volume_fill_comp, kind),
-                PIPELINE(mip, "mip", &shader_vct_volume_mip_comp, kind));
+                PIPELINE(volume.fill[0], "fill_static", &shader_vct_volume_fill_comp,
+                         kind | NO_DYNAMIC),
+                PIPELINE(volume.fill[1], "fill", &shader_vct_volume_fill_comp, kind),
+                PIPELINE(volume.mip, "mip", &shader_vct_volume_mip_comp, kind));
 }
 
 static void add_history(const struct vct_options *o, struct gpu_objects *out)
@@ -165,27 +168,28 @@ void vct_add_pipelines(const struct vct_options *o, struct gpu_objects *out)
     fill_constants(o, out->constants);
     add_voxelize(o, out);
     add_light(o, out);
-    GPU_ADD(out, 0, PIPELINE(count, "count", &shader_vct_voxelize_count_comp, 0),
-            PIPELINE(scan, "scan", &shader_vct_voxelize_scan_comp, 0),
-            PIPELINE(list, "list", &shader_vct_voxelize_list_comp, 0),
-            PIPELINE(zero, "zero", &shader_vct_voxelize_zero_comp, 0),
-            PIPELINE(surfaces, "surfaces", &shader_vct_voxelize_surfaces_comp, 0),
-            PIPELINE(texel_lists, "texels", &shader_vct_volume_texels_comp, 0),
-            PIPELINE(planes, "planes", rays ? &shader_vct_rays_planes_comp : NULL, 0),
-            PIPELINE(blocks, "blocks", rays ? &shader_vct_rays_blocks_comp : NULL, 0),
-            PIPELINE(parts, "parts", lit ? &shader_vct_lighting_parts_comp : NULL, block),
-            PIPELINE(inject[0], "inject_unlit", &shader_vct_lighting_inject_comp, UNLIT),
-            PIPELINE(inject[1], "inject", lit ? &shader_vct_lighting_inject_comp : NULL, 0),
-            PIPELINE(edges, "edges", &shader_vct_cones_edges_comp, CLIPS),
-            PIPELINE(gather_rows[0], "gather_rows", &shader_vct_cones_gather_comp, kind),
-            PIPELINE(gather_rows[1], "gather_rows_largest", &shader_vct_cones_gather_comp,
-                     kind | LARGEST_INTERLEAVE),
-            PIPELINE(gather_columns[0], "gather_columns", &shader_vct_cones_gather_comp,
-                     kind | COLUMNS | half),
-            PIPELINE(gather_columns[1], "gather_columns_largest", &shader_vct_cones_gather_comp,
-                     kind | COLUMNS | half | LARGEST_INTERLEAVE),
-            PIPELINE(blur, "blur", &shader_vct_cones_blur_comp, CLIPS),
-            PIPELINE(upsample, "upsample", half ? &shader_vct_cones_upsample_comp : NULL,
-                     kind | CLIPS));
+    GPU_ADD(
+        out, 0, PIPELINE(voxels.count, "count", &shader_vct_voxelize_count_comp, 0),
+        PIPELINE(voxels.scan, "scan", &shader_vct_voxelize_scan_comp, 0),
+        PIPELINE(voxels.list, "list", &shader_vct_voxelize_list_comp, 0),
+        PIPELINE(voxels.zero, "zero", &shader_vct_voxelize_zero_comp, 0),
+        PIPELINE(voxels.surfaces, "surfaces", &shader_vct_voxelize_surfaces_comp, 0),
+        PIPELINE(volume.texels, "texels", &shader_vct_volume_texels_comp, 0),
+        PIPELINE(rays.planes, "planes", rays ? &shader_vct_rays_planes_comp : NULL, 0),
+        PIPELINE(rays.blocks, "blocks", rays ? &shader_vct_rays_blocks_comp : NULL, 0),
+        PIPELINE(lighting.parts, "parts", lit ? &shader_vct_lighting_parts_comp : NULL, block),
+        PIPELINE(lighting.inject[0], "inject_unlit", &shader_vct_lighting_inject_comp, UNLIT),
+        PIPELINE(lighting.inject[1], "inject", lit ? &shader_vct_lighting_inject_comp : NULL, 0),
+        PIPELINE(cones.edges, "edges", &shader_vct_cones_edges_comp, CLIPS),
+        PIPELINE(cones.gather_rows[0], "gather_rows", &shader_vct_cones_gather_comp, kind),
+        PIPELINE(cones.gather_rows[1], "gather_rows_largest", &shader_vct_cones_gather_comp,
+                 kind | LARGEST_INTERLEAVE),
+        PIPELINE(cones.gather_columns[0], "gather_columns", &shader_vct_cones_gather_comp,
+                 kind | COLUMNS | half),
+        PIPELINE(cones.gather_columns[1], "gather_columns_largest", &shader_vct_cones_gather_comp,
+                 kind | COLUMNS | half | LARGEST_INTERLEAVE),
+        PIPELINE(cones.blur, "blur", &shader_vct_cones_blur_comp, CLIPS),
+        PIPELINE(cones.upsample, "upsample", half ? &shader_vct_cones_upsample_comp : NULL,
+                 kind | CLIPS));
     if (o->temporal) add_history(o, out);
 }

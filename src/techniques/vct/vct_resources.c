@@ -39,18 +39,20 @@ static void add_set(const struct vct_options *o, bool dynamic, size_t base, stru
             { GPU_IMAGE, SET(planes), .image = faces(o, 1, GPU_RG32U, vct_has_rays(o)) });
 }
 
-static void add_clip(const struct vct_options *o, size_t base, struct gpu_objects *out)
-{
-#define CLIP(thing) offsetof(struct vct_clip, thing)
-    add_set(o, false, base + CLIP(static_set), out);
-    add_set(o, true, base + CLIP(dynamic_set), out);
-    GPU_ADD(out, base, { GPU_BUFFER, "texels", CLIP(texels), .bytes = 4 * vct_texel_words(o) },
-            { GPU_BUFFER, "texel_mask", CLIP(texel_mask), .bytes = 4 * vct_texel_mask_words(o) },
-            { GPU_BUFFER, "texel_counts", CLIP(texel_counts),
-              .bytes = sizeof(struct vct_texel_levels), .usage = GPU_BUFFER_INDIRECT });
-}
-
 #define VCT(thing) offsetof(struct vct, thing)
+
+static void add_level(const struct vct_options *o, size_t level, struct gpu_objects *out)
+{
+    const size_t voxels = VCT(voxels.levels) + level * sizeof(struct vct_level_voxels),
+                 texels = VCT(volume.levels) + level * sizeof(struct vct_level_texels);
+    add_set(o, false, voxels + offsetof(struct vct_level_voxels, static_set), out);
+    add_set(o, true, voxels + offsetof(struct vct_level_voxels, dynamic_set), out);
+#define TEXELS(thing) offsetof(struct vct_level_texels, thing)
+    GPU_ADD(out, texels, { GPU_BUFFER, "texels", TEXELS(list), .bytes = 4 * vct_texel_words(o) },
+            { GPU_BUFFER, "texel_mask", TEXELS(mask), .bytes = 4 * vct_texel_mask_words(o) },
+            { GPU_BUFFER, "texel_counts", TEXELS(counts), .bytes = sizeof(struct vct_texel_levels),
+              .usage = GPU_BUFFER_INDIRECT });
+}
 
 static void add_svo(const struct vct_options *o, struct gpu_objects *out)
 {
@@ -70,19 +72,19 @@ void vct_add_volumes(const struct vct_options *o, struct gpu_objects *out)
 {
     const struct gpu_image_desc light = vct_light_desc(o), blocks = vct_blocks_desc(o, GPU_RGBA32U),
                                 slots = vct_blocks_desc(o, GPU_R32U);
-    for (int i = 0; i < vct_clip_count(o); i++)
-        add_clip(o, VCT(clips) + (size_t)i * sizeof(struct vct_clip), out);
+    for (int i = 0; i < vct_clip_count(o); i++) add_level(o, (size_t)i, out);
     if (vct_has_svo(o)) add_svo(o, out);
-    GPU_ADD(
-        out, 0, { GPU_BUFFER, "queue", VCT(queue), .bytes = 8 * VCT_QUEUE },
-        { GPU_BUFFER, "queue_state", VCT(queue_state), .bytes = 16, .usage = GPU_BUFFER_INDIRECT },
-        { GPU_BUFFER, "sums", VCT(sums), .bytes = 4 * (size_t)vct_capacity(o) * VCT_SUM_WORDS },
-        { GPU_READBACK, "overflow", VCT(overflow.readback), .bytes = 8 * VCT_MAX_CLIPS },
-        { GPU_SAMPLER, "linear", .member = VCT(linear) },
-        { GPU_IMAGE, light.name, VCT(light), .image = light },
-        { GPU_IMAGE, "blocks", VCT(block_image), .image = blocks },
-        { GPU_IMAGE, "blocks", VCT(first_slots[0]), .image = slots },
-        { GPU_IMAGE, "blocks", VCT(first_slots[1]), .image = slots });
+    GPU_ADD(out, 0, { GPU_BUFFER, "queue", VCT(voxels.queue), .bytes = 8 * VCT_QUEUE },
+            { GPU_BUFFER, "queue_state", VCT(voxels.queue_state), .bytes = 16,
+              .usage = GPU_BUFFER_INDIRECT },
+            { GPU_BUFFER, "sums", VCT(voxels.sums),
+              .bytes = 4 * (size_t)vct_capacity(o) * VCT_SUM_WORDS },
+            { GPU_READBACK, "overflow", VCT(overflow.readback), .bytes = 8 * VCT_MAX_CLIPS },
+            { GPU_SAMPLER, "linear", .member = VCT(volume.linear) },
+            { GPU_IMAGE, light.name, VCT(volume.light), .image = light },
+            { GPU_IMAGE, "blocks", VCT(rays.block_image), .image = blocks },
+            { GPU_IMAGE, "blocks", VCT(rays.first_slots[0]), .image = slots },
+            { GPU_IMAGE, "blocks", VCT(rays.first_slots[1]), .image = slots });
 }
 
 // ---- Pixels -------------------------------------------------------------------------------------
@@ -116,13 +118,13 @@ void vct_add_pixels(const struct vct_options *o, int view, uint32_t width, uint3
             CONES("gathered_blue", gathered[2]));
     if (o->specular)
         GPU_ADD(out, base,
-                { GPU_IMAGE, "arriving", VIEW(pixels.arriving),
+                { GPU_IMAGE, "arriving", VIEW(reflections.arriving),
                   .image = pixels(GPU_RGBA16F, width, height, "arriving") },
-                { GPU_IMAGE, "averaged", VIEW(pixels.averaged[0]),
+                { GPU_IMAGE, "averaged", VIEW(reflections.averaged[0]),
                   .image = pixels(GPU_RGBA16F, width, height, o->temporal ? NULL : "averaged") });
     if (o->specular && o->temporal)
         GPU_ADD(out, base,
-                { GPU_IMAGE, "averaged", VIEW(pixels.averaged[1]),
+                { GPU_IMAGE, "averaged", VIEW(reflections.averaged[1]),
                   .image = pixels(GPU_RGBA16F, width, height, NULL) });
 #define HISTORY(name, thing, format)                                                               \
     {                                                                                              \

@@ -51,7 +51,7 @@ struct svo_pool svo_pool_of(const struct vct_fixture *fixture)
     const size_t floats =
         4 * (size_t)pool.desc.width * (size_t)pool.desc.height * (size_t)pool.desc.depth;
     pool.light = malloc(floats * sizeof *pool.light);
-    CHECK(gpu_image_download_float(fixture->frame_fixture.gpu, fixture->vct->light, 0, 0,
+    CHECK(gpu_image_download_float(fixture->frame_fixture.gpu, fixture->vct->volume.light, 0, 0,
                                    pool.light, 4, floats));
     return pool;
 }

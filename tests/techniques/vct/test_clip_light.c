@@ -133,7 +133,7 @@ static double leak(struct gpu *gpu, const char *options)
     vct_fixture_open(&fixture, options);
     fixture_look(s, vec3_of(14, 2.5f, 4.5f), vec3_of(12.45f, 1, 4.4f));
     const double e = mean_irradiance(&fixture);
-    CHECK(fixture.vct->clips[0].grid.cell_m > 0.8f);
+    CHECK(fixture.vct->clipmap.levels[0].grid.cell_m > 0.8f);
     vct_fixture_finish(&fixture);
     return e;
 }
@@ -169,7 +169,7 @@ static float *irradiance_from(struct vct_fixture *fixture, float x)
 
 static int finest_first(const struct vct_fixture *fixture)
 {
-    return fixture->vct->clips[2].grid.first[0];
+    return fixture->vct->clipmap.levels[2].grid.first[0];
 }
 
 // The camera moves by 0.1 mm across the position where the finest grid moves.
@@ -223,13 +223,13 @@ static struct pan pan_with(struct gpu *gpu, const char *options)
     int first = 0;
     for (int i = 0; i < 32; i++) {
         float *now = irradiance_from(&fixture, 5.0f + 0.1f * (float)i);
-        const int clip = fixture.vct->clip_count - 1;
+        const int clip = fixture.vct->clipmap.count - 1;
         if (last) {
             pan.worst = fmax(pan.worst, mean_difference(now, last) / mean(now));
             pan.level = fmax(pan.level, fabs(mean(now) / mean(last) - 1.0));
-            pan.steps += fixture.vct->clips[clip].grid.first[0] != first;
+            pan.steps += fixture.vct->clipmap.levels[clip].grid.first[0] != first;
         }
-        first = fixture.vct->clips[clip].grid.first[0];
+        first = fixture.vct->clipmap.levels[clip].grid.first[0];
         free(last);
         last = now;
     }

@@ -110,14 +110,14 @@ struct voxels {
 
 static struct voxels voxels_of(const struct vct_fixture *fixture, int clip)
 {
-    const struct vct_clip *c = &fixture->vct->clips[clip];
+    const struct vct_voxel_set *set = &fixture->vct->voxels.levels[clip].static_set;
     const size_t bytes = (size_t)gpu_groups(vct_capacity(&fixture->vct->options), VCT_VOXEL_ROW) *
                          2 * VCT_VOXEL_ROW * 16;
-    struct voxels v = { c->grid, vct_fixture_buffer_words(fixture, c->static_set.mask),
-                        vct_fixture_buffer_words(fixture, c->static_set.word_offsets),
-                        malloc(bytes) };
-    CHECK(v.surfaces && gpu_image_download(fixture->frame_fixture.gpu, c->static_set.surfaces, 0, 0,
-                                           v.surfaces, bytes));
+    struct voxels v = { fixture->vct->clipmap.levels[clip].grid,
+                        vct_fixture_buffer_words(fixture, set->mask),
+                        vct_fixture_buffer_words(fixture, set->word_offsets), malloc(bytes) };
+    CHECK(v.surfaces &&
+          gpu_image_download(fixture->frame_fixture.gpu, set->surfaces, 0, 0, v.surfaces, bytes));
     return v;
 }
 
@@ -184,9 +184,9 @@ static void check_voxels_of_three_cameras(struct gpu *gpu, const char *options)
         fixture_look(&fixtures[i].frame_fixture, cameras[i], vec3_of(0, 13, 27));
         vct_fixture_open(&fixtures[i], options);
         fixture_render(&fixtures[i].frame_fixture);
-        CHECK(fixtures[i].vct->clips[0].grid.cell_m == 1.0f);
+        CHECK(fixtures[i].vct->clipmap.levels[0].grid.cell_m == 1.0f);
     }
-    for (int clip = 1; clip < fixtures[0].vct->clip_count; clip++) {
+    for (int clip = 1; clip < fixtures[0].vct->clipmap.count; clip++) {
         for (int i = 0; i < 3; i++) voxels[i] = voxels_of(&fixtures[i], clip);
         for (int i = 1; i < 3; i++) {
             CHECK(memcmp(voxels[0].grid.first, voxels[i].grid.first, sizeof(int32_t[3])) != 0);
@@ -274,18 +274,19 @@ TEST_GPU(a_level_is_kept_until_the_camera_moves_a_step)
     vct_fixture_open(&fixture, "resolution=32,levels=3");
     CHECK(voxelized(&fixture));
     CHECK(!voxelized(&fixture));
-    const struct vct_grid finest = fixture.vct->clips[2].grid, middle = fixture.vct->clips[1].grid;
+    const struct vct_grid finest = fixture.vct->clipmap.levels[2].grid,
+                          middle = fixture.vct->clipmap.levels[1].grid;
     fixture_look(&fixture.frame_fixture, vec3_of(12.01f, 5, 15), vec3_of(13, 5, 4));
     CHECK(!voxelized(&fixture));
     int first = finest.first[0];
-    for (int i = 1; i < 40 && fixture.vct->clips[2].grid.first[0] == first; i++) {
+    for (int i = 1; i < 40 && fixture.vct->clipmap.levels[2].grid.first[0] == first; i++) {
         fixture_look(&fixture.frame_fixture, vec3_of(12 + 0.05f * (float)i, 5, 15),
                      vec3_of(13, 5, 4));
         const bool updated = voxelized(&fixture);
-        CHECK(updated == (fixture.vct->clips[2].grid.first[0] != first));
+        CHECK(updated == (fixture.vct->clipmap.levels[2].grid.first[0] != first));
     }
-    CHECK(fixture.vct->clips[2].grid.first[0] == first + 4);
-    CHECK(fixture.vct->clips[1].grid.first[0] == middle.first[0]);
+    CHECK(fixture.vct->clipmap.levels[2].grid.first[0] == first + 4);
+    CHECK(fixture.vct->clipmap.levels[1].grid.first[0] == middle.first[0]);
     CHECK(!voxelized(&fixture));
     vct_fixture_finish(&fixture);
 }
@@ -319,10 +320,10 @@ TEST_GPU(moving_objects_are_in_each_level)
     vct_fixture_open(&still, "resolution=32,levels=3");
     fixture_render(&still.frame_fixture);
     for (int clip = 0; clip < 3; clip++) {
-        const struct vct_clip *c = &moved.vct->clips[clip];
+        const struct vct_level_voxels *c = &moved.vct->voxels.levels[clip];
         uint32_t *rest = vct_fixture_mask(&moved, &c->static_set),
                  *moving = vct_fixture_mask(&moved, &c->dynamic_set),
-                 *expected = vct_fixture_mask(&still, &still.vct->clips[clip].static_set);
+                 *expected = vct_fixture_mask(&still, &still.vct->voxels.levels[clip].static_set);
         int count = 0;
         for (int i = 0; i < 32 * 32 * 32 / 4; i++) {
             CHECK((rest[i] | moving[i]) == expected[i]);

@@ -27,7 +27,7 @@ static uint32_t argument(const struct vct_fixture *fixture, int which)
 {
     uint32_t arguments[5];
     CHECK(gpu_buffer_download(fixture->frame_fixture.gpu,
-                              fixture->vct->clips[0].static_set.arguments, 0, arguments,
+                              fixture->vct->voxels.levels[0].static_set.arguments, 0, arguments,
                               sizeof arguments));
     return arguments[which];
 }
@@ -132,7 +132,7 @@ static double field(struct gpu *gpu, int squares, uint32_t *mask, size_t mask_by
     fixture_look(&fixture.frame_fixture, vec3_of(6, 5, 10), vec3_of(6, 4, 0));
     vct_fixture_open(&fixture, "resolution=16");
     const double e = mean_irradiance(&fixture);
-    uint32_t *now = vct_fixture_mask(&fixture, &fixture.vct->clips[0].static_set);
+    uint32_t *now = vct_fixture_mask(&fixture, &fixture.vct->voxels.levels[0].static_set);
     memcpy(mask, now, mask_bytes);
     free(now);
     vct_fixture_finish(&fixture);
@@ -195,7 +195,7 @@ TEST_GPU(voxels_beyond_the_capacity_are_dropped_with_one_warning)
         const uint32_t room = vct_capacity(&fixture.vct->options), all = 1568 * (uint32_t)sheets[i];
         const double e = mean_irradiance(&fixture);
         CHECK(e > 0.0);
-        CHECK(fixture.vct->clips[0].grid.cell_m == 1.0f);
+        CHECK(fixture.vct->clipmap.levels[0].grid.cell_m == 1.0f);
         CHECK(listed(&fixture) == (all < room ? all : room));
         CHECK(overflow(&fixture) == (all > room ? all - room : 0));
         // The counter is read back some frames later; each level warns once.

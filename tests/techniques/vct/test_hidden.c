@@ -60,9 +60,10 @@ static void check_layers(struct gpu *gpu, const struct layers *layers)
     fixture_render(s);
     for (int i = 0; i < 2 && layers->moving; i++) move_slightly(s, sheets[i]);
     if (layers->moving) fixture_render(s);
-    const struct vct_clip *clip = &fixture.vct->clips[0];
-    CHECK(clip->grid.cell_m == 1.0f && clip->grid.origin_m.x == 0.0f);
-    const struct vct_voxel_set *set = layers->moving ? &clip->dynamic_set : &clip->static_set;
+    const struct vct_grid *grid = &fixture.vct->clipmap.levels[0].grid;
+    const struct vct_level_voxels *voxels = &fixture.vct->voxels.levels[0];
+    CHECK(grid->cell_m == 1.0f && grid->origin_m.x == 0.0f);
+    const struct vct_voxel_set *set = layers->moving ? &voxels->dynamic_set : &voxels->static_set;
     const vec3s above[3] = { green(), glms_vec3_lerp(red(), green(), 0.5f), red() };
     for (int i = 0; i < 3; i++) {
         vec3s color;

@@ -94,7 +94,7 @@ TEST_GPU(traced_cones_match_the_twin)
     const struct vct *vct = fixture.vct;
     struct vct_twin twin = vct_twin_of(&fixture);
     const double scale = (double)frame_radiance_scale(fixture.frame_fixture.frame);
-    const double texel_m = 2.0 * (double)vct->clips[0].grid.cell_m;
+    const double texel_m = 2.0 * (double)vct->clipmap.levels[0].grid.cell_m;
     const double wide = 0.5 * (double)vct_cone_width(VCT_CONES_5);
     vec3s lines[VCT_MAX_CONES];
     vct_cone_axes(VCT_CONES_5, lines);
@@ -107,7 +107,7 @@ TEST_GPU(traced_cones_match_the_twin)
             double at[3], normal[3], expected[3] = { 0 }, cosines = 0.0;
             for (int a = 0; a < 3; a++) {
                 normal[a] = (double)n.raw[a];
-                at[a] = (double)(p.raw[a] - vct->clips[0].grid.origin_m.raw[a]) / texel_m;
+                at[a] = (double)(p.raw[a] - vct->clipmap.levels[0].grid.origin_m.raw[a]) / texel_m;
             }
             for (int i = 0; i < vct_cone_count(VCT_CONES_5); i++) {
                 double direction[3], sum[4];

@@ -92,7 +92,8 @@ TEST_GPU(bricks_of_each_level_match_the_twin)
         const int height = (int)(tree.params.depths - 2 - depth); // of the children
         int last[3];
         for (int a = 0; a < 3; a++)
-            last[a] = (fixture.vct->clips[0].grid.cells[a] / 2 + (1 << height) - 1) >> height;
+            last[a] =
+                (fixture.vct->clipmap.levels[0].grid.cells[a] / 2 + (1 << height) - 1) >> height;
         brick_values *expected = calloc((size_t)count, sizeof *expected);
         for (int direction = 0; direction < pool.directions; direction++) {
             for (int i = 0; i < count; i++)
@@ -175,7 +176,7 @@ static void sum_of_leaves(const struct vct_fixture *fixture, int direction, doub
             double weight = 1.0;
             for (int a = 0; a < 3; a++) {
                 const int at = 2 * node[a] + point[a],
-                          last = fixture->vct->clips[0].grid.cells[a] / 2;
+                          last = fixture->vct->clipmap.levels[0].grid.cells[a] / 2;
                 if (point[a] == 2 && at < last) weight = 0.0; // counted in the next leaf, or empty
                 if (a != direction / 2 && (at == 0 || at == last)) weight *= 0.5;
                 if (at > last) weight = 0.0;

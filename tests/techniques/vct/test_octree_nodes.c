@@ -31,7 +31,8 @@ static bool *nodes_of_twin(const struct vct_fixture *fixture, const uint32_t *re
                         // A point on the lower border belongs to the previous node too.
                         inside = inside && (!(i >> a & 1) || point[a] % width == 0) &&
                                  node[a] >= 0 &&
-                                 4 * node[a] * (width / 2) < fixture->vct->clips[0].grid.cells[a];
+                                 4 * node[a] * (width / 2) <
+                                     fixture->vct->clipmap.levels[0].grid.cells[a];
                     }
                     if (inside) there[(node[2] * dim + node[1]) * dim + node[0]] = true;
                 }
@@ -41,8 +42,8 @@ static bool *nodes_of_twin(const struct vct_fixture *fixture, const uint32_t *re
 
 static void check_nodes(const struct vct_fixture *fixture, const struct svo_tree *tree)
 {
-    uint32_t *rest = vct_fixture_mask(fixture, &fixture->vct->clips[0].static_set),
-             *moving = vct_fixture_mask(fixture, &fixture->vct->clips[0].dynamic_set);
+    uint32_t *rest = vct_fixture_mask(fixture, &fixture->vct->voxels.levels[0].static_set),
+             *moving = vct_fixture_mask(fixture, &fixture->vct->voxels.levels[0].dynamic_set);
     uint32_t bricks = 0;
     for (uint32_t depth = 0; depth < tree->params.depths; depth++) {
         const int dim = 1 << depth;

@@ -99,8 +99,8 @@ TEST_GPU(isotropic_mips_are_means_of_the_finer_level)
               *coarse = vct_fixture_light(&fixture, level);
         int size[3], checked = 0;
         for (int a = 0; a < 3; a++)
-            size[a] =
-                (fixture.vct->clips[0].grid.cells[a] / 2 + (1 << (level - 1)) - 1) >> (level - 1);
+            size[a] = (fixture.vct->clipmap.levels[0].grid.cells[a] / 2 + (1 << (level - 1)) - 1) >>
+                      (level - 1);
         for (int z = 0; 2 * z + 1 < size[2]; z++)
             for (int y = 0; 2 * y + 1 < size[1]; y++)
                 for (int x = 0; 2 * x + 1 < size[0]; x++)

@@ -44,11 +44,17 @@ static float *alone(const struct vct_fixture *fixture, size_t count)
     const float scale = frame_radiance_scale(fixture->frame_fixture.frame);
     float *rgba = malloc(pixels * 4 * sizeof *rgba), *out = malloc(count * sizeof *out);
     CHECK(gpu_image_download_float(fixture->frame_fixture.gpu,
-                                   vct_temporal_now(fixture->vct->temporal), 0, 0, rgba, 4,
-                                   pixels * 4));
+                                   vct_temporal_now(&fixture->vct->views[0].temporal), 0, 0, rgba,
+                                   4, pixels * 4));
     for (size_t i = 0; i < count; i++) out[i] = rgba[i / 3 * 4 + i % 3] / scale;
     free(rgba);
     return out;
+}
+
+static gpu_image newest_history(const struct vct_fixture *fixture)
+{
+    const struct vct_temporal *temporal = &fixture->vct->views[0].temporal;
+    return temporal->light[temporal->newest];
 }
 
 // ---- Static camera
@@ -63,9 +69,8 @@ TEST_GPU(history_is_the_weighted_mean_of_the_frames)
     double *mean_of_them = calloc(3 * pixels, sizeof *mean_of_them);
     for (int frame = 0; frame < 9; frame++) {
         fixture_render(&fixture.frame_fixture);
-        float *now = channels(&fixture, vct_temporal_now(fixture.vct->temporal), 3);
-        float *got =
-            channels(&fixture, fixture.vct->temporal->light[fixture.vct->temporal->newest], 4);
+        float *now = channels(&fixture, vct_temporal_now(&fixture.vct->views[0].temporal), 3);
+        float *got = channels(&fixture, newest_history(&fixture), 4);
         const double w = frame < 4 ? frame : 4; // at most `frames`
         for (size_t i = 0; i < 3 * pixels; i++) {
             mean_of_them[i] = (w * mean_of_them[i] + (double)now[i]) / (w + 1.0);
@@ -306,8 +311,7 @@ TEST_GPU(history_follows_objects_and_resets_where_uncovered)
     struct image before = image_of(s);
     fixture_render(s);
     struct image after = image_of(s);
-    float *history =
-        channels(&fixture, fixture.vct->temporal->light[fixture.vct->temporal->newest], 4);
+    float *history = channels(&fixture, newest_history(&fixture), 4);
     int on_box = 0, followed = 0, uncovered = 0, begun = 0, still = 0, kept = 0;
     for (size_t i = 0; i < (size_t)s->width * s->height; i++) {
         const vec3s was = vector(before.position, i), is = vector(after.position, i);
@@ -321,7 +325,7 @@ TEST_GPU(history_follows_objects_and_resets_where_uncovered)
         uncovered += !box_now && !same;
         begun += !box_now && !same && frames == 1.0f;
         still += !box_now && same;
-        kept += !box_now && same && frames > 1.0f + fixture.vct->temporal->params.added;
+        kept += !box_now && same && frames > 1.0f + fixture.vct->views[0].temporal.params.added;
     }
     print_message("%d of %d pixels on the box have followed it, %d of %d that it uncovered have "
                   "begun, %d of %d elsewhere go on\n",

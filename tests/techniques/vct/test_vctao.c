@@ -314,7 +314,7 @@ TEST_GPU(occlusion_cones_match_the_twin)
     courtyard(&fixture, gpu);
     vct_fixture_open(&fixture, "resolution=48,cones=5,interleave=1,step_size=0.5,decay=0.5");
     float *v = visibility(&fixture);
-    const struct vct_clip *clip = &fixture.vct->clips[0];
+    const struct vct_clip *clip = &fixture.vct->clipmap.levels[0];
     struct vct_twin twin = vct_twin_of(&fixture);
     const double texel_m = 2.0 * (double)clip->grid.cell_m;
     const double wide = 0.5 * (double)vct_cone_width(VCT_CONES_5);

@@ -130,11 +130,11 @@ static void check_random_triangles(struct gpu *gpu, const char *options)
     fixture_look(&fixture.frame_fixture, vec3_of(5, 4, 6), vec3_of(6, 4, 4));
     vct_fixture_open(&fixture, options);
     fixture_render(&fixture.frame_fixture);
-    for (int clip = 0; clip < fixture.vct->clip_count; clip++) {
-        const struct vct_grid *grid = &fixture.vct->clips[clip].grid;
+    for (int clip = 0; clip < fixture.vct->clipmap.count; clip++) {
+        const struct vct_grid *grid = &fixture.vct->clipmap.levels[clip].grid;
         struct twin twin = { 0 };
         for (int i = 0; i < TRIANGLES; i++) twin_add(&twin, grid, triangles[i]);
-        const int count = check_same(&fixture, &twin, &fixture.vct->clips[clip].static_set);
+        const int count = check_same(&fixture, &twin, &fixture.vct->voxels.levels[clip].static_set);
         CHECK(count > 100 && count < DIM * DIM * DIM / 2); // neither full nor empty
         // The CPU's count may differ for triangles that touch a face exactly.
         uint32_t counted = 0;
@@ -208,10 +208,10 @@ TEST_GPU(rasterized_attributes_equal_computed_ones)
         vct_fixture_open(fixture, i == 0 ? "resolution=48" : "resolution=48,voxels=raster");
         fixture_render(&fixture->frame_fixture);
     }
-    check_same_words(&fixtures[0], fixtures[0].vct->clips[0].static_set.mask, &fixtures[1],
-                     fixtures[1].vct->clips[0].static_set.mask);
-    check_same_texels(&fixtures[0], fixtures[0].vct->clips[0].static_set.surfaces, &fixtures[1],
-                      fixtures[1].vct->clips[0].static_set.surfaces);
+    check_same_words(&fixtures[0], fixtures[0].vct->voxels.levels[0].static_set.mask, &fixtures[1],
+                     fixtures[1].vct->voxels.levels[0].static_set.mask);
+    check_same_texels(&fixtures[0], fixtures[0].vct->voxels.levels[0].static_set.surfaces,
+                      &fixtures[1], fixtures[1].vct->voxels.levels[0].static_set.surfaces);
     for (int i = 0; i < 2; i++) vct_fixture_finish(&fixtures[i]);
 }
 
@@ -229,8 +229,8 @@ TEST_GPU(degenerate_triangles_occupy_no_voxels)
     vct_fixture_add_triangle(&fixture, point, matte);
     vct_fixture_open(&fixture, "resolution=16");
     fixture_render(&fixture.frame_fixture);
-    twin_add(&twin, &fixture.vct->clips[0].grid, real);
-    CHECK(check_same(&fixture, &twin, &fixture.vct->clips[0].static_set) > 0);
+    twin_add(&twin, &fixture.vct->clipmap.levels[0].grid, real);
+    CHECK(check_same(&fixture, &twin, &fixture.vct->voxels.levels[0].static_set) > 0);
     vct_fixture_finish(&fixture);
 }
 
@@ -243,10 +243,11 @@ TEST_GPU(walls_on_the_border_of_the_grid_are_kept)
                 fixture_matte(&fixture.frame_fixture, vec3_of(0.5f, 0.5f, 0.5f)));
     vct_fixture_open(&fixture, "resolution=16");
     fixture_render(&fixture.frame_fixture);
-    CHECK(fixture.vct->clips[0].grid.cell_m == 1.0f &&
-          fixture.vct->clips[0].grid.origin_m.x == 0.0f);
-    for (int axis = 0; axis < 3; axis++) CHECK(fixture.vct->clips[0].grid.cells[axis] == 12);
-    uint32_t *mask = vct_fixture_mask(&fixture, &fixture.vct->clips[0].static_set);
+    CHECK(fixture.vct->clipmap.levels[0].grid.cell_m == 1.0f &&
+          fixture.vct->clipmap.levels[0].grid.origin_m.x == 0.0f);
+    for (int axis = 0; axis < 3; axis++)
+        CHECK(fixture.vct->clipmap.levels[0].grid.cells[axis] == 12);
+    uint32_t *mask = vct_fixture_mask(&fixture, &fixture.vct->voxels.levels[0].static_set);
     for (int z = 0; z < DIM; z++)
         for (int y = 0; y < DIM; y++)
             for (int x = 0; x < DIM; x++) {
@@ -277,9 +278,9 @@ TEST_GPU(moving_objects_are_in_the_dynamic_set)
     fixture_render(&fixture.frame_fixture);
     fixture_render(&fixture.frame_fixture);
     for (int i = 0; i < 3; i++) other[i] = glms_vec3_add(other[i], step);
-    twin_add(&still, &fixture.vct->clips[0].grid, one);
-    twin_add(&moving, &fixture.vct->clips[0].grid, other);
-    CHECK(check_same(&fixture, &still, &fixture.vct->clips[0].static_set) > 0);
-    CHECK(check_same(&fixture, &moving, &fixture.vct->clips[0].dynamic_set) > 0);
+    twin_add(&still, &fixture.vct->clipmap.levels[0].grid, one);
+    twin_add(&moving, &fixture.vct->clipmap.levels[0].grid, other);
+    CHECK(check_same(&fixture, &still, &fixture.vct->voxels.levels[0].static_set) > 0);
+    CHECK(check_same(&fixture, &moving, &fixture.vct->voxels.levels[0].dynamic_set) > 0);
     vct_fixture_finish(&fixture);
 }

@@ -11,11 +11,12 @@ void vct_fixture_init(struct vct_fixture *fixture, struct gpu *gpu)
 
 static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    struct vct *vct = user;
-    gpu_owner_push(vct->gpu, vct->name);
-    technique_vct.update(vct, cmd, view); // the same functions for vctao
-    technique_vct.record(vct, cmd, view);
-    gpu_owner_pop(vct->gpu);
+    const struct vct_fixture *fixture = user;
+    struct gpu *gpu = fixture->frame_fixture.gpu;
+    gpu_owner_push(gpu, fixture->technique->name);
+    fixture->technique->update(fixture->vct, cmd, view);
+    fixture->technique->record(fixture->vct, cmd, view);
+    gpu_owner_pop(gpu);
 }
 
 void vct_fixture_open(struct vct_fixture *fixture, const char *text)
@@ -41,15 +42,15 @@ void vct_fixture_open(struct vct_fixture *fixture, const char *text)
     gpu_owner_pop(s->gpu);
     s->indirect =
         (struct frame_indirect){ .record = record,
-                                 .user = fixture->vct,
+                                 .user = fixture,
                                  .needs = technique->needs | technique->more_needs(&options) };
 }
 
 void vct_fixture_finish(struct vct_fixture *fixture)
 {
     struct vct *vct = fixture->vct;
-    technique_destroy(fixture->technique, vct->gpu, vct, &vct->options);
-    free(fixture->vct);
+    technique_destroy(fixture->technique, fixture->frame_fixture.gpu, vct, &vct->options);
+    free(vct);
     fixture_finish(&fixture->frame_fixture);
 }
 
@@ -188,8 +189,8 @@ float *vct_fixture_light(const struct vct_fixture *fixture, uint32_t level)
     const size_t dim = vct_volume_dim(&fixture->vct->options) >> level;
     const size_t floats = vct_direction_count(&fixture->vct->options) * dim * dim * dim * 4;
     float *light = malloc(floats * sizeof *light);
-    CHECK(gpu_image_download_float(fixture->frame_fixture.gpu, fixture->vct->light, level, 0, light,
-                                   4, floats));
+    CHECK(gpu_image_download_float(fixture->frame_fixture.gpu, fixture->vct->volume.light, level, 0,
+                                   light, 4, floats));
     // The volume of occlusion has one channel, opacity.
     for (size_t i = 0; fixture->vct->options.occlusion && i < floats; i++)
         light[i] = light[i / 4 * 4];

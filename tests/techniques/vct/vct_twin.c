@@ -8,7 +8,7 @@ struct vct_twin_volume vct_twin_volume(const struct vct_fixture *fixture, uint32
     struct vct_twin_volume v = { .light = vct_fixture_light(fixture, level),
                                  .dim = (int)vct_volume_dim(&fixture->vct->options) >> level };
     for (int a = 0; a < 3; a++)
-        v.size[a] = (fixture->vct->clips[0].grid.cells[a] / 2 + (1 << level) - 1) >> level;
+        v.size[a] = (fixture->vct->clipmap.levels[0].grid.cells[a] / 2 + (1 << level) - 1) >> level;
     return v;
 }
 
@@ -30,7 +30,7 @@ struct vct_twin vct_twin_of(const struct vct_fixture *fixture)
     struct vct_twin twin = {
         .level_count = (int)vct_volume_mips(o),
         .occlusion = o->occlusion,
-        .decay = 2.0 * (double)fixture->vct->clips[0].grid.cell_m * (double)o->decay,
+        .decay = 2.0 * (double)fixture->vct->clipmap.levels[0].grid.cell_m * (double)o->decay,
         .offset = (double)o->offset,
     };
     for (int i = 0; i < twin.level_count; i++)

@@ -1,7 +1,5 @@
 #include "techniques/vct/clipmap/clipmap.h"
 
-#include "techniques/vct/vct_state.h"
-
 #include "frame/scene/scene_gpu.h"
 
 #include <math.h>
@@ -17,21 +15,20 @@ static bool same_grid(const struct vct_grid *a, const struct vct_grid *b)
 
 // Texels along the border of a level's cone box over which it blends into the next coarser level.
 // With resolution=64 the border is 13 texels from the camera.
-static float fade_of(const struct vct *vct)
+static float fade_of(int resolution)
 {
-    return fminf((float)vct->options.resolution / 16.0f, 4.0f);
+    return fminf((float)resolution / 16.0f, 4.0f);
 }
 
-static void place_around_camera(struct vct *vct, const struct frame_view *view)
+static void place_around_camera(struct vct_clipmap *map, int dim, const struct frame_view *view)
 {
-    const struct vct_grid *scene = &vct->clips[0].grid;
-    const int dim = vct->options.resolution;
-    for (int i = 1; i < vct->clip_count; i++) {
-        struct vct_clip *clip = &vct->clips[i];
+    const struct vct_grid *scene = &map->levels[0].grid;
+    for (int i = 1; i < map->count; i++) {
+        struct vct_clip *clip = &map->levels[i];
         const struct vct_grid previous = clip->grid;
         clip->grid = vct_grid_around(scene, dim, i, view->camera.eye);
-        clip->cone_box = vct_grid_cone_box(scene, dim, i, view->camera.eye, 2.0f * fade_of(vct));
-        if (!same_grid(&clip->grid, &previous)) clip->static_valid = false;
+        clip->cone_box = vct_grid_cone_box(scene, dim, i, view->camera.eye, 2.0f * fade_of(dim));
+        clip->moved = !same_grid(&clip->grid, &previous);
     }
 }
 
@@ -66,29 +63,48 @@ static struct box3 grown_bounds(const struct vct_grid *grid, struct box3 bounds)
 
 // The grid of the previous frame if that still fits; otherwise one with room to grow, or the fitted
 // one where that would be much coarser.
-static struct vct_grid next_grid(const struct vct *vct, const struct vct_grid *previous,
+static struct vct_grid next_grid(int resolution, const struct vct_grid *previous,
                                  const struct vct_grid *fitted, struct box3 bounds)
 {
     struct vct_grid grown;
     if (still_fits(previous, fitted, bounds)) return *previous;
-    const bool fits = vct_grid_fit(grown_bounds(previous, bounds), vct->options.resolution, &grown);
+    const bool fits = vct_grid_fit(grown_bounds(previous, bounds), resolution, &grown);
     return fits && still_fits(&grown, fitted, bounds) ? grown : *fitted;
 }
 
-bool vct_clipmap_update(struct vct *vct, const struct frame_view *view)
+uint32_t vct_clipmap_update(struct vct_clipmap *map, int resolution, const struct frame_view *view)
 {
-    const struct vct_grid previous = vct->clips[0].grid;
-    if (!vct_grid_fit(view->bounds, vct->options.resolution, &vct->clips[0].grid)) return false;
-    const bool known = view->index > 0 && view->pose->scene == vct->scene;
-    vct->scene = view->pose->scene;
-    if (known) vct->clips[0].grid = next_grid(vct, &previous, &vct->clips[0].grid, view->bounds);
-    place_around_camera(vct, view);
-    if (!known || vct->draw_list != view->scene->draw_list) vct->small_emitters.chosen = false;
-    vct->draw_list = view->scene->draw_list;
-    if (known && same_grid(&vct->clips[0].grid, &previous)) return true;
-    for (int i = 0; i < vct->clip_count; i++) vct->clips[i].static_valid = false;
-    vct->light_valid = vct->bounced_valid = false;
-    return true;
+    struct vct_grid *grid = &map->levels[0].grid;
+    const struct vct_grid previous = *grid;
+    if (!vct_grid_fit(view->bounds, resolution, grid)) return VCT_NO_EXTENT;
+    const bool known = view->index > 0 && view->pose->scene == map->scene;
+    const bool other_draws = !known || map->draw_list != view->scene->draw_list;
+    if (known) *grid = next_grid(resolution, &previous, grid, view->bounds);
+    place_around_camera(map, resolution, view);
+    map->scene = view->pose->scene;
+    map->draw_list = view->scene->draw_list;
+    map->levels[0].moved = !known || !same_grid(grid, &previous);
+    for (int i = 1; i < map->count; i++) map->levels[i].moved |= map->levels[0].moved;
+    return (other_draws ? VCT_OTHER_DRAWS : 0) | (map->levels[0].moved ? VCT_OTHER_GRID : 0);
+}
+
+void vct_clipmap_note_lit(struct vct_clipmap *map)
+{
+    for (int i = 0; i < map->count; i++) map->levels[i].lit_grid = map->levels[i].grid;
+}
+
+float vct_clipmap_texel_m(const struct vct_clipmap *map)
+{
+    return 2.0f * map->levels[map->count - 1].grid.cell_m;
+}
+
+float vct_clipmap_longest_side_m(const struct vct_clipmap *map)
+{
+    const struct vct_grid *grid = &map->levels[0].grid;
+    int cells = grid->cells[0];
+    for (int axis = 1; axis < 3; axis++)
+        if (grid->cells[axis] > cells) cells = grid->cells[axis];
+    return (float)cells * grid->cell_m;
 }
 
 // ---- The uniform block --------------------------------------------------------------------------
@@ -121,28 +137,20 @@ static struct box3 box_of(const struct vct_grid *grid)
     return box;
 }
 
-static struct gpu_binding clipmap_binding(const struct vct *vct, struct gpu_cmd *cmd, bool lit)
+struct vct_clip_table vct_clipmap_table(const struct vct_clipmap *map, int resolution, bool lit)
 {
-    const struct vct_grid *scene = lit ? &vct->clips[0].lit_grid : &vct->clips[0].grid;
-    struct vct_clip_table table = { .origin_m = scene->origin_m, .fade = fade_of(vct) };
-    for (int i = 0; i < vct->clip_count; i++) {
-        const struct vct_clip *clip = &vct->clips[i];
+    const struct vct_clip *first = &map->levels[0];
+    struct vct_clip_table table = { .origin_m =
+                                        lit ? first->lit_grid.origin_m : first->grid.origin_m,
+                                    .fade = fade_of(resolution) };
+    for (int i = 0; i < map->count; i++) {
+        const struct vct_clip *clip = &map->levels[i];
         const struct vct_grid *grid = lit ? &clip->lit_grid : &clip->grid;
-        const int level = vct->clip_count - 1 - i;
+        const int level = map->count - 1 - i;
         const struct box3 box = lit || i == 0 ? box_of(grid) : clip->cone_box;
         table.levels[level] = level_of(grid, box, level);
     }
-    const int coarsest = vct->clip_count - 1;
+    const int coarsest = map->count - 1;
     table.size = glms_vec3_scale(table.levels[coarsest].size, (float)(1 << coarsest));
-    return gpu_transient(cmd, "vct_clipmap", &table, sizeof table);
-}
-
-struct gpu_binding vct_clipmap_binding(const struct vct *vct, struct gpu_cmd *cmd)
-{
-    return clipmap_binding(vct, cmd, false);
-}
-
-struct gpu_binding vct_lit_clipmap_binding(const struct vct *vct, struct gpu_cmd *cmd)
-{
-    return clipmap_binding(vct, cmd, true);
+    return table;
 }

@@ -5,13 +5,36 @@
 #include "frame/frame.h"
 #include "techniques/vct/clipmap/clipmap_shared.h"
 #include "techniques/vct/clipmap/grid.h"
+#include "techniques/vct/vct_shared.h"
 
-struct vct;
+// A grid; that of the first level covers the whole scene.
+struct vct_clip {
+    struct vct_grid grid;     // of this frame
+    struct vct_grid lit_grid; // when the light volume was filled
+    struct box3 cone_box;     // see vct_grid_cone_box
+    bool moved;               // it is another grid than that of the previous frame
+};
 
-// Fits the grids to the scene and the camera. Voxels and light of grids that moved become invalid.
-// False: the scene has no extent.
-bool vct_clipmap_update(struct vct *vct, const struct frame_view *view);
-// Uniform block "vct_clipmap": the grids as pixels sample them, around the camera.
-struct gpu_binding vct_clipmap_binding(const struct vct *vct, struct gpu_cmd *cmd);
-// The grids as voxels sample them: whole, with the placement of the filled light volume.
-struct gpu_binding vct_lit_clipmap_binding(const struct vct *vct, struct gpu_cmd *cmd);
+struct vct_clipmap {
+    struct vct_clip levels[VCT_MAX_CLIPS];
+    int count;
+    const struct scene *scene; // of the grids
+    uint64_t draw_list;        // of scene_gpu
+};
+
+enum vct_clipmap_change { // bits
+    VCT_NO_EXTENT = 1,    // of the scene: there are no grids
+    VCT_OTHER_DRAWS = 2,  // than in the previous frame
+    VCT_OTHER_GRID = 4,   // of the whole scene: its light is gone
+};
+
+// Fits the grids to the scene and the camera. Returns what has changed.
+uint32_t vct_clipmap_update(struct vct_clipmap *map, int resolution, const struct frame_view *view);
+// The light volume has been filled from these grids.
+void vct_clipmap_note_lit(struct vct_clipmap *map);
+// The uniform block: see vct_clipmap_binding; lit: vct_lit_clipmap_binding.
+struct vct_clip_table vct_clipmap_table(const struct vct_clipmap *map, int resolution, bool lit);
+// Side of the finest texel of the light volume, m.
+float vct_clipmap_texel_m(const struct vct_clipmap *map);
+// The longest side of the grid of the whole scene, m.
+float vct_clipmap_longest_side_m(const struct vct_clipmap *map);

@@ -10,16 +10,28 @@ struct vct_bounce_inputs {
     double radiance_scale;
 };
 
-struct vct;
-struct vct_clip;
+struct vct_lighting {
+    gpu_pipeline parts;
+    gpu_pipeline inject[2]; // without and with lights
+    gpu_pipeline bounce[4]; // by vct_light_variant
+    bool lit;               // the light volume is that of the previous frame, of this grid
+    bool bounced;           // bounced irradiance is that of `inputs`
+    struct vct_bounce_inputs inputs;
+    int bounces_left; // that still propagate a change of light
+};
 
-// Divides voxels into the parts that gather bounced light together.
-void vct_list_parts(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd);
-// Gathers light from other voxels, if that has changed: see vct_record_light.
-bool vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+struct vct_frame;
+
+// All light is to be gathered again: it is that of another grid, or of other options.
+void vct_lighting_invalidate(struct vct_lighting *lighting);
+// Divides the voxels of a level into the parts that gather bounced light together.
+void vct_list_parts(const struct vct_lighting *lighting, const struct vct_frame *frame, int level);
+// Gathers light from other voxels, if that has changed: see vct_record_light. Notes in the frame's
+// parameters whether there is any.
+bool vct_record_bounce(struct vct_lighting *lighting, struct vct_frame *frame);
 // Lights the voxels and fills the light volume, unless all is as in the previous frame. bounced:
-// the result of vct_record_bounce.
-void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                      bool bounced);
+// the result of vct_record_bounce; same: neither geometry nor light has changed since then.
+void vct_record_light(struct vct_lighting *lighting, const struct vct_frame *frame, bool bounced,
+                      bool same);
 // Fills the light volume again from voxels that are lit already.
-void vct_refill_volume(struct vct *vct, struct gpu_cmd *cmd);
+void vct_refill_volume(const struct vct_frame *frame);

@@ -3,7 +3,7 @@
 #include "techniques/vct/octree/octree.h"
 
 #include "techniques/vct/vct_bindings.h"
-#include "techniques/vct/vct_state.h"
+#include "techniques/vct/vct_frame.h"
 
 // ---- The tree -----------------------------------------------------------------------------------
 
@@ -12,21 +12,20 @@ static size_t level_offset(uint32_t depth, size_t member)
     return depth * sizeof(struct vct_svo_level) + member;
 }
 
-static void mark(struct vct *vct, struct gpu_cmd *cmd, const struct vct_voxel_set *set,
-                 uint32_t depth)
+static void mark(const struct vct_svo *svo, const struct vct_frame *frame,
+                 const struct vct_voxel_set *set, uint32_t depth)
 {
     const struct vct_svo_push push = { .depth = depth };
-    gpu_dispatch_indirect(cmd, vct->svo.mark,
-                          GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd),
-                                   vct_svo_binding(vct, cmd),
+    gpu_dispatch_indirect(frame->cmd, svo->mark,
+                          GPU_BIND(vct_grid_binding(frame, 0), vct_svo_binding(frame),
                                    { .name = "vct_list", .buffer = set->list },
                                    { .name = "vct_arguments", .buffer = set->arguments },
-                                   { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
+                                   { .name = "vct_svo_nodes", .buffer = svo->nodes }),
                           &push, sizeof push, set->arguments, 0);
 }
 
 // A pass over blocks of nodes at a depth; the level above holds the group count.
-static void over_nodes(struct gpu_cmd *cmd, const struct vct_svo *svo, gpu_pipeline pipeline,
+static void over_nodes(const struct vct_svo *svo, struct gpu_cmd *cmd, gpu_pipeline pipeline,
                        const struct gpu_binding *bindings, int count, uint32_t depth)
 {
     const struct vct_svo_push push = { .depth = depth };
@@ -37,73 +36,74 @@ static void over_nodes(struct gpu_cmd *cmd, const struct vct_svo *svo, gpu_pipel
                               level_offset(depth - 1, offsetof(struct vct_svo_level, node_groups)));
 }
 
-static void subdivide(struct vct *vct, struct gpu_cmd *cmd, uint32_t depth)
+static void subdivide(const struct vct_svo *svo, const struct vct_frame *frame, uint32_t depth)
 {
-    const struct vct_svo *svo = &vct->svo;
+    struct gpu_cmd *cmd = frame->cmd;
     const struct vct_svo_push push = { .depth = depth };
-    const struct gpu_binding bindings[] = { vct_grid_binding(vct, &vct->clips[0], cmd),
-                                            vct_svo_binding(vct, cmd),
+    const struct gpu_binding bindings[] = { vct_grid_binding(frame, 0),
+                                            vct_svo_binding(frame),
                                             { .name = "vct_svo_nodes", .buffer = svo->nodes },
                                             { .name = "vct_svo_blocks", .buffer = svo->blocks },
                                             { .name = "vct_svo_brick_coords",
                                               .buffer = svo->brick_coords },
                                             { .name = "vct_svo_levels", .buffer = svo->levels } };
     const int count = sizeof bindings / sizeof bindings[0];
-    over_nodes(cmd, svo, svo->count, bindings, count, depth);
+    over_nodes(svo, cmd, svo->count, bindings, count, depth);
     gpu_dispatch(cmd, svo->scan, bindings, count, &push, sizeof push, 1, 1, 1);
-    over_nodes(cmd, svo, svo->subdivide, bindings, count, depth);
+    over_nodes(svo, cmd, svo->subdivide, bindings, count, depth);
 }
 
-void vct_octree_build(struct vct *vct, struct gpu_cmd *cmd)
+void vct_octree_build(const struct vct_svo *svo, const struct vct_frame *frame)
 {
-    gpu_scope_begin(cmd, "nodes");
-    gpu_fill_buffer(cmd, vct->svo.nodes, 0, 8 * sizeof(uint32_t), 0); // an empty root
-    for (uint32_t depth = 0; depth < vct->svo.params.depths; depth++) {
-        mark(vct, cmd, &vct->clips[0].static_set, depth);
-        if (vct->moving_draws > 0) mark(vct, cmd, &vct->clips[0].dynamic_set, depth);
-        subdivide(vct, cmd, depth);
+    const struct vct_level_voxels *voxels = &frame->voxels->levels[0];
+    gpu_scope_begin(frame->cmd, "nodes");
+    gpu_fill_buffer(frame->cmd, svo->nodes, 0, 8 * sizeof(uint32_t), 0); // an empty root
+    for (uint32_t depth = 0; depth < svo->params.depths; depth++) {
+        mark(svo, frame, &voxels->static_set, depth);
+        if (vct_frame_moves(frame)) mark(svo, frame, &voxels->dynamic_set, depth);
+        subdivide(svo, frame, depth);
     }
-    gpu_scope_end(cmd);
+    gpu_scope_end(frame->cmd);
 }
 
 // ---- Radiance in the bricks ---------------------------------------------------------------------
 
-static void over_bricks(struct vct *vct, struct gpu_cmd *cmd, gpu_pipeline pipeline,
-                        struct vct_svo_push push, size_t groups)
+static void over_bricks(const struct vct_svo *svo, const struct vct_frame *frame,
+                        gpu_pipeline pipeline, struct vct_svo_push push, size_t groups)
 {
-    gpu_dispatch_indirect(
-        cmd, pipeline,
-        GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), vct_svo_binding(vct, cmd),
-                 VCT_BOTH_SETS(&vct->clips[0]), { .name = "light", .image = vct->light },
-                 { .name = "vct_svo_nodes", .buffer = vct->svo.nodes },
-                 { .name = "vct_svo_brick_coords", .buffer = vct->svo.brick_coords },
-                 { .name = "vct_svo_levels", .buffer = vct->svo.levels }),
-        &push, sizeof push, vct->svo.levels, level_offset(push.depth, groups));
+    gpu_dispatch_indirect(frame->cmd, pipeline,
+                          GPU_BIND(vct_grid_binding(frame, 0), vct_svo_binding(frame),
+                                   VCT_BOTH_SETS(&frame->voxels->levels[0]),
+                                   { .name = "light", .image = frame->volume->light },
+                                   { .name = "vct_svo_nodes", .buffer = svo->nodes },
+                                   { .name = "vct_svo_brick_coords", .buffer = svo->brick_coords },
+                                   { .name = "vct_svo_levels", .buffer = svo->levels }),
+                          &push, sizeof push, svo->levels, level_offset(push.depth, groups));
 }
 
-static void join(struct vct *vct, struct gpu_cmd *cmd, uint32_t depth)
+static void join(const struct vct_svo *svo, const struct vct_frame *frame, uint32_t depth)
 {
-    gpu_scope_begin(cmd, "borders");
+    gpu_scope_begin(frame->cmd, "borders");
     for (uint32_t axis = 0; axis < 3; axis++)
-        over_bricks(vct, cmd, vct->svo.join, (struct vct_svo_push){ .depth = depth, .axis = axis },
+        over_bricks(svo, frame, svo->join, (struct vct_svo_push){ .depth = depth, .axis = axis },
                     offsetof(struct vct_svo_level, side_groups));
-    gpu_scope_end(cmd);
+    gpu_scope_end(frame->cmd);
 }
 
-void vct_octree_fill(struct vct *vct, struct gpu_cmd *cmd)
+void vct_octree_fill(const struct vct_svo *svo, const struct vct_frame *frame)
 {
-    const uint32_t leaves = vct->svo.params.depths - 1;
-    vct->clips[0].lit_grid = vct->clips[0].grid;
+    struct gpu_cmd *cmd = frame->cmd;
+    const uint32_t leaves = svo->params.depths - 1;
     const size_t texels = offsetof(struct vct_svo_level, texel_groups);
     gpu_scope_begin(cmd, "leaves");
-    over_bricks(vct, cmd, vct->svo.fill[vct->moving_draws > 0],
+    over_bricks(svo, frame, svo->fill[vct_frame_moves(frame)],
                 (struct vct_svo_push){ .depth = leaves }, texels);
     gpu_scope_end(cmd);
-    join(vct, cmd, leaves);
+    join(svo, frame, leaves);
     for (uint32_t depth = leaves; depth-- > 0;) {
         gpu_scope_begin(cmd, "mips");
-        over_bricks(vct, cmd, vct->svo.mip, (struct vct_svo_push){ .depth = depth }, texels);
+        over_bricks(svo, frame, svo->mip, (struct vct_svo_push){ .depth = depth }, texels);
         gpu_scope_end(cmd);
-        join(vct, cmd, depth);
+        join(svo, frame, depth);
     }
 }

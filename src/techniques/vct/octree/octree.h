@@ -13,9 +13,9 @@ struct vct_svo {
     struct vct_svo_params params;
 };
 
-struct vct;
+struct vct_frame;
 
 // Builds the tree over the occupied voxels.
-void vct_octree_build(struct vct *vct, struct gpu_cmd *cmd);
-// From the lit voxels to the bricks of all levels.
-void vct_octree_fill(struct vct *vct, struct gpu_cmd *cmd);
+void vct_octree_build(const struct vct_svo *svo, const struct vct_frame *frame);
+// From the lit voxels to the bricks of all levels, in the image of the light volume.
+void vct_octree_fill(const struct vct_svo *svo, const struct vct_frame *frame);

@@ -3,8 +3,13 @@
 
 #include "frame/frame.h"
 
-struct vct;
-struct vct_clip;
+struct vct_rays {
+    gpu_pipeline planes, blocks;
+    gpu_image block_image;    // RGBA32U, of the first grid: see rays_shared.h
+    gpu_image first_slots[2]; // R32U, of each block and set
+};
 
-// Occupancy of a grid whose texels are listed.
-void vct_rays_list_blocks(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd);
+struct vct_frame;
+
+// Planes of the faces and occupancy of the first grid, whose texels are listed.
+void vct_rays_list_blocks(const struct vct_rays *rays, const struct vct_frame *frame);

@@ -5,19 +5,20 @@
 #include "techniques/vct/voxelize/voxelize.h"
 
 #include "techniques/vct/vct_bindings.h"
-#include "techniques/vct/vct_state.h"
+#include "techniques/vct/vct_frame.h"
 
 #include "frame/scene/scene_gpu.h"
 
-static enum vct_draw_kind kind_of(const struct vct *vct, const struct scene_gpu *scene, int index)
+static enum vct_draw_kind kind_of(const struct vct_frame *frame, int index)
 {
+    const struct scene_gpu *scene = frame->view->scene;
     const struct scene_draw *draw = &scene->draws[index];
     const vec3s emissive = scene->scene->materials[draw->material].emissive;
     if (draw->variant & VARIANT_MASKED) return VCT_MASKED;
-    if (vct->options.occlusion) return VCT_PLAIN; // colours do not matter
+    if (frame->options->occlusion) return VCT_PLAIN; // colours do not matter
     const uint32_t maps =
         VARIANT_BASE_COLOR_MAP | VARIANT_METALLIC_ROUGHNESS_MAP | VARIANT_EMISSIVE_MAP;
-    const bool small_emitter = vct_small_emitters_have(&vct->small_emitters, index);
+    const bool small_emitter = vct_small_emitters_have(frame->emitters, index);
     if (draw->variant & maps) return small_emitter ? VCT_TEXTURED_SMALL_EMITTER : VCT_TEXTURED;
     if (small_emitter) return VCT_SMALL_EMITTER;
     return emissive.x > 0.0f || emissive.y > 0.0f || emissive.z > 0.0f ? VCT_EMISSIVE : VCT_PLAIN;
@@ -40,76 +41,89 @@ static bool may_touch(const struct scene_draw *draw, const struct vct_grid *grid
 
 enum pass { MARK, FIND_OUTERMOST, ADD };
 
-static const struct vct_voxelize_pipelines *pipelines_of(const struct vct *vct, enum pass pass,
-                                                         enum vct_draw_kind kind)
+static const struct vct_voxelize_pipelines *pipelines_of(const struct vct_voxels *voxels,
+                                                         enum pass pass, enum vct_draw_kind kind)
 {
-    return pass == MARK  ? &vct->mark
-           : pass == ADD ? &vct->add[kind]
-                         : &vct->outermost[kind == VCT_MASKED];
+    return pass == MARK  ? &voxels->mark
+           : pass == ADD ? &voxels->add[kind]
+                         : &voxels->outermost[kind == VCT_MASKED];
 }
 
-// A pass over the triangles of the moving or of the static draws: small triangles, then the queued
-// tiles of large ones; or all by raster, a pixel for each column.
-static void traverse(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
-                     const struct frame_view *view, bool moving, enum pass pass,
-                     const struct gpu_binding *bindings, int count)
+// The voxels of the moving or of the static draws in a level.
+struct target {
+    const struct vct_voxel_set *set;
+    int level;
+    bool moving;
+};
+
+// A pass over the triangles of these draws: small triangles, then the queued tiles of large ones;
+// or all by raster, a pixel for each column.
+static void traverse(const struct vct_voxels *voxels, const struct vct_frame *frame,
+                     const struct target *to, enum pass pass, const struct gpu_binding *bindings,
+                     int count)
 {
-    const bool raster = vct->options.voxels == VCT_BY_RASTER;
-    const uint32_t dim = (uint32_t)vct->options.resolution;
+    const struct scene_gpu *scene = frame->view->scene;
+    const struct vct_grid *grid = &frame->clipmap->levels[to->level].grid;
+    const bool raster = frame->options->voxels == VCT_BY_RASTER;
+    const uint32_t dim = (uint32_t)frame->options->resolution;
     if (raster)
-        gpu_render_begin(cmd, &(struct gpu_render_desc){ .width = dim,
-                                                         .height = dim,
-                                                         .reads = view->scene->reads,
-                                                         .read_count = view->scene->read_count });
-    for (int i = 0; i < view->scene->draw_count; i++) {
-        const struct scene_draw *draw = &view->scene->draws[i];
-        if (draw->dynamic != moving || !may_touch(draw, &clip->grid)) continue;
-        const enum vct_draw_kind kind = kind_of(vct, view->scene, i);
-        const struct vct_voxelize_pipelines *pipelines = pipelines_of(vct, pass, kind);
-        scene_gpu_dispatch(view->scene, cmd,
+        gpu_render_begin(frame->cmd, &(struct gpu_render_desc){ .width = dim,
+                                                                .height = dim,
+                                                                .reads = scene->reads,
+                                                                .read_count = scene->read_count });
+    for (int i = 0; i < scene->draw_count; i++) {
+        const struct scene_draw *draw = &scene->draws[i];
+        if (draw->dynamic != to->moving || !may_touch(draw, grid)) continue;
+        const struct vct_voxelize_pipelines *pipelines =
+            pipelines_of(voxels, pass, kind_of(frame, i));
+        scene_gpu_dispatch(scene, frame->cmd,
                            &(struct scene_dispatch_call){ .pipeline = pipelines->small,
                                                           .rasterize = raster,
                                                           .draw = draw,
                                                           .bindings = bindings,
                                                           .binding_count = count,
                                                           .deferred = pipelines->large,
-                                                          .deferred_groups = vct->queue_state });
+                                                          .deferred_groups = voxels->queue_state });
     }
-    if (raster) gpu_render_end(cmd);
+    if (raster) gpu_render_end(frame->cmd);
 }
 
-static void mark(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
-                 const struct frame_view *view, const struct vct_voxel_set *set, bool moving)
+static void mark(const struct vct_voxels *voxels, const struct vct_frame *frame,
+                 const struct target *to)
 {
+    const struct vct_voxel_set *set = to->set;
+    const size_t mask_bytes = sizeof(uint32_t) * vct_mask_words(frame->options);
     const struct gpu_binding bindings[] = {
-        vct_grid_binding(vct, clip, cmd),
-        { .name = "vct_queue_state", .buffer = vct->queue_state },
-        { .name = "vct_queue", .buffer = vct->queue },
+        vct_grid_binding(frame, to->level),
+        { .name = "vct_queue_state", .buffer = voxels->queue_state },
+        { .name = "vct_queue", .buffer = voxels->queue },
         { .name = "vct_mask", .buffer = set->mask },
         { .name = "vct_accumulated", .buffer = set->accumulated }
     };
-    gpu_scope_begin(cmd, "mark");
-    gpu_fill_buffer(cmd, set->mask, 0, gpu_buffer_bytes(vct->gpu, set->mask), 0);
-    gpu_fill_buffer(cmd, set->accumulated, 0, gpu_buffer_bytes(vct->gpu, set->accumulated), 0);
-    traverse(vct, clip, cmd, view, moving, MARK, bindings, 5);
-    gpu_scope_end(cmd);
+    gpu_scope_begin(frame->cmd, "mark");
+    gpu_fill_buffer(frame->cmd, set->mask, 0, mask_bytes, 0);
+    gpu_fill_buffer(frame->cmd, set->accumulated, 0, mask_bytes, 0);
+    traverse(voxels, frame, to, MARK, bindings, 5);
+    gpu_scope_end(frame->cmd);
 }
 
-static void make_list(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
-                      const struct vct_voxel_set *set)
+static void make_list(const struct vct_voxels *voxels, const struct vct_frame *frame,
+                      const struct target *to)
 {
-    const uint32_t blocks = (uint32_t)(gpu_buffer_bytes(vct->gpu, set->blocks) / sizeof(uint32_t));
-    const struct gpu_binding grid = vct_grid_binding(vct, clip, cmd);
+    const struct vct_voxel_set *set = to->set;
+    struct gpu_cmd *cmd = frame->cmd;
+    const uint32_t blocks = (uint32_t)vct_block_count(frame->options);
+    const struct gpu_binding grid = vct_grid_binding(frame, to->level);
     gpu_scope_begin(cmd, "list");
-    gpu_dispatch(cmd, vct->count,
+    gpu_dispatch(cmd, voxels->count,
                  GPU_BIND({ .name = "vct_mask", .buffer = set->mask },
                           { .name = "vct_blocks", .buffer = set->blocks }),
                  NULL, 0, gpu_groups(blocks, VCT_LOCAL), 1, 1);
-    gpu_dispatch(cmd, vct->scan,
+    gpu_dispatch(cmd, voxels->scan,
                  GPU_BIND(grid, { .name = "vct_blocks", .buffer = set->blocks },
                           { .name = "vct_arguments", .buffer = set->arguments }),
                  NULL, 0, 1, 1, 1);
-    gpu_dispatch(cmd, vct->list,
+    gpu_dispatch(cmd, voxels->list,
                  GPU_BIND(grid, { .name = "vct_mask", .buffer = set->mask },
                           { .name = "vct_blocks", .buffer = set->blocks },
                           { .name = "vct_word_offsets", .buffer = set->word_offsets },
@@ -122,65 +136,79 @@ static void make_list(struct vct *vct, const struct vct_clip *clip, struct gpu_c
 }
 
 // A pass over the voxels whose triangles are summed up.
-static void each_accumulated(const struct vct *vct, struct gpu_cmd *cmd,
+static void each_accumulated(const struct vct_voxels *voxels, struct gpu_cmd *cmd,
                              const struct vct_voxel_set *set, gpu_pipeline pipeline)
 {
     gpu_dispatch_indirect(
         cmd, pipeline,
         GPU_BIND({ .name = "vct_arguments", .buffer = set->arguments },
                  { .name = "vct_accumulated_list", .buffer = set->accumulated_list },
-                 { .name = "vct_sum_words", .buffer = vct->sums },
+                 { .name = "vct_sum_words", .buffer = voxels->sums },
                  { .name = "vct_surfaces", .image = set->surfaces }),
         NULL, 0, set->arguments, offsetof(struct vct_voxel_counts, accumulated_groups));
 }
 
-static void accumulate(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
-                       const struct frame_view *view, const struct vct_voxel_set *set, bool moving)
+static void accumulate(const struct vct_voxels *voxels, const struct vct_frame *frame,
+                       const struct target *to)
 {
+    const struct vct_voxel_set *set = to->set;
     const struct gpu_binding bindings[] = {
-        vct_grid_binding(vct, clip, cmd),
-        { .name = "vct_queue_state", .buffer = vct->queue_state },
-        { .name = "vct_queue", .buffer = vct->queue },
+        vct_grid_binding(frame, to->level),
+        { .name = "vct_queue_state", .buffer = voxels->queue_state },
+        { .name = "vct_queue", .buffer = voxels->queue },
         { .name = "vct_mask", .buffer = set->mask },
         { .name = "vct_word_offsets", .buffer = set->word_offsets },
         { .name = "vct_accumulated", .buffer = set->accumulated },
-        { .name = "vct_sum_words", .buffer = vct->sums },
+        { .name = "vct_sum_words", .buffer = voxels->sums },
         { .name = "vct_surfaces", .image = set->surfaces }
     };
-    gpu_scope_begin(cmd, "outermost");
-    each_accumulated(vct, cmd, set, vct->zero);
-    traverse(vct, clip, cmd, view, moving, FIND_OUTERMOST, bindings, 7);
-    gpu_scope_end(cmd);
-    gpu_scope_begin(cmd, "add");
-    traverse(vct, clip, cmd, view, moving, ADD, bindings, 8);
-    each_accumulated(vct, cmd, set, vct->surfaces);
-    gpu_scope_end(cmd);
+    gpu_scope_begin(frame->cmd, "outermost");
+    each_accumulated(voxels, frame->cmd, set, voxels->zero);
+    traverse(voxels, frame, to, FIND_OUTERMOST, bindings, 7);
+    gpu_scope_end(frame->cmd);
+    gpu_scope_begin(frame->cmd, "add");
+    traverse(voxels, frame, to, ADD, bindings, 8);
+    each_accumulated(voxels, frame->cmd, set, voxels->surfaces);
+    gpu_scope_end(frame->cmd);
 }
 
-static void voxelize(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
-                     const struct frame_view *view, const struct vct_voxel_set *set, bool moving)
+static void voxelize(const struct vct_voxels *voxels, const struct vct_frame *frame, int level,
+                     bool moving)
 {
-    mark(vct, clip, cmd, view, set, moving);
-    make_list(vct, clip, cmd, set);
-    accumulate(vct, clip, cmd, view, set, moving);
+    const struct vct_level_voxels *of = &voxels->levels[level];
+    const struct target to = { moving ? &of->dynamic_set : &of->static_set, level, moving };
+    mark(voxels, frame, &to);
+    make_list(voxels, frame, &to);
+    accumulate(voxels, frame, &to);
 }
 
-static void voxelize_level(struct vct *vct, struct vct_clip *clip, struct gpu_cmd *cmd,
-                           const struct frame_view *view)
+static void voxelize_level(struct vct_voxels *voxels, const struct vct_frame *frame, int level,
+                           bool still)
 {
-    const int moving = view->scene->dynamic_count;
-    clip->new_statics = !clip->static_valid || view->scene->static_set != vct->static_set;
-    if (clip->new_statics) voxelize(vct, clip, cmd, view, &clip->static_set, false);
+    const struct scene_gpu *scene = frame->view->scene;
+    const int moving = scene->dynamic_count;
+    struct vct_level_voxels *of = &voxels->levels[level];
+    of->new_statics = !of->static_valid || frame->clipmap->levels[level].moved ||
+                      scene->static_set != voxels->static_set;
+    if (of->new_statics) voxelize(voxels, frame, level, false);
     // A set whose last draw is gone is emptied once.
-    clip->revoxelized =
-        clip->new_statics || (moving > 0 && !vct->kept.still) || moving != vct->moving_draws;
-    if (clip->revoxelized) voxelize(vct, clip, cmd, view, &clip->dynamic_set, true);
-    clip->static_valid = true;
+    of->revoxelized = of->new_statics || (moving > 0 && !still) || moving != voxels->moving_draws;
+    if (of->revoxelized) voxelize(voxels, frame, level, true);
+    of->static_valid = true;
 }
 
-void vct_voxelize(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+void vct_voxelize(struct vct_voxels *voxels, const struct vct_frame *frame, bool still)
 {
-    for (int i = 0; i < vct->clip_count; i++) voxelize_level(vct, &vct->clips[i], cmd, view);
-    vct->moving_draws = view->scene->dynamic_count;
-    vct->static_set = view->scene->static_set;
+    voxels->revoxelized = false;
+    for (int i = 0; i < frame->clipmap->count; i++) {
+        voxelize_level(voxels, frame, i, still);
+        voxels->revoxelized |= voxels->levels[i].revoxelized;
+    }
+    voxels->moving_draws = frame->view->scene->dynamic_count;
+    voxels->static_set = frame->view->scene->static_set;
+}
+
+void vct_voxels_invalidate(struct vct_voxels *voxels)
+{
+    for (int i = 0; i < VCT_MAX_CLIPS; i++) voxels->levels[i].static_valid = false;
 }

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "frame/frame.h"
+#include "techniques/vct/vct_shared.h"
 #include "techniques/vct/voxelize/voxelize_shared.h"
 
-// The occupied voxels of the static or of the moving draws in one level of the clip map.
+// The occupied voxels of the static or of the moving draws in one level of the clip map. Images
+// and buffers by face lie here, those of rays/ and lighting/ too.
 struct vct_voxel_set {
     gpu_buffer mask;                // a bit for each voxel
     gpu_buffer word_offsets;        // occupied voxels before each word of the mask
@@ -31,13 +33,35 @@ enum vct_draw_kind {
     VCT_DRAW_KINDS
 };
 
-enum vct_voxels { VCT_BY_COMPUTE, VCT_BY_RASTER }; // choices of the option
+enum vct_voxelize_by { VCT_BY_COMPUTE, VCT_BY_RASTER }; // choices of the option
 
 struct vct_voxelize_pipelines { // for small and large triangles; by raster `small` for all
     gpu_pipeline small, large;
 };
 
-struct vct;
+struct vct_level_voxels {                         // of a level of the clip map
+    struct vct_voxel_set static_set, dynamic_set; // of draws that have never moved; of the others
+    bool static_valid;                            // static_set is that of the scene
+    bool revoxelized;                             // in this frame
+    bool new_statics;                             // static_set is another one in this frame
+};
 
-// Voxelizes each level of the clip map whose voxels are not kept, and sets its `revoxelized`.
-void vct_voxelize(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+struct vct_voxels {
+    struct vct_voxelize_pipelines mark, outermost[2]; // opaque, masked
+    struct vct_voxelize_pipelines add[VCT_DRAW_KINDS];
+    gpu_pipeline count, scan, list, zero, surfaces;
+    gpu_buffer queue, queue_state; // tiles of large triangles
+    gpu_buffer sums;               // over the triangles of the faces of a set
+    struct vct_level_voxels levels[VCT_MAX_CLIPS];
+    bool revoxelized;    // some level is, in this frame
+    int moving_draws;    // of the voxels
+    uint64_t static_set; // of scene_gpu
+};
+
+struct vct_frame;
+
+// Voxelizes each level of the clip map whose voxels are not kept. still: no geometry has moved
+// since the previous frame.
+void vct_voxelize(struct vct_voxels *voxels, const struct vct_frame *frame, bool still);
+// All voxels are to be made again.
+void vct_voxels_invalidate(struct vct_voxels *voxels);
