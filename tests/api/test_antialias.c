@@ -135,8 +135,8 @@ static void check_flip(const char *scene)
     for (int i = 1; i < SAMPLES; i++) render(&s, temporal, &s.frame);
     image = read(&s, temporal);
     const double last = flip_of(&s, image, reference);
-    print_message("%s: FLIP %.4f, after %d frames %.4f, of their mean %.4f\n", scene, first, SAMPLES,
-                  last, least);
+    print_message("%s: FLIP %.4f, after %d frames %.4f, of their mean %.4f\n", scene, first,
+                  SAMPLES, last, least);
     if (!(last < least + 0.001 && last < 0.7 * first))
         fail_msg("%s: FLIP %.4f, of the mean %.4f, at first %.4f", scene, last, least, first);
     ag_image_destroy(s.context, image);
