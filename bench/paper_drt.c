@@ -19,7 +19,7 @@ enum { VARIANTS = 5, STAGES = 9, GI_SIZE = 1024 };
 static const struct {
     const char *name, *technique, *options;
 } VARIANT[VARIANTS] = {
-    { "mrt", "mrt", "" },
+    { "mrt", "mrt", ",remainder=false" },
     { "walls", "drt", ",occlusion=false,reflection=false" },
     { "dUb", "drt", ",reflection=false" },
     { "dUc", "drt", ",gather=false" },

@@ -21,7 +21,7 @@ sed 's/"[^"]*",//g' "$folder/drt.csv" | awk -F, '
     END {
         if (clutter[1] + clutter[2] + clutter[3] > 0 || clutter[4] + clutter[5] != 2) exit 2
         if (map[1] + map[2] + map[3] + map[4] > 0 || !map[5]) exit 3
-        if (!(bytes[5] > bytes[4] && bytes[4] > bytes[3] && bytes[3] > bytes[1])) exit 4
+        if (!(bytes[5] > bytes[4] && bytes[4] > bytes[3] && bytes[3] > bytes[2])) exit 4
         if (!(energy[3] < energy[2] && energy[4] > energy[3])) exit 5
     }' || fail "the table is wrong: $(cat "$folder/drt.csv")"
 
