@@ -4,7 +4,7 @@
 #include "core/vec.h"
 
 struct vct_light {
-    vec3s position;
+    vec3s position, normal;
     vec3s key;   // lights of one key stay together
     double flux; // > 0, up to a factor
     int index;   // of the caller
@@ -15,7 +15,7 @@ struct vct_emitter_group {
 };
 
 // Divides the lights into at most `most` groups, as near to each other as possible, and sorts them:
-// the lights of a group are consecutive, near ones next to each other. Returns the number of
-// groups.
+// the lights of a group are consecutive, those that face one way next to each other, and of these
+// near ones. Returns the number of groups.
 int vct_group_lights(struct vct_light *lights, int count, int most,
                      struct vct_emitter_group *groups);

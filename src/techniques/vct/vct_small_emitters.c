@@ -65,7 +65,8 @@ static void add_lights(struct vct_small_emitters *s, const struct frame_view *vi
             !(flux > 0.0))
             continue;
         const vec3s at = view->emitters[i].position;
-        s->lights[s->light_count++] = (struct vct_light){ at, at, flux, i };
+        s->lights[s->light_count++] =
+            (struct vct_light){ at, view->emitters[i].normal, at, flux, i };
         sum = glms_vec3_add(sum, at);
     }
     if (!fits(view, draw)) return;
