@@ -16,12 +16,18 @@ static vec3s reflected(const struct surface *s, const struct bsdf *b,
     return glms_vec3_scale(glms_vec3_mul(f, p->illuminance), cosine);
 }
 
+static bool is_occluded(const struct trace_scene *scene, const struct ray *ray, uint64_t *rays)
+{
+    ++*rays;
+    trace_watch(scene, ray, ray->far);
+    return embree_occluded(scene->embree, ray);
+}
+
 static bool is_visible(const struct trace_scene *scene, const struct surface *s,
                        const struct punctual_light *p, uint64_t *rays)
 {
     struct ray ray = { surface_leave(s, p->to_light), p->to_light, 0.0f, p->distance_m };
-    ++*rays;
-    return !embree_occluded(scene->embree, &ray);
+    return !is_occluded(scene, &ray, rays);
 }
 
 vec3s next_event_all_punctual(const struct trace_scene *scene, const struct surface *s,
@@ -77,8 +83,7 @@ struct arriving_light next_event_one_emitter(const struct trace_scene *scene,
         return none;
     vec3s from = surface_leave(s, e.to_light);
     struct ray ray = { from, glms_vec3_sub(e.position, from), 0.0f, 1.0f };
-    ++*rays;
-    if (embree_occluded(scene->embree, &ray)) return none;
+    if (is_occluded(scene, &ray, rays)) return none;
     struct reflection r = bsdf_reflect(&b->bsdf, e.to_light);
     float other = guided_pdf(b, e.to_light, r.pdf);
     return light_arriving(r.f, e.radiance, cosine / e.pdf * power_heuristic(e.pdf, other));
@@ -97,8 +102,7 @@ struct arriving_light next_event_environment(const struct trace_scene *scene,
     if (!(pdf > 0.0f) || !(cosine > 0.0f) || !(glms_vec3_dot(s->geometric, to_light) > 0.0f))
         return none;
     struct ray ray = { surface_leave(s, to_light), to_light, 0.0f, INFINITY };
-    ++*rays;
-    if (embree_occluded(scene->embree, &ray)) return none;
+    if (is_occluded(scene, &ray, rays)) return none;
     struct reflection r = bsdf_reflect(&b->bsdf, to_light);
     const float other = guided_pdf(b, to_light, r.pdf);
     return light_arriving(r.f, environment_map_light(&lights->environment, to_light),

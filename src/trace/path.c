@@ -288,6 +288,7 @@ static void trace_step(struct path *p)
 {
     ++*p->rays;
     p->has_hit = embree_closest(p->settings->scene->embree, &p->step.ray, NULL, false, &p->hit);
+    trace_watch(p->settings->scene, &p->step.ray, p->has_hit ? p->hit.distance : INFINITY);
     if (p->has_hit) surface_prefetch(p->settings->scene, &p->hit);
 }
 

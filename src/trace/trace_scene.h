@@ -3,6 +3,7 @@
 
 #include "trace/embree.h"
 #include "trace/light_sample.h"
+#include "trace/ray_watch.h"
 #include "trace/texture.h"
 #include "trace/trace.h"
 
@@ -52,12 +53,19 @@ struct trace_scene {
     struct trace_material *materials;               // [scene->material_count]
     struct texture *color_textures, *data_textures; // [scene->image_count], created on use
     struct light_table lights;
-    uint64_t key; // hash of everything that affects the light
+    uint64_t key;            // hash of everything that affects the light
+    struct ray_watch *watch; // of paths in a view for one thread; NULL: none
 };
 
 static inline const struct trace_mesh *trace_mesh_of(const struct trace_scene *scene, int instance)
 {
     return &scene->meshes[scene->mesh_of[instance]];
+}
+
+// A ray of a path that ends at `far`, in lengths of its direction.
+static inline void trace_watch(const struct trace_scene *scene, const struct ray *ray, float far)
+{
+    if (scene->watch) ray_watch_segment(scene->watch, ray->origin, ray->direction, far);
 }
 
 // The vertex indices of a triangle, counter-clockwise from the front.

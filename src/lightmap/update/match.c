@@ -209,18 +209,19 @@ static void add_box(struct update_match *m, struct box3 box)
 {
     const float size = glms_vec3_max(box3_size(box));
     const vec3s edge = vec3_of(size, size, size);
-    box = (struct box3){ glms_vec3_sub(box.min, edge), glms_vec3_add(box.max, edge) };
-    if (m->near_count < MOST_BOXES)
-        m->near[m->near_count++] = box;
-    else
-        m->near[MOST_BOXES - 1] = box3_union(m->near[MOST_BOXES - 1], box);
+    const struct box3 near = { glms_vec3_sub(box.min, edge), glms_vec3_add(box.max, edge) };
+    const bool full = m->near_count == MOST_BOXES;
+    const uint32_t i = full ? MOST_BOXES - 1 : m->near_count++;
+    m->near[i] = full ? box3_union(m->near[i], near) : near;
+    m->boxes[i] = full ? box3_union(m->boxes[i], box) : box;
 }
 
 static bool find_boxes(struct update_match *m, const struct lightmap_record *was,
                        const struct lightmap_record *now)
 {
     m->near = host_alloc(m->host, MOST_BOXES, sizeof *m->near);
-    if (!m->near) return false;
+    m->boxes = host_alloc(m->host, MOST_BOXES, sizeof *m->boxes);
+    if (!m->near || !m->boxes) return false;
     for (uint32_t i = 0; i < now->instance_count; i++)
         if (now->instances[i].triangles > 0 && !m->same[i]) add_box(m, now->instances[i].bounds);
     for (uint32_t i = 0; i < was->instance_count; i++)
@@ -286,6 +287,7 @@ void update_match_finish(struct update_match *m)
     host_free(m->host, m->gone);
     host_free(m->host, m->row_was);
     host_free(m->host, m->near);
+    host_free(m->host, m->boxes);
     host_free(m->host, m->near_is_small);
     *m = (struct update_match){ 0 };
 }

@@ -24,6 +24,7 @@ struct job {
     struct gather_scene scene, scene_before;
     struct update_coupled coupled;
     struct gather_scene probe_now, probe_before; // views with coupled lights
+    bool is_in_boxes; // scenes differ in the boxes of match alone: both have the same lights
 };
 
 // ---- while tasks run
@@ -37,6 +38,7 @@ static bool prepare_before(struct job *job, struct host *host)
     job->probe_now.trace = &job->coupled.now;
     job->probe_before = job->scene_before;
     job->probe_before.trace = &job->coupled.before;
+    job->is_in_boxes = job->match.same_lights && !job->coupled.own_tables;
     return ok;
 }
 
@@ -80,7 +82,8 @@ static bool is_touched(const struct job *job, uint32_t texel, const struct gathe
            memcmp(now->at, was.at, (size_t)now->count * sizeof now->at[0]) != 0;
 }
 
-// Means of some paths of each scene, with the same random numbers.
+// Means of some paths of each scene, with the same random numbers. Those of now that do not meet
+// the change have their equals before.
 struct pair {
     vec3s before, now;
 };
@@ -90,8 +93,15 @@ static struct pair trace_pair(const struct job *job, const struct gather_points 
     struct gather_points few = { .pixel = points->pixel, .back = points->back };
     for (; few.count < UPDATE_HALF_PATHS; few.count++)
         few.at[few.count] = points->at[(first + few.count) % points->count];
+    struct ray_watch watch = { .boxes = job->match.boxes, .count = job->match.near_count };
+    struct trace_scene trace = job->coupled.now;
+    struct gather_scene scene = job->probe_now;
+    scene.trace = &trace;
+    trace.watch = job->is_in_boxes ? &watch : NULL;
+    const vec3s now = gather_paths(&scene, &few, UPDATE_HALF_PATHS, seed, NULL);
+    if (job->is_in_boxes && !watch.met) return (struct pair){ now, now };
     return (struct pair){ gather_paths(&job->probe_before, &few, UPDATE_HALF_PATHS, seed, NULL),
-                          gather_paths(&job->probe_now, &few, UPDATE_HALF_PATHS, seed, NULL) };
+                          now };
 }
 
 // Adds the `index`-th pair of halves, whose random numbers differ: their difference is the noise.

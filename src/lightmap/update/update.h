@@ -25,6 +25,7 @@ struct update_match {
     // Boxes around instances that have changed, as they were and as they are, each wider by its own
     // size: a point elsewhere is inside geometry if it was.
     struct box3 *near;
+    struct box3 *boxes;  // themselves: boxes of the instances
     bool *near_is_small; // has few texels, which are baked again
     uint32_t near_count;
     uint32_t changed; // instances that were moved, added, removed or have another material
