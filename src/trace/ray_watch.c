@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-// Of the size of a box and its distance from the origin: errors of hits are a hundredth of it.
+// A share of the size of a box and of its distance from the origin. Errors of hits are far below.
 static const float MARGIN = 1e-4f;
 // Components of a direction below it are 0: their inverse is no number.
 static const float LEAST_COMPONENT = 1e-20f;

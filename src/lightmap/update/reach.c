@@ -177,6 +177,12 @@ static int compare_cells(const void *key, const void *member)
     return a < b ? -1 : a > b;
 }
 
+static bool has_changed(const struct update_probe *p)
+{
+    return p->change[0] != 0.0f || p->change[1] != 0.0f || p->change[2] != 0.0f;
+}
+
+// Marks texels of the cell of which a path has met the change.
 static void mark_cell(struct reach *r, uint64_t cell)
 {
     const uint32_t rows = r->charts->side_texel_count;
@@ -185,7 +191,8 @@ static void mark_cell(struct reach *r, uint64_t cell)
     if (!found) return;
     uint32_t i = (uint32_t)(found - r->members);
     while (i > 0 && r->members[i - 1].cell == cell) i--;
-    mark(r, i, end_of_cell(r, i), BESIDE);
+    for (const uint32_t end = end_of_cell(r, i); i < end; i++)
+        if (has_changed(&r->probes[r->members[i].row])) mark(r, i, i + 1, BESIDE);
 }
 
 static void mark_neighbours(struct reach *r, const int at[3], unsigned kind)
@@ -196,7 +203,8 @@ static void mark_neighbours(struct reach *r, const int at[3], unsigned kind)
     }
 }
 
-// Cells beside those that are baked again, so that no border lies where light changes most.
+// Cells beside those that are baked again, so that no border lies where light changes most. Paths
+// of most neighbours do not meet the change: these keep their light.
 static void dilate(struct reach *r)
 {
     const float edge_m = r->edge_m / EDGE;
