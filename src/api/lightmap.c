@@ -44,9 +44,9 @@ static bool make_map(struct ag_lightmap *l, const struct gi_spec *spec, int term
     struct scene_statics statics;
     struct charts charts = { 0 };
     if (!scene_statics_init(&statics, host, pose)) return false;
-    bool ok =
-        known ? charts_copy(&charts, known, pose->scene->instance_count)
-              : spec->technique[term]->charts(&statics.pose, spec->options[term], host, &charts);
+    bool ok = known ? charts_copy(&charts, known, pose->scene->instance_count)
+                    : spec->technique[term]->charts(&statics.pose, spec->options[term], host, NULL,
+                                                    &charts);
     ok = ok && lightmap_init(&l->map, &charts, pose->scene);
     scene_statics_finish(&statics);
     l->gi = ok ? gi_spec_print(spec) : NULL;

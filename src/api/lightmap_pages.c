@@ -29,7 +29,7 @@ static bool count_pages(struct host *host, const struct scene_pose *pose,
         !scene_statics_init(&statics, host, pose))
         return false;
     const bool ok =
-        spec->technique[term]->charts(&statics.pose, spec->options[term], host, &charts) &&
+        spec->technique[term]->charts(&statics.pose, spec->options[term], host, NULL, &charts) &&
         charts_set_pages(&charts, pose->scene, (uint32_t)page);
     *count = ok ? (int)charts_page_count(&charts) : 0;
     charts_finish(&charts);

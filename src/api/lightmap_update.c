@@ -40,10 +40,10 @@ static bool check_record(const struct ag_bake *b, const struct lightmap_record *
 // ---- the charts
 
 static bool make_charts(const struct ag_bake *b, const struct scene_pose *statics,
-                        struct charts *out)
+                        const struct charts_search *begin, struct charts *out)
 {
     return b->spec.technique[b->term]->charts(statics, b->spec.options[b->term], &b->context->host,
-                                              out);
+                                              begin, out);
 }
 
 static bool is_density(float a, float b)
@@ -52,8 +52,9 @@ static bool is_density(float a, float b)
     return fabsf(a - b) <= ROUNDING * b;
 }
 
-// The option `texels` leads to another density where the area has changed: the option `density`
-// keeps it.
+// The search for charts begins where that of the record has ended: the same charts, at a third of
+// the time. The option `texels` leads to another density where the area has changed: the option
+// `density` keeps it.
 static bool keep_density(struct ag_bake *b, const char *folder, float texels_per_m)
 {
     const struct technique *technique = b->spec.technique[b->term];
@@ -67,12 +68,13 @@ static bool keep_density(struct ag_bake *b, const char *folder, float texels_per
 }
 
 static bool make_equal_charts(struct ag_bake *b, const struct scene_pose *statics,
-                              const char *folder, float texels_per_m, struct charts *out)
+                              const char *folder, const struct lightmap_record *record,
+                              struct charts *out)
 {
-    if (!make_charts(b, statics, out)) return false;
-    if (is_density(out->texels_per_m, texels_per_m)) return true;
+    if (!make_charts(b, statics, &record->search, out)) return false;
+    if (is_density(out->texels_per_m, record->texels_per_m)) return true;
     charts_finish(out);
-    return keep_density(b, folder, texels_per_m) && make_charts(b, statics, out);
+    return keep_density(b, folder, record->texels_per_m) && make_charts(b, statics, NULL, out);
 }
 
 // ---- the bake
@@ -84,7 +86,7 @@ static bool add_stages(struct ag_bake *b, struct bake_plan *plan, const char *fo
     struct scene_statics statics;
     struct charts charts = { 0 };
     if (!scene_statics_init(&statics, host, &b->pose)) return false;
-    const bool made = make_equal_charts(b, &statics.pose, folder, record->texels_per_m, &charts);
+    const bool made = make_equal_charts(b, &statics.pose, folder, record, &charts);
     scene_statics_finish(&statics);
     if (!made) return false;
     const struct lightmap_bake how = { .pose = &b->pose, .samples = b->lightmap_samples };

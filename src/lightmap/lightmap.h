@@ -25,7 +25,7 @@ struct lightmap_bake {
     float noise; // bound of each chart's noise, 0…1; 0: none
     // The charts of static surfaces: the same for each call.
     bool (*charts)(const struct scene_pose *statics, const void *options, struct host *host,
-                   struct charts *out);
+                   const struct charts_search *begin, struct charts *out);
     const void *options;
 };
 // In the identity of the bake.

@@ -79,7 +79,7 @@ static bool plan_job(struct lightmap_job *job, struct host *host, const struct l
     *job = (struct lightmap_job){ .host = host, .how = *how };
     if (!scene_statics_init(&statics, host, how->pose)) return false;
     bake_plan_depends(plan, scene_key_lit(&statics.pose));
-    const bool ok = how->charts(&statics.pose, how->options, host, &job->charts);
+    const bool ok = how->charts(&statics.pose, how->options, host, NULL, &job->charts);
     scene_statics_finish(&statics);
     return ok && (!(how->noise > 0.0f) || noise_units_init(&job->units, &job->charts));
 }

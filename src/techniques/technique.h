@@ -57,6 +57,7 @@ struct technique_preset {
 #define PROBES_VIEW_HELP "white spheres at the probes and surfaces lit by them; needs probes=true"
 
 struct charts; // scene/charts/charts.h
+struct charts_search;
 
 struct technique_create {
     struct host *host;
@@ -158,8 +159,9 @@ struct technique {
     // RGBA16F, that the newest update filled.
     // Options of `has_light_map` may be without; NULL: none are.
     bool (*has_light_map)(const void *options);
+    // begin: as of charts_wish.
     bool (*charts)(const struct scene_pose *statics, const void *options, struct host *host,
-                   struct charts *out);
+                   const struct charts_search *begin, struct charts *out);
     gpu_image (*light_map)(void *state);
     // Painted first-order light of the light map's texels, which `update` records.
     struct light_map_paint *(*paint)(void *state);

@@ -3,7 +3,7 @@
 #include <math.h>
 
 bool fixture_charts(const struct scene_pose *statics, const void *options, struct host *host,
-                    struct charts *out)
+                    const struct charts_search *begin, struct charts *out)
 {
     const int *texels = options;
     const struct charts_options how = { .texels_per_m = 1e3f,

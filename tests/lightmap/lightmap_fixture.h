@@ -7,7 +7,7 @@
 
 // lightmap_bake.charts; options: const int *, texels of surfaces.
 bool fixture_charts(const struct scene_pose *statics, const void *options, struct host *host,
-                    struct charts *out);
+                    const struct charts_search *begin, struct charts *out);
 
 // Corners of a box around the origin, four to a side; sides face out, `inside`: in.
 struct fixture_box {

@@ -25,7 +25,7 @@ static void open_map(struct closed *c, const char *name, int samples)
     CHECK(pose_init(&c->pose, c->scene, -1, 0));
     c->bake = fixture_bake(
         &(struct fixture_bake){ .pose = &c->pose, .texels = TEXELS, .samples = samples });
-    CHECK(fixture_charts(&c->pose, &TEXELS, test_host(), &charts));
+    CHECK(fixture_charts(&c->pose, &TEXELS, test_host(), NULL, &charts));
     CHECK(lightmap_init(&c->map, &charts, c->scene));
     CHECK(lightmap_set_paths(&c->map, bake_tensors(c->bake), true, false));
     CHECK(lightmap_tracing_init(&c->tracing, &c->pose, &c->map.charts));

@@ -20,7 +20,7 @@ static void open_scene(struct maps *m, const char *name)
     *m = (struct maps){ .scene = scene_load(test_host(), name) };
     assert_non_null(m->scene);
     CHECK(pose_init(&m->pose, m->scene, -1, 0));
-    CHECK(fixture_charts(&m->pose, &TEXELS, test_host(), &m->charts));
+    CHECK(fixture_charts(&m->pose, &TEXELS, test_host(), NULL, &m->charts));
     m->count = (size_t)m->charts.side_texel_count * LIGHTMAP_COLUMNS;
 }
 

@@ -42,7 +42,7 @@ static void make_map(struct baked *b, bool punctual)
 {
     struct charts charts;
     lightmap_finish(&b->map);
-    CHECK(fixture_charts(&b->pose, &TEXELS, test_host(), &charts));
+    CHECK(fixture_charts(&b->pose, &TEXELS, test_host(), NULL, &charts));
     CHECK(lightmap_init(&b->map, &charts, b->scene));
     CHECK(lightmap_set_paths(&b->map, bake_tensors(b->bake), punctual, false));
 }
@@ -228,7 +228,7 @@ TEST(scene_without_static_triangles_is_refused_in_one_sentence)
     struct baked b = { .scene = scene_create(test_host(), "empty") };
     struct charts charts;
     CHECK(pose_init(&b.pose, b.scene, -1, 0));
-    CHECK(fixture_charts(&b.pose, &TEXELS, test_host(), &charts));
+    CHECK(fixture_charts(&b.pose, &TEXELS, test_host(), NULL, &charts));
     CHECK(!lightmap_init(&b.map, &charts, b.scene));
     CHECK_STRING(test_last_message(), "light map of empty: the scene has no static triangles");
     close_scene(&b);

@@ -92,7 +92,7 @@ static void open_scene(struct baked *b, const char *name, float noise, int sampl
     assert_non_null(b->scene);
     CHECK(pose_init(&b->pose, b->scene, -1, 0));
     for (int i = 0; i < 2; i++) b->bake[i] = bake_of(&b->pose, noise, samples, (uint64_t)i + 1, 0);
-    CHECK(fixture_charts(&b->pose, &TEXELS, test_host(), &b->charts));
+    CHECK(fixture_charts(&b->pose, &TEXELS, test_host(), NULL, &b->charts));
     CHECK(noise_units_init(&b->units, &b->charts));
 }
 
@@ -190,7 +190,7 @@ TEST(paths_of_a_texel_end_at_the_most)
     for (uint32_t u = 0; u < b.units.count; u++) CHECK(rows[3 * u + 1] <= 50.0f);
     const int units = (int)b.units.count;
     struct charts charts;
-    CHECK(fixture_charts(&b.pose, &TEXELS, test_host(), &charts));
+    CHECK(fixture_charts(&b.pose, &TEXELS, test_host(), NULL, &charts));
     CHECK(lightmap_init(&map, &charts, b.scene));
     CHECK(lightmap_noise_read(&map, bake_tensors(b.bake[0]), 50, 0.001f, &noise));
     CHECK(noise.above > units / 2 && noise.above <= units);

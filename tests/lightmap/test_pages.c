@@ -194,7 +194,7 @@ static void check_pages(const char *name, int side, uint32_t least)
     CHECK(scene && pose_init(&pose, scene, -1, 0));
     struct bake *bake =
         fixture_bake(&(struct fixture_bake){ .pose = &pose, .texels = TEXELS, .samples = SAMPLES });
-    CHECK(fixture_charts(&pose, &TEXELS, test_host(), &charts));
+    CHECK(fixture_charts(&pose, &TEXELS, test_host(), NULL, &charts));
     CHECK(lightmap_init(&map, &charts, scene));
     CHECK(lightmap_set_paths(&map, bake_tensors(bake), true, false));
     struct files one = write_files(&map, scene, name + 1);

@@ -71,9 +71,10 @@ struct measured {
 };
 
 static bool make_charts(const struct scene_pose *statics, const void *options, struct host *host,
-                        struct charts *out)
+                        const struct charts_search *begin, struct charts *out)
 {
     (void)options;
+    (void)begin;
     return charts_init(
         out, host, statics,
         &(struct charts_options){ .texels_per_m = TEXELS_PER_M, .max_texels = 1 << 20 });
@@ -93,7 +94,7 @@ static void begin(struct measured *m, struct scene *scene)
     struct charts charts;
     CHECK(lightmap_add_stages(bake_plan_of(m->bake), &how));
     CHECK(bake_run(m->bake, &(struct bake_run_options){ 0 }));
-    CHECK(make_charts(&m->pose, NULL, test_host(), &charts));
+    CHECK(make_charts(&m->pose, NULL, test_host(), NULL, &charts));
     CHECK(lightmap_init(&m->map, &charts, scene));
     CHECK(lightmap_set_paths(&m->map, bake_tensors(m->bake), true, false));
     CHECK(lightmap_tracing_init(&m->tracing, &m->pose, &m->map.charts));

@@ -14,9 +14,10 @@
 enum { SAMPLES = 256 };
 
 static bool make_charts(const struct scene_pose *statics, const void *options, struct host *host,
-                        struct charts *out)
+                        const struct charts_search *begin, struct charts *out)
 {
     (void)options;
+    (void)begin;
     return charts_init(out, host, statics,
                        &(struct charts_options){ .texels_per_m = 4.0f, .max_texels = 1 << 20 });
 }
@@ -115,7 +116,7 @@ static void end(struct baked *b, int threads)
 {
     struct charts charts;
     CHECK(bake_run(b->bake, &(struct bake_run_options){ .threads = threads }));
-    CHECK(make_charts(&b->pose, NULL, test_host(), &charts));
+    CHECK(make_charts(&b->pose, NULL, test_host(), NULL, &charts));
     CHECK(lightmap_init(&b->map, &charts, b->scene));
     CHECK(lightmap_set_paths(&b->map, bake_tensors(b->bake), true, false));
 }
@@ -171,7 +172,7 @@ static bool plan_update(struct baked *b, const struct hall *hall, const char *fo
     char path[600];
     begin(b, hall);
     snprintf(path, sizeof path, "%s/" LIGHTMAP_RECORD_FILE, folder);
-    CHECK(make_charts(&b->pose, NULL, test_host(), &charts));
+    CHECK(make_charts(&b->pose, NULL, test_host(), NULL, &charts));
     CHECK(lightmap_record_read(&record, test_host(), path));
     const struct lightmap_bake how = { .pose = &b->pose, .samples = SAMPLES };
     const struct lightmap_update update = {
@@ -415,6 +416,41 @@ TEST(interrupted_update_continues_to_the_same_bytes)
     finish(&first);
     finish(&second);
     finish(&whole);
+}
+
+// ---- the search for charts
+
+TEST(search_for_charts_begins_where_that_of_the_record_ended)
+{
+    const struct charts_wish wish = { .technique = "test", .texels = 4096 };
+    struct scene *scene = scene_load(test_host(), "@atrium");
+    struct scene_pose pose;
+    struct charts all, again;
+    struct lightmap_record written, record;
+    char path[512];
+    snprintf(path, sizeof path, "%s", test_path("search.safetensors"));
+    CHECK(pose_init(&pose, scene, -1, 0));
+    CHECK(charts_init_wanted(&all, test_host(), &pose, &wish));
+    CHECK(all.search.surface_texels > 0 && all.search.surface_texels < wish.texels);
+    CHECK(lightmap_record_init(&written, test_host(), &pose, &all, NULL));
+    written.options = host_strdup(test_host(), "");
+    written.rest = host_alloc(test_host(), written.row_count, LIGHTMAP_COLUMNS * sizeof(float));
+    CHECK(lightmap_record_write(&written, path) &&
+          lightmap_record_read(&record, test_host(), path));
+    struct charts_wish next = wish;
+    next.begin = &record.search;
+    CHECK(charts_init_wanted(&again, test_host(), &pose, &next));
+    CHECK(again.search.surface_texels == all.search.surface_texels &&
+          again.search.across == all.search.across);
+    assert_int_equal(again.texel_count, all.texel_count);
+    for (uint32_t i = 0; i < all.texel_count; i++)
+        CHECK(memcmp(&again.texels[i].position, &all.texels[i].position, sizeof(vec3s)) == 0);
+    lightmap_record_finish(&written);
+    lightmap_record_finish(&record);
+    charts_finish(&again);
+    charts_finish(&all);
+    pose_finish(&pose);
+    scene_destroy(scene);
 }
 
 // ---- folders that cannot be updated

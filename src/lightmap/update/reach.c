@@ -14,7 +14,7 @@ enum { EDGE = 2, BLOCK = 16 }; // EDGE: of tiny cells, texels
 // The noise of a full bake is larger in cells of fewer texels than a block.
 static const double LEVEL_THRESHOLD[LEVELS] = { 2.0, 1.5, 1.0, 1.0 };
 static const double PART_THRESHOLD = 0.5; // of a middle cell in a large one that has changed
-static const double SUSPECT_THRESHOLD = 0.5;
+static const double SUSPECT_THRESHOLD = 0.25;
 static const double LEAST_CHANGE = 0.01, SIGNIFICANT = 2.0;
 
 // ---- cells

@@ -94,6 +94,7 @@ bool lightmap_record_add_charts(struct lightmap_record *r, const struct charts *
     r->places = host_alloc(r->host, charts->texel_count, sizeof *r->places);
     if (!r->charts || !r->places) return false;
     r->texels_per_m = charts->texels_per_m;
+    r->search = charts->search;
     r->chart_count = charts->count;
     r->texel_count = charts->texel_count;
     r->row_count = charts->side_texel_count;

@@ -28,7 +28,8 @@ struct lightmap_record {
     int version;   // likewise
     uint64_t seed;
     float texels_per_m;
-    uint64_t environment; // environment_key
+    struct charts_search search; // of the charts
+    uint64_t environment;        // environment_key
     struct record_instance *instances;
     uint32_t instance_count;
     struct world_light *lights; // those that are on

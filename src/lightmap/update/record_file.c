@@ -14,7 +14,8 @@
 static const char KIND[] = "afterglow.kind", IS_RECORD[] = "lightmap",
                   OPTIONS[] = "afterglow.options", VERSION[] = "afterglow.bake_version",
                   SEED[] = "afterglow.seed", DENSITY[] = "afterglow.texels_per_m",
-                  ENVIRONMENT[] = "afterglow.environment";
+                  ENVIRONMENT[] = "afterglow.environment", SEARCH[] = "afterglow.surface_texels",
+                  ACROSS[] = "afterglow.charts_across";
 
 enum { INSTANCE_WORDS = 9, BOX_FLOATS = 6, LIGHT_FLOATS = 13, CHART_WORDS = 9, TENSORS = 6 };
 
@@ -147,14 +148,17 @@ bool lightmap_record_write(const struct lightmap_record *r, const char *path)
     struct packed packed;
     struct tensor tensors[TENSORS];
     char version[16], seed[24], density[32], environment[24], content[HASH128_TEXT];
+    char search[16];
     struct tensor_metadata metadata[] = {
         { KIND, IS_RECORD },          { OPTIONS, r->options },
         { VERSION, version },         { SEED, seed },
         { DENSITY, density },         { ENVIRONMENT, environment },
+        { SEARCH, search },           { ACROSS, r->search.across ? "1" : "0" },
         { TENSORS_CONTENT, content },
     };
     struct tensors set = { tensors, TENSORS, metadata, sizeof metadata / sizeof *metadata };
     snprintf(version, sizeof version, "%d", r->version);
+    snprintf(search, sizeof search, "%" PRIu32, r->search.surface_texels);
     snprintf(seed, sizeof seed, "%" PRIu64, r->seed);
     snprintf(environment, sizeof environment, "%016" PRIx64, r->environment);
     c_locale_print(density, sizeof density, "%.9g", (double)r->texels_per_m);
@@ -182,6 +186,15 @@ static bool read_number(const struct tensors *set, const char *key, int base, ui
     return text && text[0] && *end == 0 && errno == 0;
 }
 
+// A file may be without: a search from the start leads to the same charts.
+static void read_search(struct lightmap_record *r, const struct tensors *set)
+{
+    uint64_t texels = 0, across = 0;
+    if (read_number(set, SEARCH, 10, &texels) && read_number(set, ACROSS, 10, &across) &&
+        texels <= INT32_MAX)
+        r->search = (struct charts_search){ (uint32_t)texels, across == 1 };
+}
+
 static bool read_metadata(struct lightmap_record *r, const char *path, const struct tensors *set)
 {
     const char *kind = tensors_metadata(set, KIND), *options = tensors_metadata(set, OPTIONS);
@@ -193,6 +206,7 @@ static bool read_metadata(struct lightmap_record *r, const char *path, const str
         !read_number(set, ENVIRONMENT, 16, &r->environment))
         return fail(r->host, path, "it is not of a light map by paths");
     r->version = (int)version;
+    read_search(r, set);
     r->texels_per_m = (float)c_locale_parse(density, NULL);
     r->options = host_strdup(r->host, options);
     if (!(r->texels_per_m >= 0.0f && isfinite(r->texels_per_m)))

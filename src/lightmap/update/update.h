@@ -81,7 +81,7 @@ void update_coupled_finish(struct update_coupled *coupled);
 
 // Estimates of a texel: paths in both scenes with the same random numbers. All texels have one pair
 // of halves, those whose surroundings seem to have changed have more.
-enum { UPDATE_HALF_PATHS = 2, UPDATE_PAIRS = 4, UPDATE_PROBE_FLOATS = 8 };
+enum { UPDATE_HALF_PATHS = 1, UPDATE_PAIRS = 8, UPDATE_PROBE_FLOATS = 8 };
 struct update_probe {
     float change[3]; // now − before, lux
     float value[3];  // now, lux

@@ -97,9 +97,16 @@ struct chart_page {
     uint32_t x, y, width, height;
 };
 
+// The end of a search for charts of a number of texels. surface_texels 0: there was none.
+struct charts_search {
+    uint32_t surface_texels;
+    bool across; // CHARTS_JOINED_ACROSS
+};
+
 struct charts {
     struct host *host;
-    float texels_per_m; // reached
+    struct charts_search search; // of charts_init_wanted
+    float texels_per_m;          // reached
     uint32_t width, height;
     struct chart *charts;
     uint32_t count;
@@ -153,6 +160,9 @@ struct charts_wish {
     float most_density;    // texels/m, even if there are fewer than `texels`; 0: any
     uint32_t most_charts;
     enum charts_coordinates coordinates;
+    // The end of an earlier search with these options, for a surface of the same area: this one
+    // begins there. NULL: at the start.
+    const struct charts_search *begin;
 };
 bool charts_init_wanted(struct charts *out, struct host *host, const struct scene_pose *pose,
                         const struct charts_wish *wish);

@@ -56,8 +56,14 @@ bool charts_init_wanted(struct charts *out, struct host *host, const struct scen
         .most_charts = wish->most_charts
     };
     if (wish->density > 0.0f) return init_at_density(out, host, pose, wish);
+    if (wish->begin && wish->begin->surface_texels > 0 && wish->begin->surface_texels <= texels) {
+        how.surface_texels = wish->begin->surface_texels;
+        if (wish->begin->across) how.join = CHARTS_JOINED_ACROSS;
+    }
     for (int i = 0; i < DENSITY_TRIES; i++) {
         if (!charts_init(out, host, pose, &how)) return false;
+        out->search =
+            (struct charts_search){ how.surface_texels, how.join == CHARTS_JOINED_ACROSS };
         if (!want_fewer(&how, texels, out)) return true;
         if (i + 1 < DENSITY_TRIES) charts_finish(out);
     }

@@ -15,11 +15,12 @@ static enum charts_coordinates coordinates_of(const struct ort_options *options)
 }
 
 bool ort_charts(const struct scene_pose *statics, const void *options, struct host *host,
-                struct charts *out)
+                const struct charts_search *begin, struct charts *out)
 {
     const struct ort_options *o = options;
     const struct charts_wish wish = { .technique = "ort",
                                       .texels = (uint32_t)o->texels,
+                                      .begin = begin,
                                       .density = o->density,
                                       .most_charts = MOST_CHARTS,
                                       .coordinates = coordinates_of(o) };
@@ -113,7 +114,7 @@ bool ort_map_init(struct ort_map *out, struct host *host, const struct scene_pos
                   const struct ort_options *options)
 {
     *out = (struct ort_map){ .host = host };
-    if (!ort_charts(pose, options, host, &out->charts)) return false;
+    if (!ort_charts(pose, options, host, NULL, &out->charts)) return false;
     out->texel_count = out->charts.side_texel_count;
     out->width = out->charts.width;
     out->height = charts_sides(&out->charts) * out->charts.height;

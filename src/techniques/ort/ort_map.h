@@ -20,7 +20,7 @@ struct ort_map {
 };
 
 bool ort_charts(const struct scene_pose *statics, const void *options, struct host *host,
-                struct charts *out);
+                const struct charts_search *begin, struct charts *out);
 // ort_map_finish accepts zero.
 bool ort_map_init(struct ort_map *out, struct host *host, const struct scene_pose *pose,
                   const struct ort_options *options);

@@ -101,11 +101,12 @@ static bool make_hierarchy(struct radiosity_map *map)
 // ----
 
 bool radiosity_charts(const struct scene_pose *statics, const void *options, struct host *host,
-                      struct charts *out)
+                      const struct charts_search *begin, struct charts *out)
 {
     const struct radiosity_options *o = options;
     const struct charts_wish wish = { .technique = "radiosity",
                                       .texels = (uint32_t)o->texels,
+                                      .begin = begin,
                                       .density = o->density,
                                       .most_charts = RADIOSITY_MAX_CLUSTERS / 2 };
     return charts_init_wanted(out, host, statics, &wish) && charts_order_by_squares(out);
@@ -136,7 +137,7 @@ bool radiosity_map_init(struct radiosity_map *out, struct host *host, const stru
                         const struct radiosity_options *options)
 {
     *out = (struct radiosity_map){ .host = host };
-    bool ok = radiosity_charts(pose, options, host, &out->charts);
+    bool ok = radiosity_charts(pose, options, host, NULL, &out->charts);
     out->texel_count = out->charts.side_texel_count;
     out->cluster_of = host_alloc(host, out->texel_count, sizeof *out->cluster_of);
     ok = ok && out->cluster_of && make_sources(out, options);

@@ -28,7 +28,7 @@ struct radiosity_map {
 enum { RADIOSITY_MAX_CLUSTERS = 1 << (RADIOSITY_NODE_BITS - 1) };
 // Their charts alone.
 bool radiosity_charts(const struct scene_pose *statics, const void *options, struct host *host,
-                      struct charts *out);
+                      const struct charts_search *begin, struct charts *out);
 bool radiosity_map_init(struct radiosity_map *out, struct host *host, const struct scene_pose *pose,
                         const struct radiosity_options *options);
 // Makes the clusters again, with the part of each texel, 0 or 1: at most twice as many.

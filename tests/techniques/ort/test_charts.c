@@ -38,7 +38,7 @@ static bool makes_charts(bool has_uv, enum charts_coordinates coordinates, struc
     add_folded(&s, has_uv);
     CHECK(pose_init(&s.pose, s.scene, -1, 0.0f));
     CHECK(gi_spec_parse(&spec, test_host(), TEXTS[coordinates]));
-    const bool ok = ort_charts(&s.pose, spec.options[0], test_host(), out);
+    const bool ok = ort_charts(&s.pose, spec.options[0], test_host(), NULL, out);
     gi_spec_finish(&spec);
     fixture_finish(&s);
     return ok;

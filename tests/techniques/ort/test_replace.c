@@ -32,7 +32,7 @@ static void read_map(struct frame_fixture *s, const struct baked_fixture *run, s
 {
     int term;
     gpu_image image;
-    CHECK(ort_charts(&s->pose, run->spec.options[0], test_host(), &m->charts));
+    CHECK(ort_charts(&s->pose, run->spec.options[0], test_host(), NULL, &m->charts));
     CHECK(gi_light_map(run->gi, &term, &image));
     m->scale = (double)frame_radiance_scale(s->frame);
     for (uint32_t c = 0; c < 3; c++) {

@@ -133,7 +133,7 @@ void prt_fixture_open(struct prt_fixture *f, const char *options)
     CHECK(gi_spec_parse(&spec, test_host(), text));
     CHECK(pose_init(&f->s.pose, f->s.scene, -1, 0.0f));
     CHECK(scene_statics_init(&f->statics, test_host(), &f->s.pose));
-    CHECK(prt_charts(&f->statics.pose, spec.options[0], test_host(), &f->charts));
+    CHECK(prt_charts(&f->statics.pose, spec.options[0], test_host(), NULL, &f->charts));
     gi_spec_finish(&spec);
 }
 

@@ -10,7 +10,7 @@ void paint_fixture_open(struct paint_fixture *p, struct frame_fixture *s,
 {
     *p = (struct paint_fixture){ .s = s, .gi = run->gi };
     CHECK(scene_statics_init(&p->statics, test_host(), &s->pose));
-    CHECK(run->spec.technique[0]->charts(&p->statics.pose, run->spec.options[0], test_host(),
+    CHECK(run->spec.technique[0]->charts(&p->statics.pose, run->spec.options[0], test_host(), NULL,
                                          &p->charts));
     p->lux = calloc((size_t)p->charts.width * p->charts.height, 3 * sizeof *p->lux);
     assert_non_null(p->lux);

@@ -1,12 +1,13 @@
 #include "techniques/prt/receivers/receivers.h"
 
 bool prt_charts(const struct scene_pose *statics, const void *options, struct host *host,
-                struct charts *out)
+                const struct charts_search *begin, struct charts *out)
 {
     enum { MOST_CHARTS = 1 << 20 };
     const struct prt_options *o = options;
     const struct charts_wish wish = { .technique = "prt",
                                       .texels = (uint32_t)o->texels,
+                                      .begin = begin,
                                       .density = o->density,
                                       .most_charts = MOST_CHARTS };
     return charts_init_wanted(out, host, statics, &wish);
@@ -19,7 +20,7 @@ bool prt_receivers_init(struct prt_receivers *out, struct charts *charts, struct
                                    .at_vertices = options->at == PRT_AT_VERTEX,
                                    .charts = charts };
     if (!out->at_vertices) {
-        const bool ok = prt_charts(statics, options, host, charts);
+        const bool ok = prt_charts(statics, options, host, NULL, charts);
         out->count = charts->side_texel_count;
         return ok;
     }

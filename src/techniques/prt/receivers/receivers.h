@@ -8,7 +8,7 @@
 
 // The charts of the light map that has the texels.
 bool prt_charts(const struct scene_pose *statics, const void *options, struct host *host,
-                struct charts *out);
+                const struct charts_search *begin, struct charts *out);
 
 struct prt_receivers {
     struct host *host;
