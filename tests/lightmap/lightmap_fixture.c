@@ -6,6 +6,7 @@ bool fixture_charts(const struct scene_pose *statics, const void *options, struc
                     const struct charts_search *begin, struct charts *out)
 {
     const int *texels = options;
+    (void)begin; // the density is given
     const struct charts_options how = { .texels_per_m = 1e3f,
                                         .max_texels = 1 << 18,
                                         .surface_texels = (uint32_t)*texels };
