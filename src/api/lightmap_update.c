@@ -52,9 +52,8 @@ static bool is_density(float a, float b)
     return fabsf(a - b) <= ROUNDING * b;
 }
 
-// The search for charts begins where that of the record has ended: the same charts, at a third of
-// the time. The option `texels` leads to another density where the area has changed: the option
-// `density` keeps it.
+// The option `texels` leads to another density where the area has changed: the option `density`
+// keeps it.
 static bool keep_density(struct ag_bake *b, const char *folder, float texels_per_m)
 {
     const struct technique *technique = b->spec.technique[b->term];
@@ -67,6 +66,8 @@ static bool keep_density(struct ag_bake *b, const char *folder, float texels_per
     return true;
 }
 
+// The search for charts begins where that of the record has ended: the same charts, at a third of
+// the time.
 static bool make_equal_charts(struct ag_bake *b, const struct scene_pose *statics,
                               const char *folder, const struct lightmap_record *record,
                               struct charts *out)

@@ -1,8 +1,6 @@
 // Groups are split at the mean of their keys, the one with the largest second moment first, as the
 // clusters of a light tree do (Walter et al. 2005, Lightcuts). Within a group lights follow the
-// axis that their normals are nearest to, then the leaves of a k-d tree: consecutive lights light
-// the same surfaces. Of a flat box in the order of the tree alone, any share of a few lights
-// between none and all faced down.
+// leaves of a k-d tree.
 #include "techniques/vct/vct_emitter_groups.h"
 
 #include <math.h>
@@ -39,30 +37,12 @@ static void order(struct vct_light *lights, int count)
     order(lights + count / 2, count - count / 2);
 }
 
-// 0 to 5: +x −x +y −y +z −z.
-static int side_of(vec3s normal)
+int vct_light_side(vec3s normal)
 {
     int axis = 0;
     for (int i = 1; i < 3; i++)
         if (fabsf(normal.raw[i]) > fabsf(normal.raw[axis])) axis = i;
     return 2 * axis + (normal.raw[axis] < 0.0f);
-}
-
-static int compare_side(const void *a, const void *b)
-{
-    const struct vct_light *l = a, *m = b;
-    const int sides = side_of(l->normal) - side_of(m->normal);
-    return sides ? sides : compare_index(l, m);
-}
-
-static void order_group(struct vct_light *lights, int count)
-{
-    qsort(lights, (size_t)count, sizeof *lights, compare_side);
-    for (int first = 0, end; first < count; first = end) {
-        const int side = side_of(lights[first].normal);
-        for (end = first; end < count && side_of(lights[end].normal) == side; end++) {}
-        order(lights + first, end - first);
-    }
 }
 
 static struct box3 key_bounds(const struct vct_light *lights, int count)
@@ -130,6 +110,6 @@ int vct_group_lights(struct vct_light *lights, int count, int most,
         groups[made] = (struct vct_emitter_group){ widest->first + before, widest->count - before };
         widest->count = before;
     }
-    for (int i = 0; i < made; i++) order_group(lights + groups[i].first, groups[i].count);
+    for (int i = 0; i < made; i++) order(lights + groups[i].first, groups[i].count);
     return made;
 }

@@ -53,26 +53,30 @@ static void choose_draws(struct vct_small_emitters *s, const struct frame_view *
 
 // ---- Groups, once per scene and after changes of the frame's lights -----------------------------
 
-// Lights of the front sides; the points of double-sided surfaces emit to both sides.
+// Lights of the front sides; the points of double-sided surfaces emit to both sides. Lights of a
+// small draw that face one way have one key: a surface takes points of those that face it.
 static void add_lights(struct vct_small_emitters *s, const struct frame_view *view,
                        const struct scene_draw *draw)
 {
     const int first = s->light_count;
-    vec3s sum = vec3_of(0, 0, 0);
+    vec3s sum[VCT_LIGHT_SIDES] = { 0 };
+    float count[VCT_LIGHT_SIDES] = { 0 };
     for (int i = 0; i < view->emitter_count && s->light_count < VCT_MAX_EMITTER_LIGHTS; i++) {
         const double flux = flux_of(view, i);
         if (view->emitter_origins[i].instance != draw->instance || view->emitter_origins[i].back ||
             !(flux > 0.0))
             continue;
         const vec3s at = view->emitters[i].position;
-        s->lights[s->light_count++] =
-            (struct vct_light){ at, view->emitters[i].normal, at, flux, i };
-        sum = glms_vec3_add(sum, at);
+        const int side = vct_light_side(view->emitters[i].normal);
+        s->lights[s->light_count++] = (struct vct_light){ at, at, flux, i };
+        sum[side] = glms_vec3_add(sum[side], at);
+        count[side] += 1.0f;
     }
     if (!fits(view, draw)) return;
-    const float count = (float)(s->light_count - first);
-    for (int i = first; i < s->light_count; i++)
-        s->lights[i].key = glms_vec3_scale(sum, 1.0f / count);
+    for (int i = first; i < s->light_count; i++) {
+        const int side = vct_light_side(view->emitters[s->lights[i].index].normal);
+        s->lights[i].key = glms_vec3_scale(sum[side], 1.0f / count[side]);
+    }
 }
 
 // The light at `flux` of the group's flux, in order; *before: flux of the lights before `at`.

@@ -399,6 +399,16 @@ static void add_solid(struct frame_fixture *s, vec3s min, vec3s max, int materia
     assert_true(mesh >= 0 && fixture_instance(s, mesh, NULL) >= 0);
 }
 
+void trial_small_ceiling_light(struct frame_fixture *s, struct gpu *gpu, float gap)
+{
+    fixture_init(s, gpu);
+    const int white = fixture_matte(s, grey(0.7f));
+    const int materials[6] = { white, white, white, white, white, white };
+    add_walls(s, vec3_of(-3, 0, -3), vec3_of(3, 3, 3), materials);
+    add_solid(s, vec3_of(-0.6f, 2.9f - gap, -0.6f), vec3_of(0.6f, 3 - gap, 0.6f), emitter(s, 0));
+    fixture_look(s, vec3_of(2.7f, 1.5f, 2.7f), vec3_of(-2, 0.5f, -2));
+}
+
 static void begin_furnished_room(struct frame_fixture *s, struct gpu *gpu, bool second_view)
 {
     fixture_init(s, gpu);

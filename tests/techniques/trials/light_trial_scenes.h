@@ -70,6 +70,9 @@ void trial_panel(struct frame_fixture *s, struct gpu *gpu);
 // A room of 6 × 5 × 6 (albedo 0.7) with a black emissive box of 2 × 0.1 × 2, `gap` below the
 // ceiling. The camera sees the floor and the walls.
 void trial_ceiling_light(struct frame_fixture *s, struct gpu *gpu, float gap);
+// A room 3 m high with a box of 1.2 × 0.1 × 1.2, one connected mesh, as lights of files are: vct
+// samples it as a small emitter.
+void trial_small_ceiling_light(struct frame_fixture *s, struct gpu *gpu, float gap);
 
 // A room of 6 × 2.8 × 6 (albedo 0.7) with a point light, in two views, and
 // a wardrobe of 0.6 × 2.1 × 2, 5 cm from a wall, and a table (albedo 0.4),

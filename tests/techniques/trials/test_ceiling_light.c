@@ -29,3 +29,31 @@ TEST_GPU(light_between_a_box_and_the_ceiling_stays_there)
         }
     }
 }
+
+// A gap of 0.2 m is two to four voxels: the light that leaves it is coarse. With quality=low voxels
+// are 19 cm.
+TEST_GPU(a_small_box_below_a_ceiling_lights_a_room_at_its_level)
+{
+    const struct {
+        const char *gi;
+        double tolerance[2];
+    } cases[] = { { "radiosity:texels=16384", { 0.05, 0.05 } },
+                  { "vct:quality=low", { 0.1, 0.1 } },
+                  { "vct", { 0.1, 0.05 } },
+                  { "vct:quality=high", { 0.1, 0.05 } } };
+    static const float gaps[] = { 0.2f, 0.5f };
+    for (int g = 0; g < 2; g++) {
+        struct frame_fixture s;
+        trial_small_ceiling_light(&s, gpu, gaps[g]);
+        const struct trial_irradiance expected = trial_reference(&s, -1, 256);
+        fixture_finish(&s);
+        for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+            trial_small_ceiling_light(&s, gpu, gaps[g]);
+            const double share = trial_technique(&s, cases[i].gi).mean[1] / expected.mean[1];
+            fixture_finish(&s);
+            print_message("%s: small box %.2f m below the ceiling: %.3f of the reference\n",
+                          cases[i].gi, (double)gaps[g], share);
+            CHECK_NEAR(share, 1.0, cases[i].tolerance[g]);
+        }
+    }
+}

@@ -44,15 +44,17 @@ layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D vct_bounced;
 #define VCT_SMALL_EMITTERS_BINDING 10
 #include "techniques/vct/cones/small_emitters.glsl"
 
-// From all points: voxels gather once, and some of the points may have twice the light of others.
+const uint EMITTER_SAMPLES = 4u; // of the points on a small emitter
+
 vec3 small_emitters_at(vec3 at, vec3 normal)
 {
     vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < VCT_EMITTER_POINTS; i++) {
-        vec3 to, found = vct_small_emitter_light(light, i, at, normal, vct.level, to);
+    for (uint i = 0u; i < EMITTER_SAMPLES; i++) {
+        vec3 to, found = vct_small_emitter_light(light, i * (VCT_EMITTER_POINTS / EMITTER_SAMPLES),
+                                                 at, normal, vct.level, to);
         sum += found * dot(normal, to);
     }
-    return sum;
+    return sum * (float(VCT_EMITTER_POINTS) / float(EMITTER_SAMPLES));
 }
 
 vec3 arriving(vec4 traced, vec3 direction)
