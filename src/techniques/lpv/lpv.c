@@ -7,10 +7,11 @@
 // (apply). Lights and geometry may move.
 #include "techniques/lpv/lpv.h"
 
-#include "techniques/lpv/geometry/geometry.h"
+#include "techniques/lpv/lpv_debug.h"
 #include "techniques/lpv/lpv_diagnostics.h"
 #include "techniques/lpv/lpv_pipelines.h"
-#include "techniques/lpv/lpv_stages.h"
+#include "techniques/lpv/lpv_prepare.h"
+#include "techniques/lpv/lpv_state.h"
 #include "techniques/lpv/lpv_volumes.h"
 
 #include <string.h>
@@ -84,13 +85,13 @@ static void lpv_objects(const void *options, int view, uint32_t width, uint32_t 
     lpv_add_pipelines(options, out);
 }
 
-static bool create(struct lpv_cascades *cascades, const char *owner,
-                   const struct technique_create *how)
+static bool create(struct lpv *lpv, const char *owner, const struct technique_create *how)
 {
-    struct lpv *finest = &cascades->levels[0];
-    if (how->pose) lpv_diagnose(how->host, owner, how->options, how->pose);
-    finest->gpu = how->gpu;
-    lpv_cascades_create(cascades);
+    const struct lpv_options *options = how->options;
+    if (how->pose) lpv_diagnose(how->host, owner, options, how->pose);
+    lpv->gpu = how->gpu;
+    for (int i = 1; i < options->cascades; i++) lpv->cascades[i - 1].coarser = &lpv->cascades[i];
+    lpv_probes_create(&lpv->probes, options);
     return true;
 }
 
@@ -104,38 +105,49 @@ static bool holpv_create(void *state, const struct technique_create *how)
     return create(state, "holpv", how);
 }
 
-static void forget_light(struct lpv *lpv)
-{
-    for (; lpv; lpv = lpv->coarser) lpv->kept.known = false;
-}
-
 static void lpv_invalidate(void *state, uint32_t changes)
 {
-    forget_light(state);
-    if (!(changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL))) return;
-    for (struct lpv *level = state; level; level = level->coarser) {
-        lpv_geometry_invalidate(level);
-        level->surfaces.statics.valid = false;
+    struct lpv *lpv = state;
+    const bool statics = changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL);
+    for (struct lpv_cascade *c = lpv->cascades; c; c = c->coarser) {
+        c->kept.known = false;
+        c->geometry.statics.valid &= !statics;
+        c->surfaces.statics.valid &= !statics;
     }
 }
 
-// The coarser cascades first. Returns false where the light is that of the frame before.
-static bool record_light(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
+static struct lpv_frame frame_of(const struct lpv *lpv, struct gpu_cmd *cmd,
+                                 const struct frame_view *view)
 {
-    const bool changed = lpv->coarser && record_light(lpv->coarser, cmd, view);
-    if (lpv_is_kept(lpv, view) && !changed) return false;
-    lpv_record_geometry(lpv, cmd, view);
-    lpv_record_injection(lpv, cmd, view);
-    lpv_record_surfaces(lpv, cmd, view);
-    lpv_record_propagation(lpv, cmd);
+    return (struct lpv_frame){ .options = &lpv->options,
+                               .gpu = lpv->gpu,
+                               .cmd = cmd,
+                               .view = view,
+                               .injection = &lpv->injection,
+                               .linear = lpv->linear };
+}
+
+// The coarser cascades first. Returns false where the light is that of the frame before.
+static bool record_light(const struct lpv *lpv, const struct lpv_frame *frame,
+                         struct lpv_cascade *cascade)
+{
+    const bool changed = cascade->coarser && record_light(lpv, frame, cascade->coarser);
+    if (lpv_is_kept(cascade, frame->options, frame->view) && !changed) return false;
+    lpv_record_geometry(&lpv->geometry, frame, cascade);
+    lpv_record_injection(&lpv->injection, frame, cascade);
+    lpv_record_surfaces(&lpv->surfaces, frame, cascade);
+    lpv_record_propagation(&lpv->propagation, frame, cascade);
     return true;
 }
 
 static void lpv_update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct lpv *lpv = state;
-    if (lpv_prepare(lpv, view)) record_light(lpv, cmd, view);
-    lpv_record_probes(lpv, cmd);
+    struct lpv_cascade *finest = &lpv->cascades[0];
+    const struct lpv_frame frame = frame_of(lpv, cmd, view);
+    lpv->lit = lpv_prepare(&lpv->options, finest, view);
+    if (lpv->lit) record_light(lpv, &frame, finest);
+    lpv_record_probes(&lpv->probes, &frame, lpv->lit ? finest : NULL);
 }
 
 static void clear_layers(const struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -148,8 +160,9 @@ static void clear_layers(const struct lpv *lpv, struct gpu_cmd *cmd, const struc
 static void lpv_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct lpv *lpv = state;
+    const struct lpv_frame frame = frame_of(lpv, cmd, view);
     if (lpv->lit)
-        lpv_record_application(lpv, cmd, view);
+        lpv_record_application(&lpv->application, &frame, &lpv->cascades[0]);
     else
         clear_layers(lpv, cmd, view);
 }
@@ -158,11 +171,12 @@ static void lpv_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_
                            const char *name, gpu_image out)
 {
     struct lpv *lpv = state;
+    const struct lpv_frame frame = frame_of(lpv, cmd, view);
     if (!lpv->lit) {
         gpu_clear_image(cmd, out, (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
         return;
     }
-    lpv_record_debug(lpv, cmd, view,
+    lpv_record_debug(lpv->debug, &frame, &lpv->cascades[0],
                      strcmp(name, "cells") == 0        ? LPV_VIEW_CELLS
                      : strcmp(name, "geometry") == 0   ? LPV_VIEW_GEOMETRY
                      : strcmp(name, "propagated") == 0 ? LPV_VIEW_PROPAGATED
@@ -172,7 +186,8 @@ static void lpv_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_
 
 static bool lpv_probes(void *state, struct probe_volume *out)
 {
-    return lpv_probes_publish(state, out);
+    const struct lpv *lpv = state;
+    return lpv_probes_publish(&lpv->probes, &lpv->options, out);
 }
 
 static uint32_t lpv_more_needs(const void *options)
@@ -187,7 +202,7 @@ static uint32_t lpv_more_needs(const void *options)
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | PUBLISHES_PROBES | GATHERS_EMISSION,     \
     .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,                     \
     .more_needs = lpv_more_needs, .options = OPTION_TABLE(struct lpv_options, rows_, aliases),     \
-    .presets = presets_, .debug_views = debug_views, .state_size = sizeof(struct lpv_cascades),    \
+    .presets = presets_, .debug_views = debug_views, .state_size = sizeof(struct lpv),             \
     .invalidate = lpv_invalidate, .update = lpv_update, .record = lpv_record,                      \
     .debug_view = lpv_debug_view, .probes = lpv_probes, .objects = lpv_objects
 

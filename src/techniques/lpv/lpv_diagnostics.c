@@ -2,7 +2,8 @@
 // outside of the grid.
 #include "techniques/lpv/lpv_diagnostics.h"
 
-#include "techniques/lpv/lpv_state.h"
+#include "techniques/lpv/lpv_grid.h"
+#include "techniques/lpv/lpv_options.h"
 
 #include <stdio.h>
 

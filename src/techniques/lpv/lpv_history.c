@@ -1,6 +1,6 @@
 #include "techniques/lpv/lpv_history.h"
 
-#include "techniques/lpv/lpv_state.h"
+#include "techniques/lpv/lpv_frame.h"
 
 #include "core/hash.h"
 #include "frame/scene/scene_gpu.h"
@@ -15,10 +15,10 @@ bool lpv_is_moving(const struct scene_draw *draw)
     return draw->dynamic && !draw->left;
 }
 
-struct lpv_statics lpv_statics_of(const struct lpv *lpv, const struct frame_view *view)
+struct lpv_statics lpv_statics_of(const struct lpv_grid *grid, const struct frame_view *view)
 {
     return (struct lpv_statics){ .valid = true,
-                                 .grid = lpv->grid,
+                                 .grid = *grid,
                                  .first_frame = view->index == 0,
                                  .moving_count = view->scene ? view->scene->dynamic_count : 0,
                                  .set = view->scene ? view->scene->static_set : 0 };
@@ -35,9 +35,10 @@ bool lpv_statics_equal(const struct lpv_statics *cached, const struct lpv_static
 // Lights that did not change and objects that did not move have equal reflective shadow maps. Their
 // surfels of the camera's view (geometry=maps) may still differ. A frame without light is not
 // recorded, nor its moving draws.
-bool lpv_is_kept(struct lpv *lpv, const struct frame_view *view)
+bool lpv_is_kept(struct lpv_cascade *cascade, const struct lpv_options *options,
+                 const struct frame_view *view)
 {
-    const uint64_t steps = hash_bytes(&lpv->options.steps, sizeof(int32_t), view->light_hash);
-    kept_update(&lpv->kept, view, hash_bytes(&lpv->params, sizeof lpv->params, steps));
-    return view->keep && lpv->kept.same && lpv->options.geometry != LPV_GEOMETRY_MAPS;
+    const uint64_t steps = hash_bytes(&cascade->steps, sizeof cascade->steps, view->light_hash);
+    kept_update(&cascade->kept, view, hash_bytes(&cascade->params, sizeof cascade->params, steps));
+    return view->keep && cascade->kept.same && options->geometry != LPV_GEOMETRY_MAPS;
 }

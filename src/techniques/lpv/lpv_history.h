@@ -6,7 +6,8 @@
 #include <stdbool.h>
 
 struct frame_view;
-struct lpv;
+struct lpv_cascade;
+struct lpv_options;
 struct scene_draw;
 
 // Static draws have not moved since the scene was set.
@@ -14,8 +15,9 @@ bool lpv_is_static(const struct scene_draw *draw);
 bool lpv_is_moving(const struct scene_draw *draw);
 
 // Whether the light of a cascade is that of the frame before, unless that of the coarser cascades
-// has changed. The parameters and the grid of the frame are complete.
-bool lpv_is_kept(struct lpv *lpv, const struct frame_view *view);
+// has changed. The parameters and the grid of the frame are complete. Changes cascade->kept.
+bool lpv_is_kept(struct lpv_cascade *cascade, const struct lpv_options *options,
+                 const struct frame_view *view);
 
 // Key of the cached result of static draws. Zero: nothing is cached.
 struct lpv_statics {
@@ -26,5 +28,5 @@ struct lpv_statics {
     uint64_t set;     // scene_gpu.static_set
 };
 
-struct lpv_statics lpv_statics_of(const struct lpv *lpv, const struct frame_view *view);
+struct lpv_statics lpv_statics_of(const struct lpv_grid *grid, const struct frame_view *view);
 bool lpv_statics_equal(const struct lpv_statics *cached, const struct lpv_statics *now);

@@ -38,7 +38,7 @@ static void fill_constants(const struct lpv_options *o, struct gpu_constant *out
 
 #define PIPELINE(member, when, name, bits)                                                         \
     {                                                                                              \
-        GPU_PIPELINE, #member, offsetof(struct lpv_pipelines, member),                             \
+        GPU_PIPELINE, #name, offsetof(struct lpv, member),                                         \
             .consts = (bits), .shader = (when) ? &shader_lpv_##name##_comp : NULL                  \
     }
 
@@ -47,27 +47,27 @@ void lpv_add_pipelines(const struct lpv_options *o, struct gpu_objects *out)
     const bool bounces = o->bounces > 0, maps = o->geometry == LPV_GEOMETRY_MAPS,
                scene = o->geometry == LPV_GEOMETRY_SCENE;
     fill_constants(o, out->constants);
-    GPU_ADD(out, offsetof(struct lpv_cascades, levels[0].pipelines),
-            PIPELINE(inject, true, inject, LIGHT | GEOMETRY),
-            PIPELINE(inject_emitters, true, inject_emitters, LIGHT | GEOMETRY),
-            PIPELINE(resolve, true, inject_resolve, LIGHT),
-            PIPELINE(propagate, true, propagate, LIGHT | GEOMETRY | NEIGHBOURS | CLOSURE),
-            PIPELINE(apply, !o->specular, apply_diffuse, APPLY),
-            PIPELINE(apply, o->specular, apply_specular, APPLY),
-            PIPELINE(apply_damped, !o->specular, apply_diffuse, APPLY | DAMPED),
-            PIPELINE(apply_damped, o->specular, apply_specular, APPLY | DAMPED),
-            PIPELINE(debug, true, debug, LIGHT | GEOMETRY),
-            PIPELINE(refine, o->cascades > 1, refine, LIGHT | GEOMETRY),
-            PIPELINE(probes, o->probes, probes, BANDS | GEOMETRY),
-            PIPELINE(surfaces, bounces, surfaces, CLOSURE),
-            PIPELINE(masked_surfaces, bounces, surfaces, CLOSURE | MASKED),
-            PIPELINE(bounce, bounces, bounce, LIGHT | GEOMETRY | CLOSURE),
-            PIPELINE(geometry_transmittance, maps || scene, geometry_transmittance,
-                     GEOMETRY | NEIGHBOURS),
-            PIPELINE(geometry_light, maps, geometry_light, 0),
-            PIPELINE(geometry_camera, maps, geometry_camera, 0),
-            PIPELINE(geometry_merge, maps, geometry_merge, 0),
-            PIPELINE(geometry_coverage, scene, geometry_coverage, 0),
-            PIPELINE(masked_coverage, scene, geometry_coverage, MASKED),
-            PIPELINE(geometry_faces, scene, geometry_faces, 0));
+    GPU_ADD(
+        out, 0, PIPELINE(injection.rsm, true, inject, LIGHT | GEOMETRY),
+        PIPELINE(injection.emitters, true, inject_emitters, LIGHT | GEOMETRY),
+        PIPELINE(injection.resolve, true, inject_resolve, LIGHT),
+        PIPELINE(propagation.propagate, true, propagate, LIGHT | GEOMETRY | NEIGHBOURS | CLOSURE),
+        PIPELINE(application.plain, !o->specular, apply_diffuse, APPLY),
+        PIPELINE(application.plain, o->specular, apply_specular, APPLY),
+        PIPELINE(application.damped, !o->specular, apply_diffuse, APPLY | DAMPED),
+        PIPELINE(application.damped, o->specular, apply_specular, APPLY | DAMPED),
+        PIPELINE(debug, true, debug, LIGHT | GEOMETRY),
+        PIPELINE(propagation.refine, o->cascades > 1, refine, LIGHT | GEOMETRY),
+        PIPELINE(probes.pipeline, o->probes, probes, BANDS | GEOMETRY),
+        PIPELINE(surfaces.opaque, bounces, surfaces, CLOSURE),
+        PIPELINE(surfaces.masked, bounces, surfaces, CLOSURE | MASKED),
+        PIPELINE(propagation.bounce, bounces, bounce, LIGHT | GEOMETRY | CLOSURE),
+        PIPELINE(geometry.transmittance, maps || scene, geometry_transmittance,
+                 GEOMETRY | NEIGHBOURS),
+        PIPELINE(geometry.light, maps, geometry_light, 0),
+        PIPELINE(geometry.camera, maps, geometry_camera, 0),
+        PIPELINE(geometry.merge, maps, geometry_merge, 0),
+        PIPELINE(geometry.coverage, scene, geometry_coverage, 0),
+        PIPELINE(geometry.masked_coverage, scene, geometry_coverage, MASKED),
+        PIPELINE(geometry.faces, scene, geometry_faces, 0));
 }

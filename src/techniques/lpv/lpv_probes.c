@@ -1,22 +1,17 @@
 // The probe volume: its pass and its grid.
-#include "techniques/lpv/lpv_stages.h"
+#include "techniques/lpv/lpv_probes.h"
 
 #include "techniques/lpv/lpv_bindings.h"
+#include "techniques/lpv/lpv_frame.h"
 
-static const struct lpv *finest_covering_scene(const struct lpv *lpv)
+static const struct lpv_cascade *finest_covering_scene(const struct lpv_cascade *cascade)
 {
-    while (lpv->grid.open && lpv->coarser) lpv = lpv->coarser;
-    return lpv;
+    while (cascade->grid.open && cascade->coarser) cascade = cascade->coarser;
+    return cascade;
 }
 
-static struct frame_probes probe_grid(const struct lpv *finest)
+static struct frame_probes grid_of(const struct lpv_grid *grid, int32_t slab)
 {
-    const struct lpv_grid *grid = &finest_covering_scene(finest)->grid;
-    const int32_t slab = finest->options.dim;
-    if (!finest->lit)
-        return (struct frame_probes){
-            .spacing_m = 1, .count_x = 1, .count_y = 1, .count_z = 1, .slab = slab
-        };
     return (struct frame_probes){
         .first_m = glms_vec3_adds(grid->origin_m, 0.5f * grid->cell_m),
         .spacing_m = grid->cell_m,
@@ -27,31 +22,45 @@ static struct frame_probes probe_grid(const struct lpv *finest)
     };
 }
 
-void lpv_record_probes(struct lpv *finest, struct gpu_cmd *cmd)
+void lpv_probes_create(struct lpv_probe_volume *probes, const struct lpv_options *options)
 {
-    const gpu_image volume = finest->volumes.probes;
-    if (!finest->options.probes) return;
-    if (!finest->lit) {
-        gpu_clear_image(cmd, volume, (const float[4]){ 0 });
-        return;
-    }
-    const struct frame_probes grid = probe_grid(finest);
-    const struct lpv *from = finest_covering_scene(finest);
-    gpu_scope_begin(cmd, "probes");
-    lpv_dispatch_cells_push(from, cmd, finest->pipelines.probes,
-                            GPU_BIND(lpv_grid_binding(from, cmd),
-                                     { .name = "light", .image = from->volumes.light },
-                                     { .name = "probes", .image = volume },
-                                     { .name = "lpv_walls", .buffer = lpv_walls(from) }),
-                            &grid, sizeof grid);
-    gpu_scope_end(cmd);
+    probes->grid = (struct frame_probes){
+        .spacing_m = 1, .count_x = 1, .count_y = 1, .count_z = 1, .slab = options->dim
+    };
 }
 
-bool lpv_probes_publish(const struct lpv *finest, struct probe_volume *out)
+static void clear(struct lpv_probe_volume *probes, const struct lpv_frame *frame)
 {
-    if (!finest->options.probes) return false;
-    *out = (struct probe_volume){ .image = finest->volumes.probes,
-                                  .grid = probe_grid(finest),
-                                  .walls = finest->options.geometry == LPV_GEOMETRY_SCENE };
+    lpv_probes_create(probes, frame->options);
+    gpu_clear_image(frame->cmd, probes->image, (const float[4]){ 0 });
+}
+
+void lpv_record_probes(struct lpv_probe_volume *probes, const struct lpv_frame *frame,
+                       const struct lpv_cascade *finest)
+{
+    if (!frame->options->probes) return;
+    if (!finest) {
+        clear(probes, frame);
+        return;
+    }
+    const struct lpv_cascade *from = finest_covering_scene(finest);
+    probes->grid = grid_of(&from->grid, frame->options->dim);
+    gpu_scope_begin(frame->cmd, "probes");
+    lpv_dispatch_cells_push(from, frame->cmd, probes->pipeline,
+                            GPU_BIND(lpv_grid_binding(from, frame->cmd),
+                                     { .name = "light", .image = from->light },
+                                     { .name = "probes", .image = probes->image },
+                                     { .name = "lpv_walls", .buffer = lpv_walls(frame, from) }),
+                            &probes->grid, sizeof probes->grid);
+    gpu_scope_end(frame->cmd);
+}
+
+bool lpv_probes_publish(const struct lpv_probe_volume *probes, const struct lpv_options *options,
+                        struct probe_volume *out)
+{
+    if (!options->probes) return false;
+    *out = (struct probe_volume){ .image = probes->image,
+                                  .grid = probes->grid,
+                                  .walls = options->geometry == LPV_GEOMETRY_SCENE };
     return true;
 }

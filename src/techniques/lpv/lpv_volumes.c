@@ -49,43 +49,48 @@ static uint32_t probe_slabs(const struct lpv_options *options)
     return options->geometry == LPV_GEOMETRY_SCENE ? PROBE_SLABS_WITH_WALLS : FRAME_PROBE_SLABS;
 }
 
-#define LEVEL(member) offsetof(struct lpv, volumes.member)
+#define CASCADE(member) offsetof(struct lpv_cascade, member)
 
-// Each cascade has its own.
-static void add_level(const struct lpv_options *o, size_t base, struct gpu_objects *out)
+static void add_cascade(const struct lpv_options *o, size_t base, struct gpu_objects *out)
 {
     const bool maps = o->geometry == LPV_GEOMETRY_MAPS, scene = o->geometry == LPV_GEOMETRY_SCENE;
     const size_t n = cells(o), coverage = scene ? n * LPV_COVERAGE_BYTES : 0;
-    GPU_ADD(out, base,
-            { GPU_IMAGE, "light", LEVEL(light), .image = image(o, GPU_RGBA16F, lpv_slabs(o)) },
-            { GPU_BUFFER, "surfaces", LEVEL(surfaces),
-              .bytes = o->bounces > 0 ? n * LPV_SURFACE_BYTES : 0 },
-            { GPU_IMAGE, "geometry", LEVEL(geometry),
-              .image = image(o, GPU_RGBA16F,
-                             maps    ? 1
-                             : scene ? 2
-                                     : 0) },
-            { GPU_BUFFER, "transmittance", LEVEL(transmittance),
-              .bytes = maps || scene ? n * transmittance_bytes(o) : 0 },
-            { GPU_BUFFER, "walls", LEVEL(walls), .bytes = scene ? n * 4 : 0 },
-            { GPU_BUFFER, "surfels", LEVEL(surfels), .bytes = maps ? n * LPV_SURFEL_BYTES : 0 },
-            { GPU_BUFFER, "static_coverage", LEVEL(static_coverage), .bytes = coverage },
-            { GPU_BUFFER, "moving_coverage", LEVEL(moving_coverage), .bytes = coverage });
+    GPU_ADD(
+        out, base,
+        { GPU_IMAGE, "light", CASCADE(light), .image = image(o, GPU_RGBA16F, lpv_slabs(o)) },
+        { GPU_BUFFER, "surfaces", CASCADE(surfaces.areas),
+          .bytes = o->bounces > 0 ? n * LPV_SURFACE_BYTES : 0 },
+        { GPU_IMAGE, "geometry", CASCADE(geometry.volume),
+          .image = image(o, GPU_RGBA16F,
+                         maps    ? 1
+                         : scene ? 2
+                                 : 0) },
+        { GPU_BUFFER, "transmittance", CASCADE(geometry.transmittance),
+          .bytes = maps || scene ? n * transmittance_bytes(o) : 0 },
+        { GPU_BUFFER, "walls", CASCADE(geometry.walls), .bytes = scene ? n * 4 : 0 },
+        { GPU_BUFFER, "surfels", CASCADE(geometry.surfels),
+          .bytes = maps ? n * LPV_SURFEL_BYTES : 0 },
+        { GPU_BUFFER, "static_coverage", CASCADE(geometry.static_coverage), .bytes = coverage },
+        { GPU_BUFFER, "moving_coverage", CASCADE(geometry.moving_coverage), .bytes = coverage });
 }
+
+#define LPV(member) offsetof(struct lpv, member)
 
 void lpv_add_volumes(const struct lpv_options *o, struct gpu_objects *out)
 {
     const bool half = o->precision == LPV_PRECISION_HALF;
     const enum gpu_format step = half ? GPU_RGBA16F : GPU_RGBA32F;
     const uint32_t slabs = lpv_slabs(o);
-    GPU_ADD(out, offsetof(struct lpv_cascades, levels),
-            { GPU_BUFFER, "sums", LEVEL(sums), .bytes = cells(o) * lpv_sum_bytes(o) },
-            { GPU_IMAGE, "injected", LEVEL(injected), .image = image(o, step, slabs) },
-            { GPU_IMAGE, "step_even", LEVEL(steps[0]), .image = image(o, step, slabs) },
-            { GPU_IMAGE, "step_odd", LEVEL(steps[1]), .image = image(o, step, half ? 0 : slabs) },
-            { GPU_IMAGE, "probes", LEVEL(probes), .image = image(o, GPU_RGBA16F, probe_slabs(o)) },
-            { GPU_IMAGE, "sent", LEVEL(sent), .image = image(o, step, o->bounces > 0 ? slabs : 0) },
-            { GPU_SAMPLER, "linear", .member = offsetof(struct lpv, linear) });
+    GPU_ADD(
+        out, 0, { GPU_BUFFER, "sums", LPV(injection.sums), .bytes = cells(o) * lpv_sum_bytes(o) },
+        { GPU_IMAGE, "injected", LPV(injection.injected), .image = image(o, step, slabs) },
+        { GPU_IMAGE, "step_even", LPV(propagation.steps[0]), .image = image(o, step, slabs) },
+        { GPU_IMAGE, "step_odd", LPV(propagation.steps[1]),
+          .image = image(o, step, half ? 0 : slabs) },
+        { GPU_IMAGE, "probes", LPV(probes.image), .image = image(o, GPU_RGBA16F, probe_slabs(o)) },
+        { GPU_IMAGE, "sent", LPV(propagation.sent),
+          .image = image(o, step, o->bounces > 0 ? slabs : 0) },
+        { GPU_SAMPLER, "linear", .member = LPV(linear) });
     for (int i = 0; i < o->cascades; i++)
-        add_level(o, offsetof(struct lpv_cascades, levels) + (size_t)i * sizeof(struct lpv), out);
+        add_cascade(o, LPV(cascades) + (size_t)i * sizeof(struct lpv_cascade), out);
 }

@@ -15,8 +15,9 @@ float *geometry_read(struct lpv *lpv)
 {
     const size_t dim = (size_t)lpv->options.dim, floats = dim * dim * dim * 4 * slabs_of(lpv);
     float *all = malloc(floats * sizeof *all);
-    CHECK(gpu_image_download_float(lpv->gpu, lpv->volumes.geometry, 0, 0, all, 4, floats));
-    const int32_t *cells = lpv->grid.cells;
+    CHECK(
+        gpu_image_download_float(lpv->gpu, lpv->cascades[0].geometry.volume, 0, 0, all, 4, floats));
+    const int32_t *cells = lpv->cascades[0].grid.cells;
     size_t out = 0;
     for (size_t slab = 0; slab < slabs_of(lpv); slab++)
         for (size_t z = slab * dim; z < slab * dim + (size_t)cells[2]; z++)
@@ -28,8 +29,8 @@ float *geometry_read(struct lpv *lpv)
 
 size_t geometry_floats(const struct lpv *lpv)
 {
-    return slabs_of(lpv) * 4 * (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] *
-           (size_t)lpv->grid.cells[2];
+    return slabs_of(lpv) * 4 * (size_t)lpv->cascades[0].grid.cells[0] *
+           (size_t)lpv->cascades[0].grid.cells[1] * (size_t)lpv->cascades[0].grid.cells[2];
 }
 
 // Texel (x, y, z) is the corner (x + 1, y + 1, z + 1) for maps, the cell (x, y, z) for the scene,
@@ -46,7 +47,7 @@ static double expected_at(const struct geometry_twin *twin, const int cell[3], i
 
 void geometry_check(struct lpv *lpv, const struct geometry_twin *twin, double tolerance)
 {
-    const int32_t *cells = lpv->grid.cells;
+    const int32_t *cells = lpv->cascades[0].grid.cells;
     float *got = geometry_read(lpv);
     double most = 0.0;
     size_t at = 0;
@@ -98,7 +99,7 @@ void geometry_scatter(struct rsm_fixture *rsm, struct gpu *gpu)
 static void inject(struct twin *twin, struct lpv *lpv)
 {
     const size_t coefficients = (size_t)SH_COUNT(lpv->options.bands);
-    float *injected = lpv_fixture_read(lpv, lpv->volumes.injected, 1);
+    float *injected = lpv_fixture_read(lpv, lpv->injection.injected, 1);
     for (size_t i = 0; i < twin_cells(twin); i++)
         for (size_t k = 0; k < coefficients; k++)
             twin->light[i][k] = twin->accumulated[i][k] = (double)injected[coefficients * i + k];
@@ -114,7 +115,7 @@ void geometry_check_light(struct lpv *lpv, const struct geometry_twin *geometry)
     twin.occlusion = (double)lpv->options.occlusion;
     inject(&twin, lpv);
     twin_accumulate(&twin, &lpv->options);
-    float *got = lpv_fixture_read(lpv, lpv->volumes.light, 1);
+    float *got = lpv_fixture_read(lpv, lpv->cascades[0].light, 1);
     double most = 0.0;
     for (size_t i = 0; i < twin_cells(&twin); i++) most = fmax(most, fabs(twin.accumulated[i][0]));
     CHECK(most > 0.0);

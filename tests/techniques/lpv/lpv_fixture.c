@@ -40,13 +40,20 @@ void lpv_fixture_render(struct lpv *lpv, struct rsm_fixture *rsm)
 
 float *lpv_fixture_read(struct lpv *lpv, gpu_image volume, int colour)
 {
+    return lpv_fixture_read_cascade(lpv, &lpv->cascades[0], volume, colour);
+}
+
+float *lpv_fixture_read_cascade(struct lpv *lpv, const struct lpv_cascade *cascade,
+                                gpu_image volume, int colour)
+{
     const size_t dim = (size_t)lpv->options.dim, slab = dim * dim * dim * 4;
     const size_t count = slab * lpv_slabs(&lpv->options);
     const size_t coefficients = (size_t)SH_COUNT(lpv->options.bands);
     float *all = malloc(count * sizeof *all);
     CHECK(gpu_image_download_float(lpv->gpu, volume, 0, 0, all, 4, count));
-    const int32_t *cells = lpv->grid.cells;
-    const float unit = lpv->params.fixed_from_flux * lpv->params.grid_from_fixed; // grid_from_flux
+    const int32_t *cells = cascade->grid.cells;
+    const struct lpv_params *params = &cascade->params;
+    const float unit = params->fixed_from_flux * params->grid_from_fixed; // grid_from_flux
     float *out =
         malloc((size_t)cells[0] * (size_t)cells[1] * (size_t)cells[2] * coefficients * sizeof *out);
     size_t at = 0;

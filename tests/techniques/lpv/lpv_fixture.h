@@ -17,6 +17,8 @@ void lpv_fixture_destroy(struct lpv *lpv);
 void lpv_fixture_render(struct lpv *lpv, struct rsm_fixture *rsm);
 // One colour of a volume in lumen/sr: bands² floats per cell in use, [z][y][x]. The caller frees
 // it.
-float *lpv_fixture_read(struct lpv *lpv, gpu_image volume, int colour);
+float *lpv_fixture_read(struct lpv *lpv, gpu_image volume, int colour); // of the finest cascade
+float *lpv_fixture_read_cascade(struct lpv *lpv, const struct lpv_cascade *cascade,
+                                gpu_image volume, int colour);
 // Injects one colour of the reflective shadow maps and emissive surfaces into the twin.
 void lpv_fixture_inject_twin(struct twin *twin, const struct rsm_fixture *rsm, int colour);

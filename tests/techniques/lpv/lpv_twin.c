@@ -28,8 +28,9 @@ void twin_init(struct twin *twin, struct lpv_grid grid, int bands, enum lpv_sche
 
 void twin_init_as(struct twin *twin, const struct lpv *lpv)
 {
-    twin_init(twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
-    const struct lpv_params *params = &lpv->params;
+    twin_init(twin, lpv->cascades[0].grid, lpv->options.bands,
+              (enum lpv_scheme)lpv->options.neighbours);
+    const struct lpv_params *params = &lpv->cascades[0].params;
     twin->closure = lpv_closure_of(&lpv->options);
     twin->closed_lobe =
         (struct lpv_lobe_weights){ (double)params->lobe_along, (double)params->lobe_square,

@@ -1,6 +1,5 @@
 // Further bounces: reflecting surfaces by cell, and the light that they reflect.
 #include "frame/frame_fixture.h"
-#include "techniques/lpv/lpv_stages.h"
 #include "techniques/lpv/lpv_fixture.h"
 
 #include <math.h>
@@ -25,12 +24,14 @@ static void use(struct frame_fixture *s, struct lpv *lpv)
 // Σ reflectance × area over all cells, and Σ area, in m²: [side][colour or area].
 static void read_areas(struct lpv *lpv, double out[NUMBERS])
 {
-    const int32_t *cells = lpv->grid.cells;
+    const struct lpv_cascade *cascade = &lpv->cascades[0];
+    const gpu_buffer areas =
+        cascade->surfaces.at_rest ? cascade->surfaces.areas : lpv->injection.sums;
+    const int32_t *cells = cascade->grid.cells;
     const size_t count = (size_t)cells[0] * (size_t)cells[1] * (size_t)cells[2];
-    const double unit = (double)(lpv->grid.cell_m * lpv->grid.cell_m) / LPV_SURFACE_UNIT;
+    const double unit = (double)(cascade->grid.cell_m * cascade->grid.cell_m) / LPV_SURFACE_UNIT;
     uint32_t *words = malloc(count * NUMBERS * sizeof *words);
-    CHECK(gpu_buffer_download(lpv->gpu, lpv_surfaces(lpv), 0, words,
-                              count * NUMBERS * sizeof *words));
+    CHECK(gpu_buffer_download(lpv->gpu, areas, 0, words, count * NUMBERS * sizeof *words));
     memset(out, 0, NUMBERS * sizeof *out);
     for (size_t i = 0; i < count * NUMBERS; i++) out[i % NUMBERS] += unit * words[i];
     free(words);

@@ -160,7 +160,7 @@ TEST_GPU(lpv_cascades_are_invariant_to_translation)
         show_hall(&rsm, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 3);
         struct lpv *lpv = lpv_fixture_create(gpu, GIS[i]);
         render(lpv, &rsm, a);
-        const struct lpv *coarsest = lpv;
+        const struct lpv_cascade *coarsest = lpv->cascades;
         while (coarsest->coarser) coarsest = coarsest->coarser;
         const float cell = 2.0f * coarsest->grid.cell_m;
         show_hall(&shifted, gpu, vec3_of(3 * cell, -2 * cell, cell), vec3_of(0, 0, 0), 3);
@@ -198,18 +198,19 @@ TEST_GPU(lpv_cascades_are_stable_when_the_camera_moves_by_whole_cells)
         show_hall(&rsm, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 3);
         struct lpv *lpv = lpv_fixture_create(gpu, gis[i]);
         render(lpv, &rsm, a);
-        const struct lpv_grid before = lpv->grid;
+        const struct lpv_grid before = lpv->cascades[0].grid;
         show_hall(&near, gpu, vec3_of(0, 0, 0), vec3_of(0.05f, 0.01f, 0.02f), 3);
         render(lpv, &near, b);
         check_same(a, b, 0.0); // less than a cell: no change
         show_hall(&next, gpu, vec3_of(0, 0, 0), vec3_of(2.0f * before.cell_m, 0, 0), 3);
         render(lpv, &next, c);
-        CHECK_NEAR((double)lpv->grid.origin_m.x, (double)(before.origin_m.x + 2.0f * before.cell_m),
-                   1e-5);
+        CHECK_NEAR((double)lpv->cascades[0].grid.origin_m.x,
+                   (double)(before.origin_m.x + 2.0f * before.cell_m), 1e-5);
         double most = 0.0, worst = 0.0;
         int seen = 0;
         for (int k = 0; k < PIXELS * 3; k++) {
-            if (!shows_finest(&before, k / 3) || !shows_finest(&lpv->grid, k / 3)) continue;
+            if (!shows_finest(&before, k / 3) || !shows_finest(&lpv->cascades[0].grid, k / 3))
+                continue;
             most = fmax(most, (double)a[k]);
             worst = fmax(worst, fabs((double)a[k] - (double)c[k]));
             seen++;
@@ -230,7 +231,7 @@ TEST_GPU(lpv_cascades_are_stable_when_the_camera_moves_by_whole_cells)
 // The coarser light at the centre of a cell, filtered, for cells of half the size.
 static void refine_twin(const struct lpv *lpv, const float *coarser, double (*out)[9])
 {
-    const struct lpv_grid *fine = &lpv->grid, *coarse = &lpv->coarser->grid;
+    const struct lpv_grid *fine = &lpv->cascades[0].grid, *coarse = &lpv->cascades[1].grid;
     const int count = SH_COUNT(lpv->options.bands);
     for (int i = 0; i < fine->cells[0] * fine->cells[1] * fine->cells[2]; i++) {
         const int cell[3] = { i % fine->cells[0], i / fine->cells[0] % fine->cells[1],
@@ -275,9 +276,10 @@ static void refinement_equals_the_twin(struct gpu *gpu, const char *gi)
     show_hall(&rsm, gpu, vec3_of(0.2f, 0, 0.1f), vec3_of(0, 0, 0), 3);
     struct lpv *lpv = lpv_fixture_create(gpu, gi);
     lpv_fixture_render(lpv, &rsm);
-    CHECK(lpv->grid.open != 0 && lpv->coarser->grid.open == 0);
-    float *coarser = lpv_fixture_read(lpv->coarser, lpv->coarser->volumes.light, 1);
-    float *got = lpv_fixture_read(lpv, lpv->volumes.light, 1);
+    CHECK(lpv->cascades[0].grid.open != 0 && lpv->cascades[1].grid.open == 0);
+    float *coarser =
+        lpv_fixture_read_cascade(lpv, lpv->cascades[0].coarser, lpv->cascades[1].light, 1);
+    float *got = lpv_fixture_read(lpv, lpv->cascades[0].light, 1);
     struct twin twin;
     twin_init_as(&twin, lpv);
     const int count = (int)twin_cells(&twin), coefficients = SH_COUNT(lpv->options.bands);
@@ -291,8 +293,9 @@ static void refinement_equals_the_twin(struct gpu *gpu, const char *gi)
         twin_propagate(&twin, &lpv->options);
         for (int i = 0; i < count; i++)
             for (int k = 0; k < 9; k++)
-                twin.light[i][k] =
-                    is_boundary(&lpv->grid, i) ? begin[i][k] : twin.light[i][k] + injected[i][k];
+                twin.light[i][k] = is_boundary(&lpv->cascades[0].grid, i)
+                                       ? begin[i][k]
+                                       : twin.light[i][k] + injected[i][k];
     }
     double most = 0.0;
     for (int i = 0; i < count; i++) most = fmax(most, fabs(twin.light[i][0]));

@@ -11,7 +11,9 @@ static double flux_of(struct lpv *lpv, gpu_image volume)
 {
     float *cells = lpv_fixture_read(lpv, volume, 1);
     double sum = 0.0;
-    for (int i = 0; i < lpv->grid.cells[0] * lpv->grid.cells[1] * lpv->grid.cells[2]; i++)
+    for (int i = 0; i < lpv->cascades[0].grid.cells[0] * lpv->cascades[0].grid.cells[1] *
+                            lpv->cascades[0].grid.cells[2];
+         i++)
         sum += (double)cells[SH_COUNT(lpv->options.bands) * i];
     free(cells);
     return sum * sqrt(4.0 * GLM_PI);
@@ -48,11 +50,11 @@ TEST_GPU(lpv_flux_is_conserved_over_sixteen_steps)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct lpv *lpv = lpv_fixture_create(gpu, cases[i].gi);
         lpv_fixture_render(lpv, &rsm);
-        assert_int_equal(lpv->grid.cells[0], 39);
-        const double injected = flux_of(lpv, lpv->volumes.injected);
+        assert_int_equal(lpv->cascades[0].grid.cells[0], 39);
+        const double injected = flux_of(lpv, lpv->injection.injected);
         // Each step adds the injected flux once; the last step is stored in 16 bits.
-        const double sum = flux_of(lpv, lpv->volumes.steps[0]),
-                     last = flux_of(lpv, lpv->volumes.light);
+        const double sum = flux_of(lpv, lpv->propagation.steps[0]),
+                     last = flux_of(lpv, lpv->cascades[0].light);
         print_message("%s: flux %.6f, after 15 steps %.6f, in 16 bits %.6f of it\n", cases[i].gi,
                       injected, sum / (16.0 * injected), last / (17.0 * injected));
         CHECK_RELATIVE(injected, 700.0, cases[i].rounding);

@@ -56,7 +56,7 @@ static void add_camera(struct geometry_twin *twin, const struct rsm_fixture *rsm
 static void twin_of(struct geometry_twin *twin, const struct lpv *lpv,
                     const struct rsm_fixture *rsm)
 {
-    geometry_twin_init(twin, lpv->grid, LPV_GEOMETRY_MAPS);
+    geometry_twin_init(twin, lpv->cascades[0].grid, LPV_GEOMETRY_MAPS);
     add_camera(twin, rsm, vec3_of(0.2f, 0.9f, 0.1f));
     for (int face = 0; face < rsm->view.rsm_face_count; face++) add_face(twin, rsm, face);
 }

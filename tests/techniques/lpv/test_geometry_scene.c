@@ -30,7 +30,7 @@ static void set_finish(struct set *set)
 static void twin_of(struct geometry_twin *twin, const struct lpv *lpv,
                     const struct mesh_fixture *meshes)
 {
-    geometry_twin_init(twin, lpv->grid, LPV_GEOMETRY_SCENE);
+    geometry_twin_init(twin, lpv->cascades[0].grid, LPV_GEOMETRY_SCENE);
     for (int i = 0; i < meshes->scene->instance_count; i++) {
         const struct mesh *mesh = &meshes->scene->meshes[meshes->scene->instances[i].mesh];
         const mat4s m = pose_world_from_instance(&meshes->pose, i);
@@ -124,12 +124,13 @@ TEST_GPU(lpv_cached_geometry_equals_that_of_a_first_frame)
 // Overwrites the static coverage; the marks stay until it is recomputed.
 static bool is_recomputed(struct mesh_fixture *meshes, struct lpv *lpv)
 {
-    const size_t words = gpu_buffer_bytes(lpv->gpu, lpv->volumes.static_coverage) / 4;
+    const size_t words = gpu_buffer_bytes(lpv->gpu, lpv->cascades[0].geometry.static_coverage) / 4;
     uint32_t *mark = malloc(words * sizeof *mark), *after = malloc(words * sizeof *mark);
     for (size_t i = 0; i < words; i++) mark[i] = 0x5555;
-    CHECK(gpu_buffer_upload(lpv->gpu, lpv->volumes.static_coverage, 0, mark, words * sizeof *mark));
+    CHECK(gpu_buffer_upload(lpv->gpu, lpv->cascades[0].geometry.static_coverage, 0, mark,
+                            words * sizeof *mark));
     mesh_fixture_render(meshes, lpv);
-    CHECK(gpu_buffer_download(lpv->gpu, lpv->volumes.static_coverage, 0, after,
+    CHECK(gpu_buffer_download(lpv->gpu, lpv->cascades[0].geometry.static_coverage, 0, after,
                               words * sizeof *mark));
     const bool recomputed = memcmp(mark, after, words * sizeof *mark) != 0;
     free(mark);
@@ -185,16 +186,17 @@ TEST_GPU(lpv_geometry_of_a_closed_wall_has_no_gaps)
     mesh_fixture_place(&set.meshes);
     struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=16,steps=1");
     mesh_fixture_render(&set.meshes, lpv);
-    const int32_t *cells = lpv->grid.cells;
+    const int32_t *cells = lpv->cascades[0].grid.cells;
     const size_t words = (size_t)(3 * cells[0] * cells[1] * cells[2]);
     uint32_t *masks = malloc(words * sizeof *masks);
-    CHECK(gpu_buffer_download(lpv->gpu, lpv->volumes.static_coverage, 0, masks,
+    CHECK(gpu_buffer_download(lpv->gpu, lpv->cascades[0].geometry.static_coverage, 0, masks,
                               words * sizeof *masks));
     for (int y = 0; y < cells[1]; y++)
         for (int x = 0; x < cells[0]; x++) {
             // Columns along z that lie entirely over the slope cross it once.
-            const float cell = lpv->grid.cell_m, left = lpv->grid.origin_m.x + (float)x * cell,
-                        low = lpv->grid.origin_m.y + (float)y * cell;
+            const float cell = lpv->cascades[0].grid.cell_m,
+                        left = lpv->cascades[0].grid.origin_m.x + (float)x * cell,
+                        low = lpv->cascades[0].grid.origin_m.y + (float)y * cell;
             if (left < 0 || low < 0 || left + cell > 8 || low + cell > 8) continue;
             int lines = 0;
             for (int z = 0; z < cells[2]; z++)

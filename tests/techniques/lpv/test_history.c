@@ -128,7 +128,9 @@ static float brightest(const float *e, size_t count)
 
 static bool is_kept(const struct lpv *lpv)
 {
-    return lpv->kept.same && (!lpv->coarser || is_kept(lpv->coarser));
+    bool kept = true;
+    for (const struct lpv_cascade *c = lpv->cascades; c; c = c->coarser) kept &= c->kept.same;
+    return kept;
 }
 
 TEST_GPU(lpv_equals_to_the_bit_that_without_earlier_frames)

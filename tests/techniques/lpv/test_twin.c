@@ -76,7 +76,7 @@ static void check_injection(struct lpv *lpv, struct rsm_fixture *rsm)
     for (int colour = 0; colour < LPV_FIXTURE_COLOURS; colour++) {
         struct twin twin;
         twin_of(&twin, lpv, rsm, colour);
-        float *got = lpv_fixture_read(lpv, lpv->volumes.injected, colour);
+        float *got = lpv_fixture_read(lpv, lpv->injection.injected, colour);
         check_volume(got, &twin, twin.light, rounding(lpv));
         free(got);
         twin_finish(&twin);
@@ -144,7 +144,7 @@ static void propagation_equals_the_twin(struct gpu *gpu, const char *options)
         struct twin twin;
         twin_of(&twin, lpv, &rsm, colour);
         twin_accumulate(&twin, &lpv->options);
-        float *got = lpv_fixture_read(lpv, lpv->volumes.light, colour);
+        float *got = lpv_fixture_read(lpv, lpv->cascades[0].light, colour);
         check_volume(got, &twin, twin.accumulated, 1e-3);
         free(got);
         twin_finish(&twin);
@@ -230,11 +230,11 @@ TEST_GPU(lpv_application_equals_the_twin)
 // All values of the injected grid.
 static float *injected(struct lpv *lpv, size_t *count)
 {
-    const size_t one = (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] *
-                       (size_t)lpv->grid.cells[2] * (size_t)SH_COUNT(lpv->options.bands);
+    const size_t one =
+        lpv_cell_count(&lpv->cascades[0].grid) * (size_t)SH_COUNT(lpv->options.bands);
     float *all = malloc(LPV_FIXTURE_COLOURS * one * sizeof *all);
     for (int colour = 0; colour < LPV_FIXTURE_COLOURS; colour++) {
-        float *read = lpv_fixture_read(lpv, lpv->volumes.injected, colour);
+        float *read = lpv_fixture_read(lpv, lpv->injection.injected, colour);
         memcpy(all + (size_t)colour * one, read, one * sizeof *all);
         free(read);
     }
@@ -266,12 +266,12 @@ TEST_GPU(lpv_volumes_of_half_floats_have_the_papers_size)
     } cases[] = { { "lpv:dim=32,precision=half", 0.75 }, { "holpv:dim=32,precision=half", 1.75 } };
     for (int i = 0; i < 2; i++) {
         struct lpv *lpv = lpv_fixture_create(gpu, cases[i].gi);
-        CHECK(mebibytes(gpu, lpv->volumes.injected) == cases[i].grid);
-        CHECK(mebibytes(gpu, lpv->volumes.steps[0]) == cases[i].grid);
-        CHECK(mebibytes(gpu, lpv->volumes.light) == cases[i].grid);
-        CHECK(mebibytes(gpu, lpv->volumes.geometry) == 0.5);
-        CHECK(!lpv->coarser); // each cascade adds another
-        assert_int_equal(lpv->volumes.steps[1].id, 0);
+        CHECK(mebibytes(gpu, lpv->injection.injected) == cases[i].grid);
+        CHECK(mebibytes(gpu, lpv->propagation.steps[0]) == cases[i].grid);
+        CHECK(mebibytes(gpu, lpv->cascades[0].light) == cases[i].grid);
+        CHECK(mebibytes(gpu, lpv->cascades[0].geometry.volume) == 0.5);
+        CHECK(!lpv->cascades[0].coarser); // each cascade adds another
+        assert_int_equal(lpv->propagation.steps[1].id, 0);
         lpv_fixture_destroy(lpv);
     }
 }
@@ -352,15 +352,15 @@ TEST_GPU(lpv_half_floats_represent_any_flux)
             rsm.faces[0].intensity = glms_vec3_scale(intensity, ldexpf(1.0f, 40 * (k - 1)));
             rsm_fixture_upload(&rsm);
             lpv_fixture_render(lpv, &rsm);
-            all[k] = lpv_fixture_read(lpv, lpv->volumes.light, 0);
+            all[k] = lpv_fixture_read(lpv, lpv->cascades[0].light, 0);
         }
-        const size_t count = (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] *
-                             (size_t)lpv->grid.cells[2] * (size_t)SH_COUNT(lpv->options.bands);
+        const struct lpv_cascade *cascade = &lpv->cascades[0];
+        const size_t count = lpv_cell_count(&cascade->grid) * (size_t)SH_COUNT(lpv->options.bands);
         for (size_t n = 0; n < count; n++) {
             CHECK(ldexpf(all[0][n], 40) == all[1][n] && all[1][n] == ldexpf(all[2][n], -40));
             most = fmaxf(most, fabsf(all[1][n]));
         }
-        const float unit = lpv->params.fixed_from_flux * lpv->params.grid_from_fixed;
+        const float unit = cascade->params.fixed_from_flux * cascade->params.grid_from_fixed;
         print_message("%s: at most %g of 65504\n", gis[i], (double)(ldexpf(most, 40) * unit));
         CHECK(ldexpf(most, 40) * unit < 65504.0f / 8);
         for (int k = 0; k < 3; k++) free(all[k]);

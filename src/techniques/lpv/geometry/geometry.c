@@ -2,34 +2,32 @@
 #include "techniques/lpv/geometry/geometry.h"
 
 #include "techniques/lpv/lpv_bindings.h"
-#include "techniques/lpv/lpv_state.h"
+#include "techniques/lpv/lpv_frame.h"
 
-void lpv_geometry_invalidate(struct lpv *lpv)
+static void record_transmittance(const struct lpv_geometry_pipelines *pipelines,
+                                 const struct lpv_frame *frame, const struct lpv_cascade *cascade)
 {
-    lpv->geometry.statics.valid = false;
-}
-
-static void record_transmittance(struct lpv *lpv, struct gpu_cmd *cmd)
-{
-    const struct lpv_volumes *v = &lpv->volumes;
+    const struct lpv_geometry *geometry = &cascade->geometry;
     lpv_dispatch_cells(
-        lpv, cmd, lpv->pipelines.geometry_transmittance, 1,
-        GPU_BIND(lpv_grid_binding(lpv, cmd),
-                 { .name = "geometry", .image = v->geometry, .sampler = lpv->linear },
-                 { .name = "lpv_transmittance", .buffer = v->transmittance }));
+        cascade, frame->cmd, pipelines->transmittance, 1,
+        GPU_BIND(lpv_grid_binding(cascade, frame->cmd),
+                 { .name = "geometry", .image = geometry->volume, .sampler = frame->linear },
+                 { .name = "lpv_transmittance", .buffer = geometry->transmittance }));
 }
 
-void lpv_record_geometry(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
+void lpv_record_geometry(const struct lpv_geometry_pipelines *pipelines,
+                         const struct lpv_frame *frame, struct lpv_cascade *cascade)
 {
+    const struct lpv_options *options = frame->options;
     bool changed = true;
-    if (lpv->options.geometry == LPV_GEOMETRY_OFF) return;
-    gpu_scope_begin(cmd, "geometry");
-    if (lpv->options.geometry == LPV_GEOMETRY_MAPS)
-        lpv_record_geometry_maps(lpv, cmd, view);
+    if (options->geometry == LPV_GEOMETRY_OFF) return;
+    gpu_scope_begin(frame->cmd, "geometry");
+    if (options->geometry == LPV_GEOMETRY_MAPS)
+        lpv_record_geometry_maps(pipelines, frame, cascade);
     else
-        changed = lpv_record_geometry_scene(lpv, cmd, view);
-    if (changed || lpv->geometry.occlusion != lpv->options.occlusion)
-        record_transmittance(lpv, cmd);
-    lpv->geometry.occlusion = lpv->options.occlusion;
-    gpu_scope_end(cmd);
+        changed = lpv_record_geometry_scene(pipelines, frame, cascade);
+    if (changed || cascade->geometry.occlusion != options->occlusion)
+        record_transmittance(pipelines, frame, cascade);
+    cascade->geometry.occlusion = options->occlusion;
+    gpu_scope_end(frame->cmd);
 }

@@ -1,51 +1,57 @@
-// Injection: texels of reflective shadow maps and points on emissive surfaces as virtual lights.
-#include "techniques/lpv/lpv_stages.h"
+#include "techniques/lpv/inject/inject.h"
 
 #include "techniques/lpv/lpv_bindings.h"
+#include "techniques/lpv/lpv_frame.h"
 #include "techniques/lpv/lpv_volumes.h"
 
-static void inject_rsm(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
+static void inject_rsm(const struct lpv_injection *injection, const struct lpv_frame *frame,
+                       const struct lpv_cascade *cascade)
 {
+    const struct frame_view *view = frame->view;
     const uint32_t groups = gpu_groups(view->rsm_size, LPV_LOCAL * LPV_TEXELS);
     if (view->rsm_face_count == 0) return;
-    gpu_dispatch(cmd, lpv->pipelines.inject,
-                 GPU_BIND(lpv_grid_binding(lpv, cmd), view->rsm_faces_binding,
+    gpu_dispatch(frame->cmd, injection->rsm,
+                 GPU_BIND(lpv_grid_binding(cascade, frame->cmd), view->rsm_faces_binding,
                           { .name = "rsm_depth", .image = view->rsm_depth },
                           { .name = "rsm_normal", .image = view->rsm_normal },
                           { .name = "rsm_flux", .image = view->rsm_flux },
-                          { .name = "lpv_sums", .buffer = lpv->volumes.sums },
-                          { .name = "lpv_walls", .buffer = lpv_walls(lpv) }),
+                          { .name = "lpv_sums", .buffer = injection->sums },
+                          { .name = "lpv_walls", .buffer = lpv_walls(frame, cascade) }),
                  NULL, 0, groups, groups, (uint32_t)view->rsm_face_count);
 }
 
-static void inject_emitters(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
+static void inject_emitters(const struct lpv_injection *injection, const struct lpv_frame *frame,
+                            const struct lpv_cascade *cascade)
 {
-    if (lpv->params.emitter_count == 0) return;
-    gpu_dispatch(cmd, lpv->pipelines.inject_emitters,
-                 GPU_BIND(lpv_grid_binding(lpv, cmd), view->emitters_binding,
-                          { .name = "lpv_sums", .buffer = lpv->volumes.sums },
-                          { .name = "lpv_walls", .buffer = lpv_walls(lpv) }),
-                 NULL, 0, gpu_groups(lpv->params.emitter_count, LPV_EMITTERS_LOCAL), 1, 1);
+    const uint32_t count = cascade->params.emitter_count;
+    if (count == 0) return;
+    gpu_dispatch(frame->cmd, injection->emitters,
+                 GPU_BIND(lpv_grid_binding(cascade, frame->cmd), frame->view->emitters_binding,
+                          { .name = "lpv_sums", .buffer = injection->sums },
+                          { .name = "lpv_walls", .buffer = lpv_walls(frame, cascade) }),
+                 NULL, 0, gpu_groups(count, LPV_EMITTERS_LOCAL), 1, 1);
 }
 
-void lpv_record_resolve(struct lpv *lpv, struct gpu_cmd *cmd)
+void lpv_record_resolve(const struct lpv_injection *injection, const struct lpv_frame *frame,
+                        const struct lpv_cascade *cascade)
 {
-    lpv_dispatch_cells(lpv, cmd, lpv->pipelines.resolve, 1,
-                       GPU_BIND(lpv_grid_binding(lpv, cmd),
-                                { .name = "lpv_sums", .buffer = lpv->volumes.sums },
-                                { .name = "injected", .image = lpv->volumes.injected }));
+    lpv_dispatch_cells(cascade, frame->cmd, injection->resolve, 1,
+                       GPU_BIND(lpv_grid_binding(cascade, frame->cmd),
+                                { .name = "lpv_sums", .buffer = injection->sums },
+                                { .name = "injected", .image = injection->injected }));
 }
 
-void lpv_record_injection(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
+void lpv_record_injection(const struct lpv_injection *injection, const struct lpv_frame *frame,
+                          const struct lpv_cascade *cascade)
 {
-    gpu_scope_begin(cmd, "inject");
-    gpu_fill_buffer(cmd, lpv->volumes.sums, 0,
-                    lpv_cell_count(&lpv->grid) * lpv_sum_bytes(&lpv->options), 0);
-    inject_rsm(lpv, cmd, view);
-    inject_emitters(lpv, cmd, view);
-    gpu_scope_end(cmd);
+    gpu_scope_begin(frame->cmd, "inject");
+    gpu_fill_buffer(frame->cmd, injection->sums, 0,
+                    lpv_cell_count(&cascade->grid) * lpv_sum_bytes(frame->options), 0);
+    inject_rsm(injection, frame, cascade);
+    inject_emitters(injection, frame, cascade);
+    gpu_scope_end(frame->cmd);
 
-    gpu_scope_begin(cmd, "resolve");
-    lpv_record_resolve(lpv, cmd);
-    gpu_scope_end(cmd);
+    gpu_scope_begin(frame->cmd, "resolve");
+    lpv_record_resolve(injection, frame, cascade);
+    gpu_scope_end(frame->cmd);
 }

@@ -1,5 +1,7 @@
 // Placement of the grids and the parameters of a frame.
-#include "techniques/lpv/lpv_stages.h"
+#include "techniques/lpv/lpv_prepare.h"
+
+#include "techniques/lpv/lpv_frame.h"
 
 #include <math.h>
 
@@ -28,61 +30,64 @@ static struct lpv_crossing crossing_of(const struct lpv_options *options)
 
 // Flux of a cell that the sky's radiance L reaches from all directions: 4π I with
 // L = I (w a) / a³ (lpv_apply.comp).
-static vec3s sky_flux(const struct lpv *lpv, const struct frame_view *view)
+static vec3s sky_flux(const struct lpv_options *options, const struct lpv_grid *grid,
+                      const struct frame_view *view)
 {
-    const float mean_path = mean_path_of(&lpv->options);
-    const float cell_m = lpv->grid.cell_m;
-    if (!lpv->options.sky) return vec3_of(0, 0, 0);
+    const float mean_path = mean_path_of(options);
+    const float cell_m = grid->cell_m;
+    if (!options->sky) return vec3_of(0, 0, 0);
     return glms_vec3_scale(view->constants->sky, 4.0f * GLM_PIf * cell_m * cell_m / mean_path);
 }
 
 // Coefficients of the intensity of such a cell. Light travels away from where it comes from:
 // coefficients of odd bands change their sign.
-static void set_sky(const struct lpv *lpv, const struct frame_view *view, float grid_from_flux,
-                    struct lpv_params *params)
+static void set_sky(const struct lpv_options *options, struct lpv_cascade *cascade,
+                    const struct frame_view *view, float grid_from_flux)
 {
-    const int count = lpv->options.bands == 3 ? 9 : 4;
-    const float intensity =
-        grid_from_flux * lpv->grid.cell_m * lpv->grid.cell_m / mean_path_of(&lpv->options);
-    for (int i = 0; lpv->options.sky && i < count; i++)
-        params->sky[i] = glms_vec3_scale(view->constants->environment_sh[i],
-                                         i >= 1 && i <= 3 ? -intensity : intensity);
+    const int count = options->bands == 3 ? 9 : 4;
+    const float cell_m = cascade->grid.cell_m;
+    const float intensity = grid_from_flux * cell_m * cell_m / mean_path_of(options);
+    for (int i = 0; options->sky && i < count; i++)
+        cascade->params.sky[i] = glms_vec3_scale(view->constants->environment_sh[i],
+                                                 i >= 1 && i <= 3 ? -intensity : intensity);
 }
 
-static struct lpv_lights lights_of(const struct lpv *lpv, const struct frame_view *view)
+static struct lpv_lights lights_of(const struct lpv_options *options, const struct frame_view *view)
 {
     return (struct lpv_lights){
         .faces = view->rsm_faces,
         .face_count = view->rsm_face_count,
         .rsm_size = view->rsm_size,
         .emitters = view->emitters,
-        .emitter_count = lpv->options.emitters ? view->emitter_count : 0,
-        .bounces = lpv->options.bounces,
+        .emitter_count = options->emitters ? view->emitter_count : 0,
+        .bounces = options->bounces,
     };
 }
 
 // With the positive closure the option is that of light which has crossed 1/16 of the scene, so
 // that the size of cells does not matter.
-static double focus_of_step(const struct lpv *lpv, const struct frame_view *view)
+static double focus_of_step(const struct lpv_options *options, const struct lpv_grid *grid,
+                            const struct frame_view *view)
 {
-    if (lpv_closure_of(&lpv->options) == LPV_NO_CLOSURE) return (double)lpv->options.focus;
+    if (lpv_closure_of(options) == LPV_NO_CLOSURE) return (double)options->focus;
     const vec3s size = box3_size(view->bounds);
     const float longest = fmaxf(size.x, fmaxf(size.y, size.z));
-    return pow((double)lpv->options.focus, (double)(16.0f * lpv->grid.cell_m / longest));
+    return pow((double)options->focus, (double)(16.0f * grid->cell_m / longest));
 }
 
-static struct lpv_params params_of(const struct lpv *lpv, const struct frame_view *view,
+static struct lpv_params params_of(const struct lpv_options *options,
+                                   const struct lpv_cascade *cascade, const struct frame_view *view,
                                    const struct lpv_scale *scale)
 {
-    const struct lpv_options *options = &lpv->options;
-    const struct lpv_grid *grid = &lpv->grid;
+    const struct lpv_grid *grid = &cascade->grid;
+    const struct lpv_cascade *coarser = cascade->coarser;
+    const double focus = focus_of_step(options, grid, view);
     const enum lpv_scheme scheme = (enum lpv_scheme)options->neighbours;
-    const struct lpv_step step = lpv_step_of(scheme, (enum lpv_lobe)options->lobe,
-                                             focus_of_step(lpv, view), (double)options->filter);
+    const struct lpv_step step =
+        lpv_step_of(scheme, (enum lpv_lobe)options->lobe, focus, (double)options->filter);
     const struct lpv_crossing crossing = crossing_of(options);
-    const struct lpv_lobe_weights lobe = lpv_closure_of(options) == LPV_PRODUCT_CLOSURE
-                                             ? lpv_product_lobe(focus_of_step(lpv, view))
-                                             : step.lobe;
+    const struct lpv_lobe_weights lobe =
+        lpv_closure_of(options) == LPV_PRODUCT_CLOSURE ? lpv_product_lobe(focus) : step.lobe;
     const float mean_path = mean_path_of(options);
     return (struct lpv_params){
         .origin_m = grid->origin_m,
@@ -103,8 +108,7 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
             options->gain * mean_path / (grid->cell_m * grid->cell_m * scale->grid_from_flux),
         .mean_path = mean_path,
         .offset_m = options->offset * grid->cell_m,
-        .bounce_offset =
-            options->offset * (lpv->coarser ? lpv->coarser->grid.cell_m / grid->cell_m : 1.0f),
+        .bounce_offset = options->offset * (coarser ? coarser->grid.cell_m / grid->cell_m : 1.0f),
         .window_1 = options->window * (float)crossing.band_1,
         .window_2 = options->window * (float)crossing.band_2,
         .staircase = scheme == LPV_SIX && lpv_closure_of(options) == LPV_NO_CLOSURE &&
@@ -118,25 +122,24 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
         .rsm_size = view->rsm_size,
         .width = view->width,
         .height = view->height,
-        .emitter_count = (uint32_t)lights_of(lpv, view).emitter_count,
-        .boundary = lpv->coarser ? grid->open : 0,
+        .emitter_count = (uint32_t)lights_of(options, view).emitter_count,
+        .boundary = coarser ? grid->open : 0,
     };
 }
 
-bool lpv_prepare(struct lpv *finest, const struct frame_view *view)
+bool lpv_prepare(const struct lpv_options *options, struct lpv_cascade *finest,
+                 const struct frame_view *view)
 {
-    struct lpv_lights lights = lights_of(finest, view);
+    struct lpv_lights lights = lights_of(options, view);
     struct lpv_scale scale;
-    finest->lit = lpv_cascades_place(finest, view);
-    if (!finest->lit) return false;
-    const struct lpv *coarsest = finest;
+    if (!lpv_cascades_place(options, finest, view)) return false;
+    const struct lpv_cascade *coarsest = finest;
     while (coarsest->coarser) coarsest = coarsest->coarser;
-    lights.sky_flux = sky_flux(coarsest, view);
-    finest->lit = lpv_scale_of(&lights, &scale);
-    if (!finest->lit) return false;
-    for (struct lpv *level = finest; level; level = level->coarser) {
-        level->params = params_of(level, view, &scale);
-        set_sky(level, view, scale.grid_from_flux, &level->params);
+    lights.sky_flux = sky_flux(options, &coarsest->grid, view);
+    if (!lpv_scale_of(&lights, &scale)) return false;
+    for (struct lpv_cascade *c = finest; c; c = c->coarser) {
+        c->params = params_of(options, c, view, &scale);
+        set_sky(options, c, view, scale.grid_from_flux);
     }
     return true;
 }
