@@ -10,7 +10,7 @@ add_custom_target(shaders)
 # The .spv files also land in <build>/shaders, the folder to give as AFTERGLOW_SHADER_DIR for reloading.
 #
 # The name is the path below the current folder with '_' for '/'. A folder that the next part of the path repeats is
-# left out: lpv/lpv_apply.comp is lpv_apply, vct/cones/edges.comp is vct_cones_edges.
+# left out: lpv/apply/apply.comp is lpv_apply, vct/cones/edges.comp is vct_cones_edges.
 #
 # Permutations: a file shader_variants.txt beside the shaders has one line for each, "FILE SUFFIX [DEFINITION...]".
 # "trace.comp svo VCT_SVO=1" compiles trace.comp with -DVCT_SVO=1 as <name of trace>_svo. A suffix may name the stage,

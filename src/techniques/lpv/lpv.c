@@ -7,7 +7,7 @@
 // (apply). Lights and geometry may move.
 #include "techniques/lpv/lpv.h"
 
-#include "techniques/lpv/lpv_debug.h"
+#include "techniques/lpv/debug/debug.h"
 #include "techniques/lpv/lpv_diagnostics.h"
 #include "techniques/lpv/lpv_pipelines.h"
 #include "techniques/lpv/lpv_prepare.h"

@@ -7,7 +7,7 @@
 #include "techniques/lpv/inject/inject.h"
 #include "techniques/lpv/lpv_grid.h"
 #include "techniques/lpv/lpv_options.h"
-#include "techniques/lpv/lpv_surfaces.h"
+#include "techniques/lpv/surfaces/surfaces.h"
 
 // One grid, or one of several cascades.
 struct lpv_cascade {

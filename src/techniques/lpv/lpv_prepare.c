@@ -8,7 +8,7 @@
 // Band 1 of a clamped cosine: without geometry no wall occludes the light behind its surface.
 static const float LAMBERT_1 = 2.0f / 3.0f;
 
-// See lpv_apply.comp.
+// See apply.comp.
 static float mean_path_of(const struct lpv_options *options)
 {
     return lpv_closure_of(options) == LPV_PRODUCT_CLOSURE
@@ -29,7 +29,7 @@ static struct lpv_crossing crossing_of(const struct lpv_options *options)
 }
 
 // Flux of a cell that the sky's radiance L reaches from all directions: 4π I with
-// L = I (w a) / a³ (lpv_apply.comp).
+// L = I (w a) / a³ (apply.comp).
 static vec3s sky_flux(const struct lpv_options *options, const struct lpv_grid *grid,
                       const struct frame_view *view)
 {

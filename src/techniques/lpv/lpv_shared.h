@@ -5,7 +5,7 @@
 #include "core/shared.h"
 
 #define LPV_LOCAL       8  // workgroup size in x and y of shaders over pixels
-#define LPV_APPLY_LOCAL 64 // workgroup size in x of lpv_apply.comp
+#define LPV_APPLY_LOCAL 64 // workgroup size in x of apply.comp
 #define LPV_CELLS_LOCAL 64 // workgroup size of shaders over cells
 // Side of the block of reflective shadow map texels that one invocation takes.
 #define LPV_TEXELS         4
@@ -49,7 +49,7 @@
 #define LPV_TRANSMITTANCE_WORDS_26 9
 
 // A class of equivalent faces: direction (p, q, 0) or (p, q, q) in some order of the axes, solid
-// angle Ω, and the axis (lobe_p, lobe_q, …) of the re-projected lobes. See lpv_propagate.comp.
+// angle Ω, and the axis (lobe_p, lobe_q, …) of the re-projected lobes. See propagate.comp.
 struct lpv_reprojection {
     float flux_0, flux_p, flux_q;           // Ω Y0, Ω Y1 p, Ω Y1 q
     float flux_pp, flux_qq;                 // Ω p², Ω q²
@@ -84,14 +84,14 @@ struct lpv_params {
     uint32_t boundary; // LPV_OPEN sides whose outermost cells keep the coarser cascade's light
 };
 
-// Push constants of lpv_refine.comp.
+// Push constants of refine.comp.
 struct lpv_refine_push {
     vec3s first;                       // corner of cell 0, in cells of the coarser cascade
     float ratio;                       // cells of the coarser cascade per cell
     int32_t cells_x, cells_y, cells_z; // of the coarser cascade
 };
 
-// Push constants of lpv_apply.comp.
+// Push constants of apply.comp.
 struct lpv_apply_push {
     // World-space boxes: positions that this cascade lights, and those that finer ones light alone.
     vec3s low_m, high_m;
@@ -101,7 +101,7 @@ struct lpv_apply_push {
     int32_t rows; // of pixels, of an invocation: columns.glsl
 };
 
-// Views of lpv_debug.comp.
+// Views of debug.comp.
 #define LPV_VIEW_INJECTED   0
 #define LPV_VIEW_PROPAGATED 1
 #define LPV_VIEW_CELLS      2

@@ -1,10 +1,10 @@
 // The state of light propagation volumes: that of their stages, and of their cascades.
 #pragma once
 
-#include "techniques/lpv/lpv_apply.h"
+#include "techniques/lpv/apply/apply.h"
 #include "techniques/lpv/lpv_frame.h"
-#include "techniques/lpv/lpv_probes.h"
-#include "techniques/lpv/lpv_propagate.h"
+#include "techniques/lpv/probes/probes.h"
+#include "techniques/lpv/propagate/propagate.h"
 
 struct lpv {
     struct lpv_options options;

@@ -1,5 +1,5 @@
 // A bounce: surfaces reflect the accumulated light, which joins the injected light. A cell has six
-// surfaces, one for each direction ±a, with the reflecting area of lpv_surfaces.comp; each receives
+// surfaces, one for each direction ±a, with the reflecting area of surfaces.comp; each receives
 // E(±a) and sends it as a clamped cosine around ±a.
 #version 460
 #extension GL_EXT_scalar_block_layout : require

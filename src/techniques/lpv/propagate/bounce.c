@@ -1,5 +1,5 @@
 // Further bounces: the light that the surfaces of each cell reflect.
-#include "techniques/lpv/lpv_propagate.h"
+#include "techniques/lpv/propagate/propagate.h"
 
 #include "techniques/lpv/lpv_bindings.h"
 #include "techniques/lpv/lpv_frame.h"

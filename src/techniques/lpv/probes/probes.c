@@ -1,5 +1,5 @@
 // The probe volume: its pass and its grid.
-#include "techniques/lpv/lpv_probes.h"
+#include "techniques/lpv/probes/probes.h"
 
 #include "techniques/lpv/lpv_bindings.h"
 #include "techniques/lpv/lpv_frame.h"

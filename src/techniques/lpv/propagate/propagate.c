@@ -1,5 +1,5 @@
 // Propagation: the steps of one cascade, with bounces between them.
-#include "techniques/lpv/lpv_propagate.h"
+#include "techniques/lpv/propagate/propagate.h"
 
 #include "techniques/lpv/lpv_bindings.h"
 #include "techniques/lpv/lpv_frame.h"

@@ -1,5 +1,5 @@
 // The light of a coarser cascade, resampled for the next finer one.
-#include "techniques/lpv/lpv_propagate.h"
+#include "techniques/lpv/propagate/propagate.h"
 
 #include "techniques/lpv/lpv_bindings.h"
 #include "techniques/lpv/lpv_frame.h"

@@ -1,5 +1,5 @@
 // Irradiance and specular light of each pixel, cascade by cascade.
-#include "techniques/lpv/lpv_apply.h"
+#include "techniques/lpv/apply/apply.h"
 
 #include "techniques/common/light_map/columns.h"
 #include "techniques/lpv/lpv_bindings.h"

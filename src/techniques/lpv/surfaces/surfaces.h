@@ -6,7 +6,7 @@
 
 // Those of a cascade.
 struct lpv_surfaces {
-    gpu_buffer areas;           // [cell][direction][colour] reflecting area (lpv_surfaces.comp)
+    gpu_buffer areas;           // [cell][direction][colour] reflecting area (surfaces.comp)
     struct lpv_statics statics; // of `areas`
     bool at_rest; // `areas` holds moving draws, too; else the sums of injection hold all of a frame
 };

@@ -1,5 +1,5 @@
 // The probe volume: irradiance of a surface of any normal n at the centre of each cell,
-// E(n) = ∫ I(ω) (−n·ω)₊ dω as in lpv_apply.comp: one factor per band, with the sign of band 1
+// E(n) = ∫ I(ω) (−n·ω)₊ dω as in apply.comp: one factor per band, with the sign of band 1
 // flipped because n points towards the light. Not clamped: light from one side only may leave E
 // slightly negative. Lookups between them end at walls as those of pixels do.
 #version 460

@@ -1,4 +1,4 @@
-#include "techniques/lpv/lpv_debug.h"
+#include "techniques/lpv/debug/debug.h"
 
 #include "techniques/lpv/lpv_bindings.h"
 #include "techniques/lpv/lpv_frame.h"
@@ -7,7 +7,7 @@ void lpv_record_debug(gpu_pipeline pipeline, const struct lpv_frame *frame,
                       const struct lpv_cascade *finest, uint32_t debug_view, gpu_image out)
 {
     const struct frame_view *view = frame->view;
-    // A flux Φ in all directions is the intensity Φ/4π; radiance as in lpv_apply.comp.
+    // A flux Φ in all directions is the intensity Φ/4π; radiance as in apply.comp.
     const struct lpv_view_push push = {
         .view = debug_view,
         .radiance_scale = finest->params.irradiance_scale / (4.0f * GLM_PIf),

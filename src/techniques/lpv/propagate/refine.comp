@@ -2,7 +2,7 @@
 // away than the steps reach. k steps keep the part of it that is older than k steps, T^k A, and
 // replace the nearer light by S + TS + … + T^(k−1)S.
 //
-// Radiance is I · (w a)/a³ in cells of side a (lpv_apply.comp), so equal radiance has intensities
+// Radiance is I · (w a)/a³ in cells of side a (apply.comp), so equal radiance has intensities
 // ∝ a².
 #version 460
 #extension GL_EXT_scalar_block_layout : require

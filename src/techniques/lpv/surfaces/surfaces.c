@@ -1,6 +1,6 @@
 // The reflecting surfaces of each cell, for further bounces. Those of static draws are kept from
 // frame to frame, those of moving draws are added while they move.
-#include "techniques/lpv/lpv_surfaces.h"
+#include "techniques/lpv/surfaces/surfaces.h"
 
 #include "techniques/lpv/lpv_bindings.h"
 #include "techniques/lpv/lpv_frame.h"

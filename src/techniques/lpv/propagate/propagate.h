@@ -16,12 +16,12 @@ struct lpv_frame;
 void lpv_record_propagation(const struct lpv_propagation *propagation,
                             const struct lpv_frame *frame, const struct lpv_cascade *cascade);
 
-// lpv_refine.c: resamples the light of the next coarser cascade into `to`, the input of the first
+// refine.c: resamples the light of the next coarser cascade into `to`, the input of the first
 // step.
 void lpv_record_refinement(const struct lpv_propagation *propagation, const struct lpv_frame *frame,
                            const struct lpv_cascade *cascade, gpu_image to);
 
-// lpv_bounce.c
+// bounce.c
 // Whether a bounce follows a step; `left` steps remain after it.
 bool lpv_bounces_after(const struct lpv_frame *frame, const struct lpv_cascade *cascade, int left);
 // Fills `sent` from the injected light and the light `arrived`.
