@@ -331,7 +331,7 @@ const struct technique technique_prt = {
     .capabilities =
         CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION | PUBLISHES_PROBES,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID,
-    .bake_version = 6,
+    .bake_version = 7,
     .options = OPTION_TABLE(struct prt_options, option_rows, NULL),
     .presets = presets,
     .debug_views = views,

@@ -306,6 +306,42 @@ TEST(a_closed_emissive_sphere_is_a_furnace)
     prt_fixture_close(&f);
 }
 
+// Noise of the bounces of a spot below an emissive disk, on the belt of a sphere. The least
+// contrast that an observer sees is 1 % or so (Weber fraction).
+TEST(light_of_a_small_bright_spot_is_even)
+{
+    struct prt_fixture f;
+    struct material m = material_default();
+    double sum = 0, squares = 0;
+    int count = 0;
+    m.metallic = m.specular = 0;
+    m.base_color = vec4_of(vec3_of(0, 0, 0), 1);
+    m.emissive = vec3_of(100, 100, 100);
+    prt_fixture_init(&f);
+    prt_fixture_sphere(&f, vec3_of(0, 0, 0), 2, 16, 0, true, prt_fixture_diffuse(&f, 0.7f));
+    prt_fixture_disk(&f, vec3_of(0, -1.85f, 0), 0.1f, fixture_material(&f.s, &m));
+    prt_fixture_open(&f, "texels=2048");
+    struct prt_baked baked = prt_fixture_bake(&f, "rays=512", 0),
+                     precise = prt_fixture_bake(&f, "rays=4096", 1);
+    const float *bounces = tensors_find(baked.tensors, PRT_EMITTED)->data,
+                *expected = tensors_find(precise.tensors, PRT_EMITTED)->data;
+    for (uint32_t i = 0; i < f.charts.side_texel_count; i++) {
+        if (fabsf(chart_texel_of(&f.charts, i)->position.y) > 0.4f || !prt_is_open(&baked, i))
+            continue;
+        const double difference = (double)(bounces[3 * i] - expected[3 * i]);
+        sum += (double)expected[3 * i];
+        squares += difference * difference;
+        count++;
+    }
+    const double mean = sum / count, deviation = sqrt(squares / count);
+    print_message("%d texels: mean %.4f lux, deviation %.4f\n", count, mean, deviation / mean);
+    CHECK(count > 300);
+    CHECK(deviation < 0.01 * mean);
+    prt_baked_finish(&precise);
+    prt_baked_finish(&baked);
+    prt_fixture_close(&f);
+}
+
 // ---- rays
 
 TEST(the_direct_transfer_of_a_uniform_sky_is_its_irradiance)

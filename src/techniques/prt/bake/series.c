@@ -1,6 +1,7 @@
 #include "techniques/prt/bake/series.h"
 
 #include "bake/plan.h"
+#include "techniques/prt/bake/samples.h"
 
 #include <math.h>
 #include <string.h>
@@ -62,25 +63,50 @@ static vec4s gather(const struct prt_series *s, size_t texel)
     return glms_vec4_scale(sum, 1.0f / (float)rays);
 }
 
-// Returns the largest value of the next bounce.
-static float bounce(struct prt_series *s)
+// From the light that the last term sends to the next one, by rays.
+static bool gather_all(struct prt_series *s, const struct bake_task *task)
+{
+    if (bake_task_cancelled(task)) return false;
+    for (size_t i = 0; i < s->texels; i++) s->term[i] = gather(s, i);
+    return true;
+}
+
+// The same, by rays and samples.
+static bool sample_all(struct prt_series *s, const struct bake_task *task)
+{
+    enum { BETWEEN_CHECKS = 1024 };
+    const size_t rays = (size_t)s->scene->options.rays;
+    struct prt_samples samples;
+    bool ok = prt_samples_init(&samples, task, s->point, s->sent);
+    for (uint32_t i = 0; ok && i < s->texels; i++) {
+        ok = i % BETWEEN_CHECKS != 0 || !bake_task_cancelled(task);
+        if (!ok) break;
+        s->term[i] = is_hidden(s, i) ? (vec4s){ { 0, 0, 0, 0 } }
+                                     : prt_samples_gather(&samples, i, s->hits + i * rays);
+    }
+    prt_samples_finish(&samples);
+    return ok;
+}
+
+// Returns the largest value of the newest term.
+static float add_term(struct prt_series *s)
 {
     float most = 0.0f;
-    reflect(s);
     for (size_t i = 0; i < s->texels; i++) {
-        s->term[i] = gather(s, i);
         s->sum[i] = glms_vec4_add(s->sum[i], s->term[i]);
         for (int c = 0; c < 3; c++) most = fmaxf(most, fabsf(s->term[i].raw[c]));
     }
     return most;
 }
 
-bool prt_series_sum(struct prt_series *s, const struct bake_task *task, float least)
+bool prt_series_sum(struct prt_series *s, const struct bake_task *task, float least, bool sampled)
 {
+    const bool by_samples = sampled && prt_sample_count(&s->scene->options) > 0;
     memset(s->sum, 0, s->texels * sizeof *s->sum);
     for (int b = 0; b < s->scene->options.bounces; b++) {
-        if (bake_task_cancelled(task)) return false;
-        const float most = bounce(s);
+        reflect(s);
+        if (!(by_samples && b == 0 ? sample_all(s, task) : gather_all(s, task))) return false;
+        const float most = add_term(s);
         if (most < least || most == 0.0f) break;
     }
     return true;

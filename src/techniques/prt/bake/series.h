@@ -24,8 +24,11 @@ struct prt_series {
 // False: a tensor is missing, or no memory. prt_series_finish accepts zero.
 bool prt_series_init(struct prt_series *out, const struct bake_task *task);
 void prt_series_finish(struct prt_series *series);
-// From `term` to `sum`, until the largest value of a bounce is below `least`. False: cancelled.
-bool prt_series_sum(struct prt_series *series, const struct bake_task *task, float least);
+// From `term` to `sum`, until the largest value of a bounce is below `least`. sampled: the first
+// bounce by samples too (samples.h), for light that may come from a small patch. False: cancelled,
+// or no memory.
+bool prt_series_sum(struct prt_series *series, const struct bake_task *task, float least,
+                    bool sampled);
 // Additions for each ray and bounce, in rays that take as long, measured.
 #define PRT_SERIES_COST (1.0 / 250)
 enum { PRT_SERIES_BYTES = 64 }; // of memory for each texel

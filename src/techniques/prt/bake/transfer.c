@@ -1,5 +1,6 @@
 // The stages of the second wave: transfer vectors by coefficient, which do not mix, so that each is
 // a task; and bounces of the light of emissive surfaces.
+#include "techniques/prt/bake/samples.h"
 #include "techniques/prt/bake/series.h"
 
 #include "bake/plan.h"
@@ -33,7 +34,7 @@ static bool write_bounce(struct prt_series *s, const struct bake_task *task, con
         const float direct = rows[i * count + coefficient];
         s->term[i] = (vec4s){ { direct, direct, direct, 0 } };
     }
-    if (!prt_series_sum(s, task, s->scene->options.threshold)) return false;
+    if (!prt_series_sum(s, task, s->scene->options.threshold, false)) return false;
     for (size_t i = 0; i < s->texels; i++)
         for (size_t c = 0; c < 3; c++) out[3 * i + c] = half_from_float(s->sum[i].raw[c]);
     return true;
@@ -93,7 +94,7 @@ static bool run_emitted(const struct bake_task *task)
             s.term[i].raw[c] = ((const float *)emitted->data)[12 * i + 4 * c];
             most = fmaxf(most, s.term[i].raw[c]);
         }
-    ok = ok && prt_series_sum(&s, task, scene->options.threshold * most);
+    ok = ok && prt_series_sum(&s, task, scene->options.threshold * most, most > 0.0f);
     for (size_t i = 0; ok && i < s.texels; i++)
         for (size_t c = 0; c < 3; c++) ((float *)bake_row(task, 0, i))[c] = s.sum[i].raw[c];
     prt_series_finish(&s);
@@ -109,8 +110,9 @@ static bool add_emitted(struct bake_plan *plan, const struct prt_scene *scene)
                   .wave = 1,
                   .task_count = 1,
                   .run = run_emitted,
+                  .rays = (double)texels * prt_sample_count(&scene->options),
                   .others = series_cost(scene),
-                  .scratch_bytes = (size_t)texels * PRT_SERIES_BYTES,
+                  .scratch_bytes = (size_t)texels * (PRT_SERIES_BYTES + PRT_SAMPLES_BYTES),
                   BAKE_OUTPUTS(BAKE_F32(BAKE_ROWS, PRT_EMITTED, BAKE_SAVED, texels, 3)) });
 }
 
