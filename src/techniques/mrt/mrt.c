@@ -221,6 +221,14 @@ static float rest_of(const struct mrt *mrt)
     return mrt->options.remainder && !mrt->options.feedback ? mrt->runtime.rest : 1.0f;
 }
 
+// Feedback begins with more bounces while no light has accumulated: in the first frame, and with
+// new operators.
+static int bounces_of(const struct mrt *mrt, bool has_light)
+{
+    enum { FIRST = 16 };
+    return mrt->options.bounces + (mrt->options.feedback && !has_light ? FIRST : 0);
+}
+
 static bool record_host_solution(struct mrt *mrt, struct gpu_cmd *cmd,
                                  const struct frame_view *view)
 {
@@ -230,27 +238,21 @@ static bool record_host_solution(struct mrt *mrt, struct gpu_cmd *cmd,
                                       .direct = mrt_buffer(&mrt->runtime, "mrt_direct"),
                                       .irradiance = mrt_buffer(&mrt->runtime, "mrt_irradiance"),
                                       .radiosity = mrt_buffer(&mrt->runtime, "mrt_radiosity"),
-                                      .bounces = mrt->options.bounces,
+                                      .bounces = bounces_of(mrt, mrt->host_solver.solved),
                                       .feedback = mrt->options.feedback,
                                       .rest = rest_of(mrt),
                                       .radiance_scale = view->constants->radiance_scale,
                                   });
 }
 
-// Coefficients of new operators lack the light that feedback had accumulated. More bounces in one
-// frame replace it.
-enum { BOUNCES_OF_NEW_OPERATORS = 16 };
-
 static void record_bounces(struct mrt *mrt, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    const bool lost = mrt->options.feedback && mrt->update.swapped;
-    const struct mrt_bounces bounces = {
-        .count = mrt->options.bounces + (lost ? BOUNCES_OF_NEW_OPERATORS : 0),
-        .feedback = lost ? 0.0f : first_feedback(mrt, view),
-        .rest = rest_of(mrt),
-    };
-    mrt_record_bounces(&mrt->runtime, cmd, &bounces);
-    mrt->update.swapped = false;
+    mrt_record_bounces(&mrt->runtime, cmd,
+                       &(struct mrt_bounces){
+                           .count = bounces_of(mrt, mrt->lit),
+                           .feedback = first_feedback(mrt, view),
+                           .rest = rest_of(mrt),
+                       });
 }
 
 // Until the CPU's first result arrives the GPU solves.
@@ -286,7 +288,7 @@ static void mrt_update(void *state, struct gpu_cmd *cmd, const struct frame_view
 {
     struct mrt *mrt = state;
     if (mrt->map.count == 0) return;
-    if (mrt_update_record(mrt, cmd)) mrt->kept.known = false;
+    if (mrt_update_record(mrt, cmd)) mrt->lit = mrt->kept.known = false;
     if (!is_kept(mrt, view)) {
         mrt_record_direct(&mrt->runtime, cmd, view, mrt->options.emitters);
         // Light of the CPU is that of another frame.

@@ -151,12 +151,10 @@ struct mrt_gpu_clutter_place {
     uint32_t light, texel; // of mrt_clutter_light, of the clutter's texels
 };
 
-// Rows of a block in a table of an image (gpu/pixels/rows.glsl). Of the second row of tiles, z is a
-// mask of faces that are walls, and one of those with a block beyond.
-#define MRT_BLOCK_ROWS  8u
+// Rows of a block in a table of an image (gpu/block_rows.glsl).
+#define MRT_BLOCK_ROWS  4u
 #define MRT_ROW_INVERSE 0u // three
-#define MRT_ROW_EDGES   3u // three
-#define MRT_ROW_TILES   6u // two
+#define MRT_ROW_FACES   3u
 #define MRT_ROW_OPENING 64u
 #define MRT_NO_BLOCK    0xffffffffu // of a cell of the lookup grid
 

@@ -207,7 +207,6 @@ bool mrt_update_record(struct mrt *mrt, struct gpu_cmd *cmd)
     mrt_parts_replace(&mrt->parts, u->parts);
     if (mrt->options.solver == MRT_SOLVER_CPU)
         mrt_host_solver_set_reflectance(&mrt->host_solver, mrt->parts.images.geometry);
-    u->swapped = true;
     drop(mrt);
     return true;
 }

@@ -42,7 +42,6 @@ struct mrt_update {
     bool *changed; // [changed_count]: instances, since the operators before
     int changed_count;
     bool warned_walls, warned_failure;
-    bool swapped; // this frame has other operators than the last
 };
 
 bool mrt_update_init(struct mrt *mrt, const struct scene_pose *pose);

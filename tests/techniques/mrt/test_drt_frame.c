@@ -124,6 +124,19 @@ TEST_GPU(drt_feedback_converges)
     free(feedback);
 }
 
+// After a frame with a point light. Finishes the fixture; the caller frees the irradiance.
+static float *lit_irradiance(struct frame_fixture *s, const char *text)
+{
+    fixture_add_point(s, vec3_of(-1.5f, 2.7f, -1.2f), vec3_of(100, 60, 20));
+    fixture_open(s);
+    struct gi *gi = gi_fixture_light(s, text);
+    fixture_render(s);
+    float *out = fixture_read(s, READ_IRRADIANCE);
+    gi_destroy(gi);
+    fixture_finish(s);
+    return out;
+}
+
 // The camera in a closed hollow box with a small box in it, which are clutter; a lit room is around
 // it. thin: its sides are 1 cm thick, else 10 cm. Returns the irradiance; the caller frees it.
 static float *irradiance_in_hollow(struct gpu *gpu, const char *text, bool thin)
@@ -138,14 +151,7 @@ static float *irradiance_in_hollow(struct gpu *gpu, const char *text, bool thin)
     fixture_box(&s, vec3_of(0.2f, 0.7f, -0.6f), vec3_of(0.6f, 1.1f, -0.2f), false, material);
     fixture_box(&s, vec3_of(-0.7f, 0.7f, -0.7f), vec3_of(0.7f, 2.1f, 0.7f), true, material);
     fixture_look(&s, vec3_of(-0.5f, 1.9f, 0.5f), vec3_of(0.5f, 0.8f, -0.5f));
-    fixture_add_point(&s, vec3_of(-1.5f, 2.7f, -1.2f), vec3_of(100, 60, 20));
-    fixture_open(&s);
-    struct gi *gi = gi_fixture_light(&s, text);
-    fixture_render(&s);
-    float *out = fixture_read(&s, READ_IRRADIANCE);
-    gi_destroy(gi);
-    fixture_finish(&s);
-    return out;
+    return lit_irradiance(&s, text);
 }
 
 // mrt's light passes through.
@@ -166,6 +172,23 @@ TEST_GPU(drt_has_no_light_in_closed_clutter)
         }
         free(through);
     }
+}
+
+// The camera in a closed hollow box looks at a side less than a voxel of 25 cm before the plane
+// x = 1 m of probes. One of them is in the box and lights all of that side, which all others are
+// behind: a brighter one, at x = -1 m, too.
+TEST_GPU(drt_lights_a_surface_by_no_probe_behind_it)
+{
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
+    const int material = fixture_matte(&s, vec3_of(0.6f, 0.5f, 0.4f));
+    fixture_box(&s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, material);
+    fixture_box(&s, vec3_of(0.7f, 1.8f, -1.5f), vec3_of(1.8f, 2.8f, -0.5f), false, material);
+    fixture_box(&s, vec3_of(0.8f, 1.9f, -1.4f), vec3_of(1.7f, 2.7f, -0.6f), true, material);
+    fixture_look(&s, vec3_of(1, 2.15f, -1), vec3_of(0.8f, 2.1f, -1));
+    float *e = lit_irradiance(&s, "drt" HOLLOW ",gather=false");
+    for (int i = 0; i < FLOATS; i++) CHECK_RELATIVE(e[i], e[i % 3], 1e-3);
+    free(e);
 }
 
 // ---- Before the pixel

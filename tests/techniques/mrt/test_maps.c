@@ -129,6 +129,28 @@ TEST(a_room_is_one_block_that_ends_at_its_walls)
     finish(&made);
 }
 
+// A box hides other points of the floor, whose mean is rounded otherwise.
+TEST(a_room_is_the_same_block_wherever_an_object_stands)
+{
+    const vec3s seed = vec3_of(0, 4, 0);
+    struct mrt_block_map first = { 0 };
+    for (int i = 0; i < 8; i++) {
+        struct made made = { .scene = scene_load(test_host(), "@cornell") };
+        CHECK(made.scene && made.scene->instance_count > 5);
+        struct node *box = &made.scene->nodes[made.scene->instances[5].node];
+        box->translation = vec3_of(0.4f * (float)(i & 3), 0.01f * (float)(i >> 2), 0);
+        CHECK(pose_init(&made.pose, made.scene, -1, 0.0f));
+        CHECK(mrt_map_auto(test_host(), &made.pose, &seed, 1, &made.map));
+        CHECK(made.map.count == 1 && !made.map.is_single);
+        if (i == 0) first = made.map;
+        for (int c = 0; c < MRT_CORNERS; c++)
+            CHECK(glms_vec3_distance(made.map.blocks[0].corner[c], first.blocks[0].corner[c]) == 0);
+        if (i == 0) made.map = (struct mrt_block_map){ 0 };
+        finish(&made);
+    }
+    mrt_block_map_finish(&first);
+}
+
 // The two sides of each wall, a table and a wardrobe beside a wall have large surfaces.
 TEST(a_furnished_room_between_thick_walls_ends_at_them)
 {

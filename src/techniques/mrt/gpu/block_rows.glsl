@@ -1,5 +1,5 @@
 // Rows of affine blocks in images, of which a driver on a processor loads 16 bytes at once.
-// MRT_BLOCK_ROWS_BINDING is the includer's.
+// MRT_BLOCK_ROWS_BINDING and MRT_CELL_ROWS_BINDING are the includer's.
 #ifndef AG_MRT_BLOCK_ROWS_GLSL
 #define AG_MRT_BLOCK_ROWS_GLSL
 
@@ -7,7 +7,7 @@
 #include "techniques/mrt/mrt_shared.h"
 
 // [block][MRT_BLOCK_ROWS]: rows of the warp's inverse, each with a component of the block's middle;
-// edges of the cell; the places of tiles in the light map by face, y above x, and two masks.
+// the block's first tile, and masks of its faces.
 layout(set = 0, binding = MRT_BLOCK_ROWS_BINDING, rgba32ui) uniform readonly uimage2D block_rows;
 
 uvec4 block_row(uint block, uint row)
@@ -15,48 +15,77 @@ uvec4 block_row(uint block, uint row)
     return imageLoad(block_rows, light_map_at(block * MRT_BLOCK_ROWS + row));
 }
 
-// Rows of the inverse, and the place of a point in the cell.
-vec3 cell_by_rows(uint block, vec3 world, out vec3 inverse[3])
+// [cell of the lookup grid]: four blocks in it, or MRT_NO_BLOCK.
+layout(set = 0, binding = MRT_CELL_ROWS_BINDING, rgba32ui) uniform readonly uimage2D cell_rows;
+
+// A block, the rows of its inverse, and the place of a point in the cell.
+struct mrt_rows {
+    uint block;
+    vec3 inverse[3];
+    vec3 cell;
+};
+
+mrt_rows rows_of(uint block, vec3 world)
 {
-    vec3 middle, cell;
+    mrt_rows rows;
+    rows.block = block;
+    vec3 middle;
     for (uint a = 0u; a < 3u; a++) {
         vec4 row = uintBitsToFloat(block_row(block, MRT_ROW_INVERSE + a));
-        inverse[a] = row.xyz;
+        rows.inverse[a] = row.xyz;
         middle[a] = row.w;
     }
-    for (int a = 0; a < 3; a++) cell[a] = dot(inverse[a], world - middle);
-    return cell;
+    for (int a = 0; a < 3; a++) rows.cell[a] = dot(rows.inverse[a], world - middle);
+    return rows;
 }
 
-mat3 edges_by_rows(uint block)
+// The block that a point is in. False: it is in none.
+bool find_rows(vec3 world, out mrt_rows rows)
 {
-    mat3 edges;
-    for (uint a = 0u; a < 3u; a++)
-        edges[a] = uintBitsToFloat(block_row(block, MRT_ROW_EDGES + a).xyz);
-    return edges;
+    ivec3 cells = ivec3(level.cells_x, level.cells_y, level.cells_z);
+    vec3 at = (world - level.grid_origin_m) * level.cells_per_m;
+    ivec3 i = clamp(ivec3(at), ivec3(0), cells - 1);
+    uvec4 list = imageLoad(cell_rows, light_map_at(uint((i.z * cells.y + i.y) * cells.x + i.x)));
+    bool found;
+    do {
+        rows = rows_of(list.x == MRT_NO_BLOCK ? 0u : list.x, world);
+        found = list.x != MRT_NO_BLOCK && all(lessThanEqual(abs(rows.cell), vec3(0.5)));
+        list = uvec4(list.yzw, MRT_NO_BLOCK);
+    } while (!found && list.x != MRT_NO_BLOCK);
+    return found && all(greaterThanEqual(at, vec3(0.0))) && all(lessThan(at, vec3(cells)));
 }
 
-// Masks of faces: bit f is set where face f is a wall, MRT_ROW_OPENING << f with a block beyond.
-uint faces_by_rows(uint block)
+// Edges of the cell from the rows of its inverse, times a factor in common.
+mat3 edges_by_rows(vec3 inverse[3])
 {
-    return block_row(block, MRT_ROW_TILES + 1u).z;
+    return mat3(cross(inverse[1], inverse[2]), cross(inverse[2], inverse[0]),
+                cross(inverse[0], inverse[1]));
 }
 
-// The first texel of a face's tile.
-vec2 tile_by_rows(uint block, int face)
+// x: the block's first tile; y: bit f is set where face f is a wall, MRT_ROW_OPENING << f with a
+// block beyond.
+uvec2 faces_by_rows(uint block)
 {
-    uint word = block_row(block, MRT_ROW_TILES + (face < 4 ? 0u : 1u))[face & 3];
-    return vec2(word & 0xffffu, word >> 16);
+    return block_row(block, MRT_ROW_FACES).xy;
 }
 
-bool is_wall(uint faces, int face)
+bool is_wall(uvec2 faces, int face)
 {
-    return (faces & 1u << face) != 0u;
+    return (faces.y & 1u << face) != 0u;
 }
 
-bool is_opening(uint faces, int face)
+bool is_opening(uvec2 faces, int face)
 {
-    return (faces & MRT_ROW_OPENING << face) != 0u;
+    return (faces.y & MRT_ROW_OPENING << face) != 0u;
+}
+
+// The first texel of a wall's tile (level/atlas.c). Software drivers divide integers one by one.
+vec2 tile_of(uvec2 faces, int face)
+{
+    float tile = float(faces.x) + float(bitCount(faces.y & (1u << face) - 1u));
+    float edge = float(level.resolution + 2u), columns = float(level.map_width) / edge;
+    float row = floor((tile + 0.5) / columns);
+    return edge * vec2(tile - row * columns, row) + 1.0;
 }
 
 #endif

@@ -31,24 +31,53 @@ struct mrt_visible_probes {
     float scale; // of their light
 };
 
-uint sight_at(uint first, vec3 at)
+ivec3 voxel_at(vec3 at)
 {
-    ivec3 v = clamp(ivec3(floor(at)), ivec3(0), ivec3(SIGHT - 1));
+    return clamp(ivec3(floor(at)), ivec3(0), ivec3(SIGHT - 1));
+}
+
+uint sight_at(uint first, ivec3 v)
+{
     return sight_table[first + uint((v.z * SIGHT + v.y) * SIGHT + v.x)];
 }
 
+// The lowest of the eight probes around a voxel, as voxel_of of objects/probe_sight.c.
+ivec3 probe_below(ivec3 voxel)
+{
+    return (voxel * int(level.probes) + SIGHT / 2) / SIGHT;
+}
+
+// Bits of the probes around one voxel as those around another, whose lowest probe is `by` further.
+// Probes that only the latter has are 0.
+uint probes_from(uint bits, ivec3 by)
+{
+    const uint LOW[3] = { 0x55u, 0x33u, 0x0fu }; // of the lower four along an axis
+    for (int a = 0; a < 3; a++) {
+        uint up = bits >> (1 << a) & LOW[a], down = (bits & LOW[a]) << (1 << a);
+        bits = by[a] == 0 ? bits : by[a] > 0 ? up : down;
+    }
+    return bits;
+}
+
 // The voxel one step from a surface along its normal, in the cell, is entirely on its side, but may
-// be in another object. The surface's own voxel, which its wall may cross, then counts, too.
+// be in another object, and beyond the plane of some of the probes around the surface. The
+// surface's own voxel, which its wall may cross, then counts, too.
 uint sight_of(mrt_place place, vec3 normal)
 {
     uint first = sight_table[place.block];
     if (first == 0u) return MRT_SIGHT_PROBES;
     vec3 at = (place.cell + 0.5) * float(SIGHT);
-    if (normal == vec3(0.0)) return sight_at(first, at);
-    uint sight = sight_at(first, at + normal / largest_of(normal));
-    if ((sight & MRT_SIGHT_SOLID) == 0u) return sight;
-    uint own = sight_at(first, at);
-    return (sight & own & MRT_SIGHT_PROBES) != 0u ? sight & own : own;
+    ivec3 here = voxel_at(at);
+    uint own = sight_at(first, here);
+    if (normal == vec3(0.0)) return own;
+    ivec3 next = voxel_at(at + normal / largest_of(normal));
+    ivec3 by = probe_below(here) - probe_below(next);
+    uint sight = sight_at(first, next), known = probes_from(MRT_SIGHT_PROBES, by);
+    uint seen = probes_from(sight & MRT_SIGHT_PROBES, by) | own & MRT_SIGHT_PROBES & ~known;
+    bool solid = (sight & MRT_SIGHT_SOLID) != 0u;
+    if (solid) seen &= own;
+    if (seen != 0u) return seen;
+    return solid || (sight & MRT_SIGHT_PROBES) != 0u ? own : sight;
 }
 
 float share_of_probe(mrt_visible_probes visible, int c)

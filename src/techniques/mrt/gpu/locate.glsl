@@ -55,31 +55,17 @@ float largest_of(vec3 v)
     return max(max(abs(v.x), abs(v.y)), abs(v.z));
 }
 
-// The inverse of the affine part, and the edges of an affine block.
+// The inverse of the affine part.
+vec3 affine_cell(uint block, vec3 world)
+{
 #ifdef MRT_BLOCK_ROWS_BINDING
-vec3 affine_cell(uint block, vec3 world)
-{
-    vec3 rows[3];
-    return cell_by_rows(block, world, rows);
-}
-
-mat3 affine_edges(uint block)
-{
-    return edges_by_rows(block);
-}
+    return rows_of(block, world).cell;
 #else
-vec3 affine_cell(uint block, vec3 world)
-{
     vec3 cell, way = world - block_table[block].middle;
     for (int a = 0; a < 3; a++) cell[a] = dot(block_table[block].inverse[a], way);
     return cell;
-}
-
-mat3 affine_edges(uint block)
-{
-    return edges_of_block(block);
-}
 #endif
+}
 
 // From the affine part, which is exact for boxes; Newton's method otherwise.
 bool warp_inverse(uint block, vec3 world, out vec3 cell)
@@ -108,12 +94,14 @@ bool place_in(uint block, vec3 world, out mrt_place place)
     return found && place.outside < MRT_BEYOND;
 }
 
-// The block nearest to the point.
+// The block nearest to the point. Lists of candidates are long: of blocks up to MRT_BEYOND away.
 mrt_place locate(vec3 world)
 {
-    mrt_place nearest;
-    nearest.block = -1;
-    nearest.outside = MRT_BEYOND;
+    mrt_place nearest = mrt_place(-1, vec3(0.0), MRT_BEYOND);
+#ifdef MRT_BLOCK_ROWS_BINDING
+    mrt_rows rows;
+    if (AFFINE && find_rows(world, rows)) nearest = mrt_place(int(rows.block), rows.cell, 0.0);
+#endif
     vec3 at = (world - level.grid_origin_m) * level.cells_per_m;
     ivec3 cells = ivec3(level.cells_x, level.cells_y, level.cells_z);
     if (any(lessThan(at, vec3(0.0))) || any(greaterThanEqual(at, vec3(cells)))) return nearest;
@@ -130,7 +118,7 @@ mrt_place locate(vec3 world)
 mat3 world_from_cell(mrt_place place)
 {
     mat3 jacobian;
-    if (AFFINE) return affine_edges(uint(place.block));
+    if (AFFINE) return edges_of_block(uint(place.block));
     warp_point(uint(place.block), place.cell, jacobian);
     return jacobian;
 }

@@ -8,7 +8,7 @@
 #include <math.h>
 
 // As in light_map.glsl: edges of the cell, and cosines.
-static const float WALL_DISTANCE[2] = { 0.1f, 0.15f };
+static const float WALL_DISTANCE[2] = { 0.1f, MRT_NEAR_WALL };
 static const float WALL_COSINE[2] = { 0.35f, 0.65f };
 
 int mrt_block_of_point(const struct mrt_block_map *map, vec3s world, vec3s *cell)

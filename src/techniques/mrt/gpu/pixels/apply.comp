@@ -29,36 +29,23 @@ layout(set = 0, binding = 23, scalar) buffer clutter_list
     mrt_list_header clutter;
     uint clutter_pixels[];
 };
-
-// Whether the pixel is of clutter.
-bool append_clutter(ivec2 pixel)
-{
-    if (!is_of_clutter(pixel)) return false;
-    uint to = atomicAdd(clutter.count, 1u);
-    if (to % MRT_LOCAL == 0u) atomicAdd(clutter.groups[0], 1u);
-    clutter_pixels[to] = uint(pixel.y) << 16 | uint(pixel.x);
-    return true;
-}
 #endif
 
-void append_amid(ivec2 pixel)
-{
-    uint to = atomicAdd(amid.count, 1u);
-    if (to % MRT_LOCAL == 0u) atomicAdd(amid.groups[0], 1u);
-    amid_pixels[to] = uint(pixel.y) << 16 | uint(pixel.x);
-}
-
-void append_several(ivec2 pixel)
-{
-    uint to = atomicAdd(several.count, 1u);
-    if (to % MRT_LOCAL == 0u) atomicAdd(several.groups[0], 1u);
-    several_pixels[to] = uint(pixel.y) << 16 | uint(pixel.x);
-}
+// Adds a pixel to a list. A macro, as functions take no buffers.
+#define APPEND(list, pixels, pixel)                                                                \
+    {                                                                                              \
+        uint to = atomicAdd(list.count, 1u);                                                       \
+        if (to % MRT_LOCAL == 0u) atomicAdd(list.groups[0], 1u);                                   \
+        pixels[to] = uint(pixel.y) << 16 | uint(pixel.x);                                          \
+    }
 
 void shade(ivec2 pixel)
 {
 #if CLUTTER
-    if (append_clutter(pixel)) return;
+    if (is_of_clutter(pixel)) {
+        APPEND(clutter, clutter_pixels, pixel);
+        return;
+    }
 #endif
     pixel_surface s = surface_of(pixel);
     if (!AFFINE || TUBES) {
@@ -68,8 +55,8 @@ void shade(ivec2 pixel)
     mrt_light light;
     int kind = plain_light(s.position, s.normal, s.lobe, light);
     if (kind == MRT_OF_WALL) store_light(s, light);
-    if (kind == MRT_OF_PROBES) append_amid(pixel);
-    if (kind == MRT_OF_SEVERAL) append_several(pixel);
+    if (kind == MRT_OF_PROBES) APPEND(amid, amid_pixels, pixel);
+    if (kind == MRT_OF_SEVERAL) APPEND(several, several_pixels, pixel);
 }
 
 void main()

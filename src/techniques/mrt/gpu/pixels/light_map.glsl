@@ -69,7 +69,7 @@ float share_of_wall(float distance, float cosine)
 }
 
 // A surface faces one of two opposite walls. `normal` is in the cell.
-mrt_wall wall_of(uint faces, vec3 cell, vec3 normal)
+mrt_wall wall_of(uvec2 faces, vec3 cell, vec3 normal)
 {
     mrt_wall best = mrt_wall(-1, 0.0);
     for (int a = 0; a < 3; a++) {
@@ -90,13 +90,13 @@ vec3 walls_irradiance(mrt_place place, vec3 direction)
 {
     vec3 sum = vec3(0.0);
     float weights = 0.0;
-    uint block = uint(place.block), faces = faces_by_rows(block);
+    uvec2 faces = faces_by_rows(uint(place.block));
     for (int face = 0; face < 6; face++) {
         if (!is_wall(faces, face)) continue;
         vec3 inner = -cube_from_face(face)[2];
         float cosine = max(dot(inner, direction), 0.0), weight = cosine * cosine + MRT_LEAST_WEIGHT;
         mrt_light light =
-            wall_light(tile_by_rows(block, face), face, place.cell, inner, MRT_NO_LOBE.surface);
+            wall_light(tile_of(faces, face), face, place.cell, inner, MRT_NO_LOBE.surface);
         sum += weight * light.irradiance;
         weights += weight;
     }
@@ -134,7 +134,7 @@ const float MRT_AWAY_COSINE = 0.5;
 float way_to_wall(mrt_place place, vec3 normal)
 {
     vec3 to = inverse(world_from_cell(place)) * normal;
-    uint faces = faces_by_rows(uint(place.block));
+    uvec2 faces = faces_by_rows(uint(place.block));
     float shortest = 0.0;
     for (int f = 0; f < 6; f++) {
         float side = (f & 1) != 0 ? 1.0 : -1.0, towards = side * to[f / 2];
@@ -166,7 +166,7 @@ mrt_wall wall_beyond(vec3 world, vec3 normal, inout mrt_place place, inout vec3 
     none.face = -1;
     none.share = 0.0;
     int opening = -1;
-    uint faces = faces_by_rows(uint(place.block));
+    uvec2 faces = faces_by_rows(uint(place.block));
     float least = MRT_WALL_DISTANCE.x;
     for (int a = 0; a < 3; a++) {
         int f = face_of(a, place.cell[a] > 0.0);
@@ -192,7 +192,7 @@ mrt_wall wall_beyond(vec3 world, vec3 normal, inout mrt_place place, inout vec3 
 mrt_light tube_light(mrt_place place, vec3 normal, mrt_lobe lobe)
 {
     mrt_tube_place at = tube_place(place.block, place.cell);
-    vec2 first = tile_by_rows(uint(place.block), 0);
+    vec2 first = tile_of(faces_by_rows(uint(place.block)), 0);
     vec2 st = vec2(at.around, at.along);
     vec3 n = normal_in_cell(place, normal) * at.frame;
     float share = share_of_wall(MRT_TUBE_RADIUS - length(at.off), n.z);
@@ -216,7 +216,7 @@ mrt_light room_light(vec3 position, vec3 normal, mrt_lobe lobe, mrt_place place)
     mrt_light on_wall = MRT_DARK, inside = MRT_DARK;
     if (wall.share > 0.0)
         on_wall = wall_light(
-            tile_by_rows(uint(place.block), wall.face), wall.face, place.cell, n,
+            tile_of(faces_by_rows(uint(place.block)), wall.face), wall.face, place.cell, n,
             light_map_lobe(direction_in_cell(place, lobe.surface.along), lobe.surface.share));
     if (wall.share < 1.0)
         inside = PROBES ? bricks_light(place, normal, lobe) : walls_light(place, n, lobe);

@@ -47,7 +47,9 @@ pixel_surface surface_of(ivec2 at)
 {
     pixel_surface s;
     s.at = at;
-    s.position = frame_world_position(frame_uv(uvec2(at)), texelFetch(depth, at, 0).r);
+    vec2 uv = frame_uv(uvec2(at));
+    float distance = frame_view_distance(texelFetch(depth, at, 0).r);
+    s.position = frame_ray_origin(uv) + distance * frame_view_ray(uv);
     s.normal = octahedral_decode(texelFetch(normal, at, 0).rg);
     s.lobe = MRT_NO_LOBE;
 #if SPECULAR

@@ -3,7 +3,6 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#define MRT_TILES_BINDING      2
 #define MRT_BLOCKS_BINDING     3
 #define MRT_CELLS_BINDING      4
 #define MRT_CANDIDATES_BINDING 5
@@ -24,28 +23,20 @@ void store(uint block, uint row, uvec4 words)
     imageStore(block_rows, light_map_at(block * MRT_BLOCK_ROWS + row), words);
 }
 
-uint word_of_tile(int tile)
-{
-    return tile < 0 ? 0u : uint(tile_table[tile].y) << 16 | uint(tile_table[tile].x);
-}
-
 void store_block(uint block)
 {
-    uint words[8], masks = 0u;
-    for (uint a = 0u; a < 3u; a++) {
-        vec3 edge = block_table[block].corner[1u << a] - block_table[block].corner[0];
+    uint first = 0u, faces = 0u;
+    for (uint a = 0u; a < 3u; a++)
         store(block, MRT_ROW_INVERSE + a,
               uvec4(floatBitsToUint(block_table[block].inverse[a]),
                     floatBitsToUint(block_table[block].middle[a])));
-        store(block, MRT_ROW_EDGES + a, uvec4(floatBitsToUint(edge), 0u));
+    for (int f = 5; f >= 0; f--) {
+        int tile = block_table[block].tile[f];
+        if (tile >= 0) first = uint(tile);
+        if (tile >= 0) faces |= 1u << f;
+        if (block_table[block].neighbor[f] >= 0) faces |= MRT_ROW_OPENING << f;
     }
-    for (uint f = 0u; f < 6u; f++) {
-        words[f] = word_of_tile(block_table[block].tile[f]);
-        if (block_table[block].tile[f] >= 0) masks |= 1u << f;
-        if (block_table[block].neighbor[f] >= 0) masks |= MRT_ROW_OPENING << f;
-    }
-    store(block, MRT_ROW_TILES, uvec4(words[0], words[1], words[2], words[3]));
-    store(block, MRT_ROW_TILES + 1u, uvec4(words[4], words[5], masks, 0u));
+    store(block, MRT_ROW_FACES, uvec4(first, faces, 0u, 0u));
 }
 
 // Edges of the block between it and the middle of a cell of the lookup grid, less than 0 inside.

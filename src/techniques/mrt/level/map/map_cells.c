@@ -234,11 +234,21 @@ static float snapped(const struct mrt_cells *cells, int axis, int plane)
     return sides ? sum / (float)sides : cells->plane[axis][plane];
 }
 
+// Rays that an object hides change the last bits of a plane: it is at a multiple of 2⁻¹⁸ of the
+// power of two above the shortest edge of the bounds.
+static float rounded(const struct mrt_cells *cells, float position)
+{
+    int exponent;
+    frexpf(glms_vec3_min(box3_size(cells->bounds)), &exponent);
+    return ldexpf(roundf(ldexpf(position, 18 - exponent)), exponent - 18);
+}
+
 void mrt_cells_snap(struct mrt_cells *cells)
 {
     float moved[3][MRT_MAX_PLANES];
     for (int a = 0; a < 3; a++)
-        for (int p = 0; p < cells->planes[a]; p++) moved[a][p] = snapped(cells, a, p);
+        for (int p = 0; p < cells->planes[a]; p++)
+            moved[a][p] = rounded(cells, snapped(cells, a, p));
     for (int a = 0; a < 3; a++)
         for (int p = 0; p < cells->planes[a]; p++) cells->plane[a][p] = moved[a][p];
 }
