@@ -58,6 +58,8 @@ struct bake_stage {
     const void *argument; // for run
     const struct bake_output *outputs;
     int output_count; // at most BAKE_MAX_OUTPUTS
+    // Rows that one task fills together: 0 … n − 1, n … 2n − 1 and so on. 0: any.
+    uint32_t rows_together;
     // Costs of one task, for estimates. flops: floating-point operations of dense linear algebra.
     // others: work that is neither, in rays that take as long. scratch_bytes: memory beyond the
     // outputs.
@@ -126,7 +128,8 @@ struct bake_task {
     // For each output of the stage: BAKE_ROWS: the task's rows, BAKE_SUM: the whole tensor. Zeroed.
     void *const *out;
     const struct bake_output *outputs;
-    struct bake_run *run; // private
+    uint32_t rows_together; // of the stage
+    struct bake_run *run;   // private
 };
 
 // The rows of a tensor that task `index` of `count` fills: first … first + *rows − 1 of `total`.
@@ -136,6 +139,16 @@ static inline uint64_t bake_rows(uint64_t total, size_t index, size_t count, uin
     const uint64_t part = total / count, more = total % count;
     const uint64_t first = part * index + (index < more ? index : more);
     *rows = part + (index < more ? 1 : 0);
+    return first;
+}
+// The same where groups of `together` rows are one task's.
+static inline uint64_t bake_rows_together(uint64_t total, uint32_t together, size_t index,
+                                          size_t count, uint64_t *rows)
+{
+    if (together < 2) return bake_rows(total, index, count, rows);
+    uint64_t groups, first = bake_rows((total + together - 1) / together, index, count, &groups);
+    first = first * together < total ? first * together : total;
+    *rows = groups * together < total - first ? groups * together : total - first;
     return first;
 }
 // Tasks of at least one row each for that much work, some of which is a task.

@@ -18,7 +18,8 @@ char *output_block(const struct planned_stage *stage, const struct planned_outpu
     }
     const uint64_t total = output_rows(&output->what);
     uint64_t rows = 0;
-    const uint64_t first = bake_rows(total, task, stage->what.task_count, &rows);
+    const uint64_t first =
+        bake_rows_together(total, stage->what.rows_together, task, stage->what.task_count, &rows);
     const size_t row_bytes = total > 0 ? output->bytes / (size_t)total : 0;
     *bytes = (size_t)rows * row_bytes;
     return output->data ? output->data + (size_t)first * row_bytes : NULL;

@@ -155,6 +155,7 @@ static bool call_task(struct bake_run *run, const struct queued_task *at, struct
                                     .bake_seed = run->bake->identity.seed,
                                     .out = blocks->out,
                                     .outputs = outputs,
+                                    .rows_together = at->stage->what.rows_together,
                                     .run = run };
     return at->stage->what.run(&task);
 }
@@ -204,7 +205,8 @@ static void run_tasks_of_queue(void *user, size_t thread)
 
 uint64_t bake_task_rows(const struct bake_task *task, int output, uint64_t *rows)
 {
-    return bake_rows(output_rows(&task->outputs[output]), task->index, task->count, rows);
+    return bake_rows_together(output_rows(&task->outputs[output]), task->rows_together, task->index,
+                              task->count, rows);
 }
 
 void *bake_row(const struct bake_task *task, int output, uint64_t row)

@@ -29,6 +29,9 @@ struct inputs {
     const struct noise_sums *sums; // of the wave before
     const uint32_t *counts;        // of the units
     const float *shares;
+    // The texels of the last row's tile, and sums of their paths.
+    struct gather_tile tile;
+    struct noise_sums of_tile[GATHER_TILE];
 };
 
 static const char SHARES[] = "texels/shares";
@@ -37,27 +40,36 @@ static const char SHARES[] = "texels/shares";
 
 static void gather_first(void *user, const struct bake_task *task, uint32_t texel, uint64_t row)
 {
-    const struct inputs *in = user;
-    struct noise_sums *sums = bake_row(task, 0, row);
-    struct gather_points points;
-    gather_find_points(&in->job->scene, texel, &points);
-    gather_grouped_paths(&in->job->scene, &points, 0, FIRST_PATHS, task->bake_seed, sums);
-    const vec3s punctual = gather_punctual(&in->job->scene, &points);
+    struct inputs *in = user;
+    if (!gather_tile_has(&in->tile, texel)) {
+        memset(in->of_tile, 0, sizeof in->of_tile);
+        gather_tile_of(&in->job->scene, texel, &in->tile);
+        gather_grouped_paths(&in->job->scene, &in->tile, 0, FIRST_PATHS, task->bake_seed,
+                             in->of_tile);
+    }
+    const uint32_t i = texel - in->tile.first;
+    const vec3s punctual = gather_punctual(&in->job->scene, &in->tile.points[i]);
+    memcpy(bake_row(task, 0, row), &in->of_tile[i], sizeof in->of_tile[i]);
     memcpy(bake_row(task, 1, row), punctual.raw, sizeof punctual.raw);
-    *(float *)bake_row(task, 2, row) = (float)points.count / GATHER_POINTS;
+    *(float *)bake_row(task, 2, row) = (float)in->tile.points[i].count / GATHER_POINTS;
 }
 
+// A unit has whole charts' sides, and so whole tiles.
 static void gather_more(void *user, const struct bake_task *task, uint32_t texel, uint64_t row)
 {
-    const struct inputs *in = user;
+    struct inputs *in = user;
     struct noise_sums *sums = bake_row(task, 0, row);
     *sums = in->sums[texel];
     const uint32_t before = (uint32_t)sums->paths,
                    after = in->counts[noise_unit_of(&in->job->units, texel)];
     if (before == 0 || after <= before) return;
-    struct gather_points points;
-    gather_find_points(&in->job->scene, texel, &points);
-    gather_grouped_paths(&in->job->scene, &points, before, after, task->bake_seed, sums);
+    if (!gather_tile_has(&in->tile, texel)) {
+        gather_tile_of(&in->job->scene, texel, &in->tile);
+        memcpy(in->of_tile, &in->sums[in->tile.first], in->tile.count * sizeof in->of_tile[0]);
+        gather_grouped_paths(&in->job->scene, &in->tile, before, after, task->bake_seed,
+                             in->of_tile);
+    }
+    *sums = in->of_tile[texel - in->tile.first];
 }
 
 static bool run_paths(const struct bake_task *task)
@@ -173,11 +185,12 @@ static bool add_paths(struct bake_plan *plan, const struct wave *wave, uint64_t 
                   .name = bake_plan_name(plan, "paths %d", wave->number + 1),
                   .wave = at,
                   .task_count = tasks,
+                  .rows_together = GATHER_TILE,
                   .run = run_paths,
                   .argument = wave,
                   .outputs = out,
                   .output_count = wave->sums_before ? 1 : 3,
-                  .rays = (double)(texels * paths * LIGHTMAP_RAYS_PER_PATH) / (double)tasks,
+                  .rays = (double)(texels * paths * LIGHTMAP_RAYS_OF_SHARED) / (double)tasks,
                   .texels = wave->sums_before ? 0.0 : (double)texels / (double)tasks });
 }
 

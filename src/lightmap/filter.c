@@ -1,6 +1,7 @@
 #include "lightmap/filter.h"
 
 #include "core/parallel.h"
+#include "lightmap/gather.h"
 
 #include <math.h>
 #include <string.h>
@@ -51,21 +52,37 @@ static uint32_t neighbour(const struct filter *f, uint32_t texel, int dx, int dy
     return (int)own->x == x && (int)own->y == y ? found : CHART_NONE; // not of a gutter
 }
 
-// Texels have noise of their own, so that the variance of a patch is the mean of theirs over their
-// number.
+// Texels of a tile share their paths: about the same noise. Other texels have noise of their own.
+struct tile_noise {
+    uint32_t tile;
+    float deviation; // sum over texels
+};
+
+static void add_noise(struct tile_noise tiles[9], int *count, uint32_t texel, float variance)
+{
+    const uint32_t tile = texel / GATHER_TILE;
+    int i = 0;
+    while (i < *count && tiles[i].tile != tile) i++;
+    if (i == *count) tiles[(*count)++] = (struct tile_noise){ .tile = tile };
+    tiles[i].deviation += sqrtf(fmaxf(variance, 0.0f));
+}
+
 static void find_patch(void *user, size_t i)
 {
     struct filter *f = user;
     const uint32_t texel = (uint32_t)i;
+    struct tile_noise tiles[9];
+    int tile_count = 0;
     float sum = 0.0f, variance = 0.0f, count = 0.0f;
     if (!is_open(f, texel)) return;
     for (int k = 0; k < 9; k++) {
         const uint32_t q = neighbour(f, texel, k % 3 - 1, k / 3 - 1);
         if (q == CHART_NONE) continue;
         sum += luminance_of(f, q);
-        variance += f->light[CHANNELS * (size_t)q + LIGHTMAP_VARIANCE];
+        add_noise(tiles, &tile_count, q, f->light[CHANNELS * (size_t)q + LIGHTMAP_VARIANCE]);
         count += 1.0f;
     }
+    for (int k = 0; k < tile_count; k++) variance += tiles[k].deviation * tiles[k].deviation;
     f->patch[i] = sum / count;
     f->variance[i] = variance / (count * count);
 }

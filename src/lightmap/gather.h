@@ -46,11 +46,30 @@ struct surface gather_surface(const struct gather_scene *scene, const struct gat
 
 // Irradiance by punctual lights: the mean over the points.
 vec3s gather_punctual(const struct gather_scene *scene, const struct gather_points *points);
-// Irradiance by emissive surfaces, the sky and all bounces: the mean of `samples` paths. variance
-// (may be NULL): of its luminance, lux², from groups of successive paths; somewhat too large, since
-// a group is stratified less than all.
-vec3s gather_paths(const struct gather_scene *scene, const struct gather_points *points,
-                   int samples, uint64_t seed, float *variance);
-// Adds paths `before` to `after` − 1 of the texel, in groups: multiples of NOISE_GROUPS.
-void gather_grouped_paths(const struct gather_scene *scene, const struct gather_points *points,
+// Texels next to each other, of one side of a chart, whose paths are shared (trace/share.h).
+enum { GATHER_TILE = 16 };
+struct gather_tile {
+    uint32_t first, count; // texels; count 0: none yet
+    struct gather_points points[GATHER_TILE];
+    vec3s light[GATHER_TILE];    // lux
+    float variance[GATHER_TILE]; // of its luminance, lux²
+};
+// The texels that share paths with this one: the same for each of them.
+void gather_tile_of(const struct gather_scene *scene, uint32_t texel, struct gather_tile *out);
+static inline bool gather_tile_has(const struct gather_tile *tile, uint32_t texel)
+{
+    return texel >= tile->first && texel < tile->first + tile->count;
+}
+
+// Irradiance by emissive surfaces, the sky and all bounces: means of `samples` paths of each texel.
+// variance: from groups of successive paths; somewhat too large, since a group is stratified less
+// than all.
+void gather_tile_paths(const struct gather_scene *scene, struct gather_tile *tile, int samples,
+                       uint64_t seed);
+// Adds paths `before` to `after` − 1 of each texel, in groups: multiples of NOISE_GROUPS. sums: of
+// the tile's texels.
+void gather_grouped_paths(const struct gather_scene *scene, const struct gather_tile *tile,
                           uint32_t before, uint32_t after, uint64_t seed, struct noise_sums *sums);
+// The light of one texel, or of a point, by paths that are not shared.
+vec3s gather_paths(const struct gather_scene *scene, const struct gather_points *points,
+                   int samples, uint64_t seed);

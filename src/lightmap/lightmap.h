@@ -30,7 +30,7 @@ struct lightmap_bake {
 };
 // In the identity of the bake.
 #define LIGHTMAP_NAME "lightmap"
-enum { LIGHTMAP_VERSION = 4 };
+enum { LIGHTMAP_VERSION = 5 };
 bool lightmap_add_stages(struct bake_plan *plan, const struct lightmap_bake *how);
 
 // ---- lightmap.c

@@ -23,13 +23,15 @@ enum { PATHS_PER_TASK = 16384 };
 
 size_t lightmap_task_count(uint64_t texels, uint64_t paths_of_texel)
 {
-    return bake_task_count(texels, texels * paths_of_texel, PATHS_PER_TASK);
+    const uint64_t tiles = (texels + GATHER_TILE - 1) / GATHER_TILE;
+    return bake_task_count(tiles, texels * paths_of_texel, PATHS_PER_TASK);
 }
 
-void lightmap_gather_row(const struct gather_scene *scene, const struct gather_points *points,
-                         int samples, uint64_t seed, float *row)
+void lightmap_write_row(const struct gather_tile *tile, uint32_t texel, float *row)
 {
-    const vec3s light = gather_paths(scene, points, samples, seed, &row[LIGHTMAP_VARIANCE]);
-    memcpy(row, light.raw, sizeof light.raw);
-    row[LIGHTMAP_SHARE] = (float)points->count / GATHER_POINTS;
+    const uint32_t i = texel - tile->first;
+    if (tile->points[i].count == 0) return;
+    memcpy(row, tile->light[i].raw, sizeof tile->light[i].raw);
+    row[LIGHTMAP_VARIANCE] = tile->variance[i];
+    row[LIGHTMAP_SHARE] = (float)tile->points[i].count / GATHER_POINTS;
 }

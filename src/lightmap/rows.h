@@ -11,8 +11,8 @@ bool lightmap_run_rows(const struct bake_task *task, uint64_t texels, lightmap_r
                        void *user);
 // Tasks for that many paths, at least one.
 size_t lightmap_task_count(uint64_t texels, uint64_t paths_of_texel);
-// A row of LIGHTMAP_REST by paths; points are not none.
-void lightmap_gather_row(const struct gather_scene *scene, const struct gather_points *points,
-                         int samples, uint64_t seed, float *row);
+// A row of LIGHTMAP_REST by paths; some of the texel's points are outside geometry. tile: of it.
+void lightmap_write_row(const struct gather_tile *tile, uint32_t texel, float *row);
 
-enum { LIGHTMAP_RAYS_PER_PATH = 8 };
+// About; of a path that a tile shares with shadow rays to the other texels.
+enum { LIGHTMAP_RAYS_PER_PATH = 8, LIGHTMAP_RAYS_OF_SHARED = 8 + GATHER_TILE - 1 };

@@ -37,22 +37,31 @@ size_t lightmap_job_bytes(const struct charts *charts)
 
 // ---- one number of paths for all texels
 
+// A task: texels of a tile follow each other, and their light is gathered at once.
+struct gathering {
+    const struct lightmap_job *job;
+    struct gather_tile tile;
+};
+
 static void gather(void *user, const struct bake_task *task, uint32_t texel, uint64_t row)
 {
-    const struct lightmap_job *job = user;
-    struct gather_points points;
-    gather_find_points(&job->scene, texel, &points);
-    if (points.count == 0) return;
-    const vec3s punctual = gather_punctual(&job->scene, &points);
+    struct gathering *g = user;
+    const struct gather_scene *scene = &g->job->scene;
+    if (!gather_tile_has(&g->tile, texel)) {
+        gather_tile_of(scene, texel, &g->tile);
+        gather_tile_paths(scene, &g->tile, g->job->how.samples, task->bake_seed);
+    }
+    const struct gather_points *points = &g->tile.points[texel - g->tile.first];
+    if (points->count == 0) return;
+    const vec3s punctual = gather_punctual(scene, points);
     memcpy(bake_row(task, 0, row), punctual.raw, sizeof punctual.raw);
-    lightmap_gather_row(&job->scene, &points, job->how.samples, task->bake_seed,
-                        bake_row(task, 1, row));
+    lightmap_write_row(&g->tile, texel, bake_row(task, 1, row));
 }
 
 static bool run(const struct bake_task *task)
 {
-    const struct lightmap_job *job = task->job;
-    return lightmap_run_rows(task, job->charts.side_texel_count, gather, (void *)job);
+    struct gathering g = { .job = task->job };
+    return lightmap_run_rows(task, g.job->charts.side_texel_count, gather, &g);
 }
 
 // ---- planning
@@ -65,10 +74,11 @@ static bool add_stage(struct bake_plan *plan, int samples, uint64_t texels)
         &(struct bake_stage){
             .name = "paths",
             .task_count = count,
+            .rows_together = GATHER_TILE,
             .run = run,
             BAKE_OUTPUTS(BAKE_F32(BAKE_ROWS, LIGHTMAP_PUNCTUAL, BAKE_SAVED, texels, 3),
                          BAKE_F32(BAKE_ROWS, LIGHTMAP_REST, BAKE_SAVED, texels, LIGHTMAP_COLUMNS)),
-            .rays = (double)texels * samples * LIGHTMAP_RAYS_PER_PATH / (double)count,
+            .rays = (double)texels * samples * LIGHTMAP_RAYS_OF_SHARED / (double)count,
             .texels = (double)texels / (double)count });
 }
 

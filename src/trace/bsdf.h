@@ -52,6 +52,9 @@ struct reflection {
 };
 static inline struct reflection bsdf_reflect(const struct bsdf *bsdf,
                                              vec3s to_light); // to_light: unit
+// The diffuse lobe alone towards a viewer, 1/sr: bsdf_of(…).diffuse.
+static inline vec3s bsdf_diffuse_towards(vec3s normal, vec3s to_viewer,
+                                         const struct bsdf_material *material, bool diffuse_only);
 // An incident direction. choice (unit interval) selects the lobe, u (unit square) the direction.
 // Some samples lie below the horizon, where f is 0.
 static inline vec3s bsdf_sample(const struct bsdf *bsdf, float choice, vec2s u);
@@ -91,21 +94,31 @@ static inline vec3s bsdf_to_world(const struct bsdf *b, vec3s v)
     return glms_vec3_muladds(b->normal, v.z, p);
 }
 
+// The largest channel of the dielectric lobe's albedo.
+static inline float bsdf_dielectric_albedo(const struct bsdf_material *m, struct ggx_albedo e)
+{
+    const float ess = e.a + e.b, loss = (1.0f - ess) / ess;
+    float reflected = 0.0f;
+    for (int c = 0; c < 3; c++) {
+        const float f0 = m->dielectric_f0.raw[c];
+        reflected = bsdf_max(reflected, (f0 * e.a + m->dielectric_f90 * e.b) * (1.0f + f0 * loss));
+    }
+    return reflected;
+}
+
 // Sets the lobes at b->n_v.
 static inline void bsdf_set_lobes(struct bsdf *b, const struct bsdf_material *m, float roughness)
 {
     struct ggx_albedo e = ggx_albedo_at(b->n_v, roughness);
     float ess = e.a + e.b, loss = (1.0f - ess) / ess;
     float metal = m->metallic, dielectric = 1.0f - metal, f90 = m->dielectric_f90;
-    float reflected = 0.0f; // the largest channel of the dielectric lobe's albedo
     for (int c = 0; c < 3; c++) {
         float f0 = m->dielectric_f0.raw[c], albedo = m->albedo.raw[c];
         float k = 1.0f + f0 * loss, k_metal = 1.0f + albedo * loss;
         b->f0.raw[c] = dielectric * f0 * k + metal * albedo * k_metal;
         b->f90.raw[c] = dielectric * f90 * k + metal * k_metal;
-        reflected = bsdf_max(reflected, (f0 * e.a + f90 * e.b) * k);
     }
-    b->diffuse = glms_vec3_scale(b->diffuse, bsdf_max(1.0f - reflected, 0.0f));
+    b->diffuse = glms_vec3_scale(b->diffuse, bsdf_max(1.0f - bsdf_dielectric_albedo(m, e), 0.0f));
     vec3s albedo = glms_vec3_muladds(b->f90, e.b, glms_vec3_scale(b->f0, e.a));
     float specular = luminance(albedo), diffuse = luminance(b->diffuse) / BSDF_INV_PI;
     if (!(specular > 0.0f)) return;
@@ -133,6 +146,17 @@ static inline struct bsdf bsdf_of(vec3s normal, vec3s to_viewer, const struct bs
     b.lobe_viewer = b.backfacing ? bsdf_mirrored_viewer(&b) : to_viewer;
     bsdf_set_lobes(&b, m, roughness);
     return b;
+}
+
+static inline vec3s bsdf_diffuse_towards(vec3s normal, vec3s to_viewer,
+                                         const struct bsdf_material *m, bool diffuse_only)
+{
+    const vec3s base = glms_vec3_scale(m->albedo, (1.0f - m->metallic) * BSDF_INV_PI);
+    if (diffuse_only || !(m->dielectric_f90 > 0.0f)) return base;
+    const float roughness = bsdf_clamp(m->roughness, GGX_MIN_ROUGHNESS, 1.0f);
+    const float n_v = bsdf_clamp(fabsf(glms_vec3_dot(normal, to_viewer)), BSDF_MIN_COSINE, 1.0f);
+    const float reflected = bsdf_dielectric_albedo(m, ggx_albedo_at(n_v, roughness));
+    return glms_vec3_scale(base, bsdf_max(1.0f - reflected, 0.0f));
 }
 
 static inline void bsdf_reserve_diffuse_samples(struct bsdf *b, float share)

@@ -43,12 +43,13 @@ vec3s next_event_all_punctual(const struct trace_scene *scene, const struct surf
     return sum;
 }
 
-vec3s next_event_one_punctual(const struct trace_scene *scene, const struct surface *s,
-                              const struct bsdf *b, float choice, uint64_t *rays)
+struct arriving_light next_event_one_punctual(const struct trace_scene *scene,
+                                              const struct surface *s, const struct bsdf *b,
+                                              float choice, uint64_t *rays)
 {
     const struct light_table *lights = &scene->lights;
     struct punctual_light chosen = { 0 };
-    vec3s light = vec3_of(0, 0, 0);
+    struct arriving_light none = { 0 }, light = none;
     float total = 0.0f, weight = 0.0f;
     // Weighted reservoir sampling (Chao 1982).
     for (int i = 0; i < lights->punctual_count; i++) {
@@ -61,19 +62,23 @@ vec3s next_event_one_punctual(const struct trace_scene *scene, const struct surf
         if (choice < share) {
             choice /= share;
             chosen = p;
-            light = candidate;
+            light.radiance = candidate;
             weight = w;
         } else {
             choice = (choice - share) / (1.0f - share);
         }
     }
-    if (!(weight > 0.0f) || !is_visible(scene, s, &chosen, rays)) return vec3_of(0, 0, 0);
-    return glms_vec3_scale(light, total / weight);
+    if (!(weight > 0.0f) || !is_visible(scene, s, &chosen, rays)) return none;
+    const float cosine = glms_vec3_dot(b->normal, chosen.to_light), scale = total / weight;
+    light.irradiance = glms_vec3_scale(chosen.illuminance, scale * cosine);
+    light.radiance = glms_vec3_scale(light.radiance, scale);
+    return light;
 }
 
 struct arriving_light next_event_one_emitter(const struct trace_scene *scene,
                                              const struct surface *s, const struct guided_bsdf *b,
-                                             float choice, vec2s u, uint64_t *rays)
+                                             float choice, vec2s u, float directions,
+                                             uint64_t *rays)
 {
     struct arriving_light none = { 0 };
     struct emitter_sample e = light_sample_emitter(scene, s->position, choice, u);
@@ -85,13 +90,13 @@ struct arriving_light next_event_one_emitter(const struct trace_scene *scene,
     struct ray ray = { from, glms_vec3_sub(e.position, from), 0.0f, 1.0f };
     if (is_occluded(scene, &ray, rays)) return none;
     struct reflection r = bsdf_reflect(&b->bsdf, e.to_light);
-    float other = guided_pdf(b, e.to_light, r.pdf);
+    float other = directions * guided_pdf(b, e.to_light, r.pdf);
     return light_arriving(r.f, e.radiance, cosine / e.pdf * power_heuristic(e.pdf, other));
 }
 
 struct arriving_light next_event_environment(const struct trace_scene *scene,
                                              const struct surface *s, const struct guided_bsdf *b,
-                                             vec2s u, uint64_t *rays)
+                                             vec2s u, float directions, uint64_t *rays)
 {
     const struct light_table *lights = &scene->lights;
     struct arriving_light none = { 0 };
@@ -104,7 +109,7 @@ struct arriving_light next_event_environment(const struct trace_scene *scene,
     struct ray ray = { surface_leave(s, to_light), to_light, 0.0f, INFINITY };
     if (is_occluded(scene, &ray, rays)) return none;
     struct reflection r = bsdf_reflect(&b->bsdf, to_light);
-    const float other = guided_pdf(b, to_light, r.pdf);
+    const float other = directions * guided_pdf(b, to_light, r.pdf);
     return light_arriving(r.f, environment_map_light(&lights->environment, to_light),
                           cosine / pdf * power_heuristic(pdf, other));
 }

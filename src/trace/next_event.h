@@ -13,18 +13,20 @@ struct arriving_light {
 vec3s next_event_all_punctual(const struct trace_scene *scene, const struct surface *surface,
                               const struct bsdf *bsdf, uint64_t *rays);
 // Estimate from one light, selected by its unoccluded contribution. choice: from the unit interval.
-vec3s next_event_one_punctual(const struct trace_scene *scene, const struct surface *surface,
-                              const struct bsdf *bsdf, float choice, uint64_t *rays);
-// Estimate from a point on an emitter, weighted against directional sampling.
+struct arriving_light next_event_one_punctual(const struct trace_scene *scene,
+                                              const struct surface *surface,
+                                              const struct bsdf *bsdf, float choice,
+                                              uint64_t *rays);
+// Estimate from a point on an emitter, weighted against that many samples of directions.
 struct arriving_light next_event_one_emitter(const struct trace_scene *scene,
                                              const struct surface *surface,
                                              const struct guided_bsdf *bsdf, float choice, vec2s u,
-                                             uint64_t *rays);
+                                             float directions, uint64_t *rays);
 // Estimate from a direction to the map of the environment, likewise.
 struct arriving_light next_event_environment(const struct trace_scene *scene,
                                              const struct surface *surface,
                                              const struct guided_bsdf *bsdf, vec2s u,
-                                             uint64_t *rays);
+                                             float directions, uint64_t *rays);
 // Radiance arriving from a direction with BSDF value f. scale: cosine over pdf, times the weight.
 static inline struct arriving_light light_arriving(vec3s f, vec3s radiance, float scale)
 {

@@ -92,6 +92,10 @@ struct path {
     vec3s first_weight;            // f · cosine / pdf of the first step
     float first_irradiance_weight; // cosine / pdf of the first step, sr
     vec3s throughput;              // of all later steps
+    vec3s later_throughput;        // of those after the second
+    vec3s end_diffuse;             // diffuse lobe at the end of the first step, 1/sr
+    vec3s second_f;                // BSDF of the second step, 1/sr
+    float second_scale;            // cosine / pdf of it, sr
     float first_radiance;          // expected at the primary hit, cd/m²; 0: unknown
     int depth;                     // bounces so far
 };
@@ -112,18 +116,37 @@ static void add_indirect(struct path *p, vec3s arriving, vec3s weight, float irr
     add_to(&p->sample->light.irradiance_emitters_sky, irradiance);
 }
 
-// Radiance reflected at a secondary vertex back along the path.
-static void add_reflected(struct path *p, vec3s light)
+// Light reflected by the surface at the end of the first step.
+static void add_to_end(struct path *p, const struct arriving_light *g)
 {
-    add_indirect(p, glms_vec3_mul(p->throughput, light), p->first_weight,
-                 p->first_irradiance_weight);
+    struct path_end *end = p->sample->end;
+    struct arriving_light there = *g;
+    vec3s diffuse = p->bsdf.bsdf.diffuse;
+    if (p->depth > 1) {
+        there.irradiance = glms_vec3_scale(g->radiance, p->second_scale);
+        there.radiance = glms_vec3_mul(p->second_f, there.irradiance);
+        diffuse = p->end_diffuse;
+    }
+    there.radiance = glms_vec3_sub(there.radiance, glms_vec3_mul(diffuse, there.irradiance));
+    add_to(&end->irradiance, glms_vec3_mul(p->later_throughput, there.irradiance));
+    add_to(&end->rest, glms_vec3_mul(p->later_throughput, there.radiance));
+}
+
+// Light reflected at a secondary vertex back along the path.
+static void add_reflected(struct path *p, const struct arriving_light *g)
+{
+    if (p->sample->end)
+        add_to_end(p, g);
+    else
+        add_indirect(p, glms_vec3_mul(p->throughput, g->radiance), p->first_weight,
+                     p->first_irradiance_weight);
 }
 
 // Light arriving directly from an emitter or the sky.
 static void add_arriving(struct path *p, const struct arriving_light *g)
 {
     if (p->depth > 0) {
-        add_reflected(p, g->radiance);
+        add_reflected(p, g);
     } else if (p->settings->direct) {
         add_to(&p->sample->light.direct, g->radiance);
         add_to(&p->sample->light.indirect_emitters_sky, g->radiance);
@@ -155,18 +178,30 @@ vec2s path_subpixel(const struct path_settings *settings, uint32_t pixel, uint32
     return rng_pair(rng_mix(key_of(settings, pixel, sample)));
 }
 
+static vec2s stratified_pair(const struct path *p, uint64_t number, uint32_t pixel, uint32_t sample)
+{
+    const uint64_t key = pixel_key(p->settings, pixel) + number * SPLITMIX_INCREMENT;
+    return sobol_2d_padded(sample, (uint32_t)rng_mix(key) | 1u);
+}
+
 static vec2s numbered_pair(const struct path *p, uint64_t number)
 {
-    if (!p->settings->stratified || p->depth > 0)
-        return rng_pair(rng_mix(p->key + number * SPLITMIX_INCREMENT));
-    const struct path_sample *sample = p->sample;
-    const uint64_t key = pixel_key(p->settings, sample->pixel) + number * SPLITMIX_INCREMENT;
-    return sobol_2d_padded(sample->sample, (uint32_t)rng_mix(key) | 1u);
+    if (p->settings->stratified && p->depth == 0)
+        return stratified_pair(p, number, p->sample->pixel, p->sample->sample);
+    return rng_pair(rng_mix(p->key + number * SPLITMIX_INCREMENT));
 }
 
 static vec2s random_pair(const struct path *p, enum dimension dimension)
 {
     return numbered_pair(p, (uint64_t)(DIM_COUNT * p->depth + (int)dimension) + 1);
+}
+
+static vec2s random_step(const struct path *p)
+{
+    const struct path_end *end = p->sample->end;
+    if (end && p->settings->stratified && p->depth == 0)
+        return stratified_pair(p, DIM_STEP + 1, end->pixel, end->sample);
+    return random_pair(p, DIM_STEP);
 }
 
 // A dimension beside the others, whose numbers do not depend on whether there is a map.
@@ -199,26 +234,27 @@ static void sample_punctual(struct path *p)
         wide = surface_bsdf(&rough, bsdf->to_viewer, settings->diffuse_only);
         bsdf = &wide;
     }
-    const vec3s light = next_event_one_punctual(settings->scene, &p->surface, bsdf,
-                                                random_pair(p, DIM_LATER).x, p->rays);
-    record_next_event(p, light);
-    add_reflected(p, light);
+    const struct arriving_light g = next_event_one_punctual(settings->scene, &p->surface, bsdf,
+                                                            random_pair(p, DIM_LATER).x, p->rays);
+    record_next_event(p, g.radiance);
+    add_reflected(p, &g);
 }
 
 static void sample_lights(struct path *p, float choice)
 {
     const struct trace_scene *scene = p->settings->scene;
     if (p->depth == 0 && !p->settings->direct) return;
+    const float directions = p->depth == 0 && p->sample->end ? p->sample->end->directions : 1.0f;
     if (p->depth > 0 && scene->lights.punctual_count > 0) sample_punctual(p);
     if (environment_table_has_light(&scene->lights.environment_table)) {
-        struct arriving_light g =
-            next_event_environment(scene, &p->surface, &p->bsdf, random_direction_pair(p), p->rays);
+        struct arriving_light g = next_event_environment(
+            scene, &p->surface, &p->bsdf, random_direction_pair(p), directions, p->rays);
         record_next_event(p, g.radiance);
         add_arriving(p, &g);
     }
     if (!scene->lights.has_emitters) return;
-    struct arriving_light g = next_event_one_emitter(scene, &p->surface, &p->bsdf, choice,
-                                                     random_pair(p, DIM_LIGHT), p->rays);
+    struct arriving_light g = next_event_one_emitter(
+        scene, &p->surface, &p->bsdf, choice, random_pair(p, DIM_LIGHT), directions, p->rays);
     record_next_event(p, g.radiance);
     add_arriving(p, &g);
 }
@@ -261,7 +297,7 @@ static void record_step(struct path *p, float cosine, float bsdf_pdf)
 static bool sample_direction(struct path *p, float choice)
 {
     const struct bsdf *bsdf = &p->bsdf.bsdf;
-    vec3s to_light = guided_sample(&p->bsdf, choice, random_pair(p, DIM_STEP));
+    vec3s to_light = guided_sample(&p->bsdf, choice, random_step(p));
     float cosine = glms_vec3_dot(bsdf->normal, to_light);
     if (!(cosine > 0.0f) || !(glms_vec3_dot(p->surface.geometric, to_light) > 0.0f)) return false;
     struct reflection r = bsdf_reflect(bsdf, to_light);
@@ -292,17 +328,14 @@ static void trace_step(struct path *p)
     if (p->has_hit) surface_prefetch(p->settings->scene, &p->hit);
 }
 
-// Radiance of the environment at the end of the step; that of its map is weighted against
-// next-event estimation.
-static vec3s environment_at_end(const struct path *p)
+vec3s path_environment(const struct trace_scene *scene, vec3s direction, float pdf)
 {
-    const struct light_table *lights = &p->settings->scene->lights;
+    const struct light_table *lights = &scene->lights;
     const struct environment *environment = &lights->environment;
-    const vec3s direction = p->step.ray.direction;
     if (!environment->map) return environment->sky;
     const float other = environment_pdf(&lights->environment_table, environment, direction);
     return glms_vec3_muladds(environment_map_light(environment, direction),
-                             power_heuristic(p->step.pdf, other), environment->sky);
+                             power_heuristic(pdf, other), environment->sky);
 }
 
 // Radiance of the environment or emitter at the end of the step, weighted against next-event
@@ -310,7 +343,8 @@ static vec3s environment_at_end(const struct path *p)
 static vec3s hit_radiance(const struct path *p)
 {
     const struct surface *end = &p->surface;
-    if (!p->has_hit) return environment_at_end(p);
+    if (!p->has_hit)
+        return path_environment(p->settings->scene, p->step.ray.direction, p->step.pdf);
     if (is_black(end->emission)) return end->emission;
     float cosine = -glms_vec3_dot(end->geometric, p->step.ray.direction);
     float other =
@@ -338,6 +372,7 @@ static bool survives(struct path *p)
     float probability = survival(p);
     if (!(choice < probability)) return false;
     p->throughput = glms_vec3_scale(p->throughput, 1.0f / probability);
+    p->later_throughput = glms_vec3_scale(p->later_throughput, 1.0f / probability);
     return true;
 }
 
@@ -349,6 +384,13 @@ static void advance(struct path *p)
         p->first_irradiance_weight = p->step.scale;
     } else {
         p->throughput = glms_vec3_mul(p->throughput, weight);
+        if (p->depth == 1) {
+            p->second_f = p->step.f;
+            p->second_scale = p->step.scale;
+            p->end_diffuse = p->bsdf.bsdf.diffuse;
+        } else {
+            p->later_throughput = glms_vec3_mul(p->later_throughput, weight);
+        }
     }
     p->depth++;
     struct bsdf bsdf = surface_bsdf(&p->surface, glms_vec3_negate(p->step.ray.direction),
@@ -356,15 +398,33 @@ static void advance(struct path *p)
     p->bsdf = guided_bsdf_of(&bsdf, p->settings->guide, p->surface.position);
 }
 
+static void begin_end(const struct path *p)
+{
+    struct path_end *end = p->sample->end;
+    end->sampled = true;
+    end->hit = p->has_hit;
+    end->direction = p->step.ray.direction;
+    if (p->has_hit) end->surface = p->surface;
+}
+
+static void add_light_of_step(struct path *p)
+{
+    if (p->depth == 0 && p->sample->end) {
+        begin_end(p);
+        return;
+    }
+    vec3s light = hit_radiance(p);
+    if (p->depth > 0 || p->settings->direct) record_light(p, light);
+    struct arriving_light g = light_arriving(p->step.f, light, p->step.scale);
+    add_arriving(p, &g);
+}
+
 // Moves to the end of the step; false where the path ends.
 static bool arrive(struct path *p)
 {
     bool last = is_last(p);
     if (p->has_hit) surface_at(p->settings->scene, &p->step.ray, &p->hit, NULL, &p->surface);
-    vec3s light = hit_radiance(p);
-    if (p->depth > 0 || p->settings->direct) record_light(p, light);
-    struct arriving_light g = light_arriving(p->step.f, light, p->step.scale);
-    add_arriving(p, &g);
+    add_light_of_step(p);
     if (last || !p->has_hit) return false;
     advance(p);
     return survives(p);
@@ -391,6 +451,10 @@ static void begin(struct batch *batch, const struct path_settings *settings,
 {
     const struct path_start *start = sample->start;
     sample->light = (struct path_light){ .direct = start->radiance };
+    if (sample->end) {
+        sample->end->sampled = false;
+        sample->end->irradiance = sample->end->rest = vec3_of(0, 0, 0);
+    }
     if (!start->hit || start->surface.unlit) return;
     struct path *p = batch->active[batch->count] = &batch->paths[batch->count];
     p->settings = settings;
@@ -401,7 +465,7 @@ static void begin(struct batch *batch, const struct path_settings *settings,
     p->first_radiance = p->bsdf.cell ? p->bsdf.cell->radiance : 0.0f;
     p->vertex = NULL;
     p->key = key_of(settings, sample->pixel, sample->sample);
-    p->throughput = vec3_of(1, 1, 1);
+    p->throughput = p->later_throughput = vec3_of(1, 1, 1);
     p->depth = 0;
     batch->count++;
 }

@@ -34,6 +34,10 @@ struct path_light {
     vec3s irradiance, irradiance_emitters_sky;
 };
 
+// Radiance of the environment along a direction that was sampled with density `pdf`, 1/sr: that of
+// its map is weighted against next-event estimation.
+vec3s path_environment(const struct trace_scene *scene, vec3s direction, float pdf);
+
 // Position of a sample within its pixel, 0…1.
 vec2s path_subpixel(const struct path_settings *settings, uint32_t pixel, uint32_t sample);
 
@@ -60,12 +64,27 @@ struct path_trail {
     int count;
 };
 
+// The end of a path's first step and the light that it reflects, for receivers that share it
+// (share.h). Its first direction is of a sequence that the paths of several pixels may share.
+struct path_end {
+    uint32_t pixel, sample; // of that sequence: arguments
+    float directions;       // samples that next-event estimation is weighted against: argument
+    bool sampled;           // the path has a first step
+    bool hit;               // false: the environment
+    vec3s direction;        // of the step, unit
+    struct surface surface; // where hit
+    vec3s irradiance;       // of the surface, lux
+    vec3s rest;             // reflected by other lobes than the diffuse one, cd/m²
+};
+
 // One sample of a pixel and its result, a function of the arguments alone.
 struct path_sample {
     const struct path_start *start;
     uint32_t pixel, sample;
     struct path_light light;
     struct path_trail *trail; // NULL: not recorded
+    // NULL, or takes the light that arrives along the first step: `light` is then without it.
+    struct path_end *end;
 };
 enum { PATH_BATCH = 64 };
 // count: at most PATH_BATCH. The paths advance in lockstep, so that memory is prefetched for one

@@ -89,7 +89,8 @@ struct reference *reference_create(struct host *host, const struct scene_pose *p
     r->sums = host_alloc(host, (size_t)width * (size_t)height, sizeof *r->sums);
     r->tiles = host_alloc(host, (size_t)r->tiles_x * (size_t)r->tiles_y, sizeof *r->tiles);
     r->scene = r->sums && r->tiles ? trace_scene_create(host, pose) : NULL;
-    if (!r->scene) {
+    const bool filtered = r->scene && trace_scene_add_levels(r->scene);
+    if (!filtered) {
         reference_destroy(r);
         return NULL;
     }

@@ -37,10 +37,14 @@ static inline vec3s surface_leave(const struct surface *s, vec3s direction)
     return glms_vec3_muladds(s->geometric, side, s->position);
 }
 // Black where unlit.
-static inline struct bsdf surface_bsdf(const struct surface *s, vec3s to_viewer, bool diffuse_only)
+static inline const struct bsdf_material *surface_bsdf_material(const struct surface *s)
 {
     static const struct bsdf_material black = { .roughness = 1.0f };
-    return bsdf_of(s->normal, to_viewer, s->unlit ? &black : &s->material, diffuse_only);
+    return s->unlit ? &black : &s->material;
+}
+static inline struct bsdf surface_bsdf(const struct surface *s, vec3s to_viewer, bool diffuse_only)
+{
+    return bsdf_of(s->normal, to_viewer, surface_bsdf_material(s), diffuse_only);
 }
 // Emission at a point of a triangle from level 0, cd/m², regardless of side.
 vec3s surface_emission(const struct trace_mesh *mesh, uint32_t triangle, float u, float v);

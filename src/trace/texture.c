@@ -77,7 +77,7 @@ static void fill_level(const struct texture *t, int level, uint8_t *out)
     }
 }
 
-bool texture_init(struct texture *t, struct host *host, const struct scene_image *image, bool srgb)
+void texture_init(struct texture *t, const struct scene_image *image, bool srgb)
 {
     *t = (struct texture){ .width = image->width, .height = image->height, .srgb = srgb };
     for (int i = 0; i < 256; i++) {
@@ -87,17 +87,22 @@ bool texture_init(struct texture *t, struct host *host, const struct scene_image
     }
     t->levels = 1;
     t->texels[0] = image->rgba;
+}
+
+bool texture_add_levels(struct texture *t, struct host *host)
+{
     size_t bytes = 0;
-    int width = image->width, height = image->height;
-    while ((width > 1 || height > 1) && t->levels < TEXTURE_LEVELS) {
+    int width = t->width, height = t->height, levels = 1;
+    while ((width > 1 || height > 1) && levels < TEXTURE_LEVELS) {
         width = halved(width);
         height = halved(height);
         bytes += 4 * (size_t)width * (size_t)height; // below SCENE_MAX_IMAGE_SIZE² · 4
-        t->levels++;
+        levels++;
     }
-    if (bytes == 0) return true;
+    if (bytes == 0 || t->owned) return true;
     t->owned = host_alloc(host, bytes, 1);
     if (!t->owned) return false;
+    t->levels = levels;
     uint8_t *at = t->owned;
     for (int level = 1; level < t->levels; level++) {
         fill_level(t, level, at);

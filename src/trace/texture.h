@@ -15,8 +15,9 @@ struct texture {
     float decode[256], unit[256];          // decode: a byte of R, G, B; unit: of A
 };
 
-bool texture_init(struct texture *texture, struct host *host, const struct scene_image *image,
-                  bool srgb);
+void texture_init(struct texture *texture, const struct scene_image *image, bool srgb);
+// Makes the mip levels, for samples of a footprint's size.
+bool texture_add_levels(struct texture *texture, struct host *host);
 void texture_finish(struct texture *texture, struct host *host); // accepts zero
 
 // A texture with its transform and sampler. texture NULL: no map.

@@ -13,22 +13,19 @@ static const float BLEND_CUTOFF = 0.5f; // alpha blending is treated as masking,
 
 // ---- materials
 
-static bool texture_of(struct trace_scene *s, const struct texture_use *use, bool srgb,
+static void texture_of(struct trace_scene *s, const struct texture_use *use, bool srgb,
                        struct texture_map *out)
 {
     struct texture *texture = NULL;
     if (use->image >= 0) {
         srgb = srgb && !s->scene->images[use->image].linear;
         texture = srgb ? &s->color_textures[use->image] : &s->data_textures[use->image];
-        if (texture->levels == 0 &&
-            !texture_init(texture, s->host, &s->scene->images[use->image], srgb))
-            return false;
+        if (texture->levels == 0) texture_init(texture, &s->scene->images[use->image], srgb);
     }
     *out = texture_map_of(use, texture);
-    return true;
 }
 
-static bool create_material(struct trace_scene *s, const struct material *m,
+static void create_material(struct trace_scene *s, const struct material *m,
                             struct trace_material *out)
 {
     *out = (struct trace_material){
@@ -49,12 +46,12 @@ static bool create_material(struct trace_scene *s, const struct material *m,
     out->textured = m->base_color_map.image >= 0 || m->metallic_roughness_map.image >= 0 ||
                     m->normal_map.image >= 0 || m->emissive_map.image >= 0 ||
                     m->specular_map.image >= 0 || m->specular_color_map.image >= 0;
-    return texture_of(s, &m->base_color_map, true, &out->base_color_map) &&
-           texture_of(s, &m->metallic_roughness_map, false, &out->metallic_roughness_map) &&
-           texture_of(s, &m->normal_map, false, &out->normal_map) &&
-           texture_of(s, &m->emissive_map, true, &out->emissive_map) &&
-           texture_of(s, &m->specular_map, false, &out->specular_map) &&
-           texture_of(s, &m->specular_color_map, true, &out->specular_color_map);
+    texture_of(s, &m->base_color_map, true, &out->base_color_map);
+    texture_of(s, &m->metallic_roughness_map, false, &out->metallic_roughness_map);
+    texture_of(s, &m->normal_map, false, &out->normal_map);
+    texture_of(s, &m->emissive_map, true, &out->emissive_map);
+    texture_of(s, &m->specular_map, false, &out->specular_map);
+    texture_of(s, &m->specular_color_map, true, &out->specular_color_map);
 }
 
 static bool create_materials(struct trace_scene *s)
@@ -65,7 +62,7 @@ static bool create_materials(struct trace_scene *s)
     s->materials = host_alloc(s->host, materials, sizeof *s->materials);
     if (!s->color_textures || !s->data_textures || !s->materials) return false;
     for (size_t i = 0; i < materials; i++)
-        if (!create_material(s, &s->scene->materials[i], &s->materials[i])) return false;
+        create_material(s, &s->scene->materials[i], &s->materials[i]);
     return true;
 }
 
@@ -262,6 +259,16 @@ struct trace_scene *trace_scene_create(struct host *host, const struct scene_pos
     }
     s->key = key_of(s);
     return s;
+}
+
+bool trace_scene_add_levels(struct trace_scene *s)
+{
+    bool ok = true;
+    for (int i = 0; ok && i < s->scene->image_count; i++)
+        ok = (s->color_textures[i].levels == 0 ||
+              texture_add_levels(&s->color_textures[i], s->host)) &&
+             (s->data_textures[i].levels == 0 || texture_add_levels(&s->data_textures[i], s->host));
+    return ok;
 }
 
 void trace_scene_destroy(struct trace_scene *s)

@@ -57,6 +57,9 @@ struct trace_scene {
     struct ray_watch *watch; // of paths in a view for one thread; NULL: none
 };
 
+// Makes the mip levels of all textures, for hits of rays with a footprint.
+bool trace_scene_add_levels(struct trace_scene *scene);
+
 static inline const struct trace_mesh *trace_mesh_of(const struct trace_scene *scene, int instance)
 {
     return &scene->meshes[scene->mesh_of[instance]];

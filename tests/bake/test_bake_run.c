@@ -38,6 +38,22 @@ static void check_same(struct file_bytes a, struct file_bytes b)
     file_bytes_finish(test_host(), &b);
 }
 
+TEST(groups_of_rows_are_of_one_task_and_tasks_have_all_rows_in_order)
+{
+    static const uint64_t totals[] = { 0, 1, 15, 16, 17, 100, 1003 };
+    for (size_t t = 0; t < sizeof totals / sizeof totals[0]; t++)
+        for (size_t count = 1; count < 80; count += 13) {
+            uint64_t next = 0;
+            for (size_t task = 0; task < count; task++) {
+                uint64_t rows;
+                const uint64_t first = bake_rows_together(totals[t], 16, task, count, &rows);
+                CHECK(first == next && (first % 16 == 0 || first == totals[t]));
+                next = first + rows;
+            }
+            CHECK(next == totals[t]);
+        }
+}
+
 TEST(bake_gives_the_same_bytes_on_1_2_and_4_threads)
 {
     check_same(bake_on(1), bake_on(2));

@@ -1,5 +1,7 @@
 #include "lightmap/lightmap_fixture.h"
 
+#include "scene/charts/squares.h"
+
 #include <math.h>
 
 bool fixture_charts(const struct scene_pose *statics, const void *options, struct host *host,
@@ -10,7 +12,7 @@ bool fixture_charts(const struct scene_pose *statics, const void *options, struc
     const struct charts_options how = { .texels_per_m = 1e3f,
                                         .max_texels = 1 << 18,
                                         .surface_texels = (uint32_t)*texels };
-    return charts_init(out, host, statics, &how);
+    return charts_init(out, host, statics, &how) && charts_order_by_squares(out);
 }
 
 struct fixture_box fixture_box(vec3s size, bool inside)

@@ -156,7 +156,7 @@ static bool traced_at(const struct gather_scene *scene, uint32_t triangle, vec2s
                                           .count = 1,
                                           .pixel = seed };
     *out = glms_vec3_add(gather_punctual(scene, &points),
-                         gather_paths(scene, &points, 4 * SAMPLES, 7, NULL));
+                         gather_paths(scene, &points, 4 * SAMPLES, 7));
     return luminance(*out) > 0.0f;
 }
 

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-static const float BOUND = 0.06f;
+static const float BOUND = 0.03f;
 enum { MOST = 4096 };
 static const int TEXELS = 2048;
 

@@ -1,6 +1,6 @@
 add_library(ag_test_trace_fixture STATIC ${CMAKE_CURRENT_LIST_DIR}/trace_fixture.c)
 target_link_libraries(ag_test_trace_fixture PUBLIC ag_test_framework ag_trace PRIVATE afterglow_flags)
-foreach(name bsdf direct environment environment_sample furnace guide reference_layers light_sample materials obscurance ray_watch reference stratified surface texels texture)
+foreach(name bsdf direct environment environment_sample furnace guide reference_layers light_sample materials obscurance ray_watch reference share stratified surface texels texture)
   ag_test(trace/${name} USES trace LIBRARIES ag_test_trace_fixture)
 endforeach()
 ag_test(trace/frame ALONE USES trace frame LIBRARIES ag_test_frame_fixture)

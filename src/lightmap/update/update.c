@@ -98,10 +98,9 @@ static struct pair trace_pair(const struct job *job, const struct gather_points 
     struct gather_scene scene = job->probe_now;
     scene.trace = &trace;
     trace.watch = job->is_in_boxes ? &watch : NULL;
-    const vec3s now = gather_paths(&scene, &few, UPDATE_HALF_PATHS, seed, NULL);
+    const vec3s now = gather_paths(&scene, &few, UPDATE_HALF_PATHS, seed);
     if (job->is_in_boxes && !watch.met) return (struct pair){ now, now };
-    return (struct pair){ gather_paths(&job->probe_before, &few, UPDATE_HALF_PATHS, seed, NULL),
-                          now };
+    return (struct pair){ gather_paths(&job->probe_before, &few, UPDATE_HALF_PATHS, seed), now };
 }
 
 // Adds the `index`-th pair of halves, whose random numbers differ: their difference is the noise.
@@ -175,6 +174,7 @@ struct wave {
     const struct job *job;
     const struct update_probe *probes;
     const uint8_t *marks;
+    struct gather_tile tile; // of the last row
 };
 
 static void probe_more(void *user, const struct bake_task *task, uint32_t texel, uint64_t row)
@@ -195,7 +195,7 @@ static bool run_more_probes(const struct bake_task *task)
     const struct tensor *first = bake_task_input(task, FIRST_PROBES),
                         *suspects = bake_task_input(task, SUSPECTS);
     if (!first || !suspects) return false;
-    struct wave wave = { job, first->data, suspects->data };
+    struct wave wave = { .job = job, .probes = first->data, .marks = suspects->data };
     return lightmap_run_rows(task, job->charts.side_texel_count, probe_more, &wave);
 }
 
@@ -213,18 +213,19 @@ static bool run_reach(const struct bake_task *task)
 
 static void gather(void *user, const struct bake_task *task, uint32_t texel, uint64_t row)
 {
-    const struct wave *wave = user;
+    struct wave *wave = user;
     const struct job *job = wave->job;
     float *out = bake_row(task, 0, row);
-    struct gather_points points;
     if (!wave->marks[texel]) {
         memcpy(out, job->was.rest + LIGHTMAP_COLUMNS * (size_t)job->match.row_was[texel],
                LIGHTMAP_COLUMNS * sizeof *out);
         return;
     }
-    find_points(job, texel, &points);
-    if (points.count > 0)
-        lightmap_gather_row(&job->scene, &points, job->how.samples, task->bake_seed, out);
+    if (!gather_tile_has(&wave->tile, texel)) {
+        gather_tile_of(&job->scene, texel, &wave->tile);
+        gather_tile_paths(&job->scene, &wave->tile, job->how.samples, task->bake_seed);
+    }
+    lightmap_write_row(&wave->tile, texel, out);
 }
 
 static bool run_paths(const struct bake_task *task)
@@ -295,12 +296,13 @@ static bool add_marks(struct bake_plan *plan, uint64_t rows, const char *stage, 
 static bool add_paths(struct bake_plan *plan, uint64_t rows, int samples)
 {
     const size_t count = lightmap_task_count(rows, (uint64_t)samples);
-    const double rays = (double)rows * samples * LIGHTMAP_RAYS_PER_PATH * ASSUMED_SHARE;
+    const double rays = (double)rows * samples * LIGHTMAP_RAYS_OF_SHARED * ASSUMED_SHARE;
     const struct bake_output out = { LIGHTMAP_REST, TENSOR_F32, 2, { rows, LIGHTMAP_COLUMNS },
                                      BAKE_ROWS,     BAKE_SAVED };
     return bake_plan_add(plan, &(struct bake_stage){ .name = "paths",
                                                      .wave = WAVE_PATHS,
                                                      .task_count = count,
+                                                     .rows_together = GATHER_TILE,
                                                      .run = run_paths,
                                                      .outputs = &out,
                                                      .output_count = 1,
