@@ -67,6 +67,7 @@ static enum status prepare(struct comparison *c)
     if (status == DONE) status = session_camera(&c->session, a->time_s, &c->camera);
     if (status == DONE) status = reference_begin(c);
     if (status == DONE) status = open_device(c);
+    if (status == DONE) status = methods_estimate(c); // with the size of the scene
     if (status == DONE) status = check_memory_with_device(c);
     if (status == DONE) session_say(&c->session);
     return status;

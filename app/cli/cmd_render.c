@@ -75,6 +75,15 @@ static void renderer_desc(const struct job *job, struct ag_renderer_desc *desc)
     desc->motion_layer = output_has_layer(&job->output, "motion");
     desc->id_layer = output_has_layer(&job->output, "id");
     desc->wait_for_updates = true; // the same files each time
+    desc->scene_size_m = session_scene_size_m(&job->session);
+}
+
+static enum status estimate_memory(struct job *job, struct ag_renderer_desc *desc)
+{
+    renderer_desc(job, desc);
+    enum ag_result result = ag_renderer_estimate_memory(
+        job->session.context, desc, job->arguments->light_count, &job->gpu_bytes);
+    return result == AG_OK ? DONE : fail_library(job->session.context, result);
 }
 
 // Detects wrong usage before any file or device is opened.
@@ -88,15 +97,7 @@ static enum status check_usage(struct job *job)
     if (status == DONE && a->debug_view) status = check_debug_view(a->debug_view);
     if (status != DONE) return status;
     struct ag_renderer_desc desc;
-    uint64_t bytes;
-    renderer_desc(job, &desc);
-    enum ag_result result =
-        ag_renderer_estimate_memory(job->session.context, &desc, a->light_count, &bytes);
-    if (result != AG_OK) return fail_library(job->session.context, result);
-    detail("%s at %dx%d takes at most %.1f MB on the GPU, without the scene", desc.gi, desc.width,
-           desc.height, (double)bytes * 1e-6);
-    job->gpu_bytes = bytes;
-    return DONE;
+    return estimate_memory(job, &desc);
 }
 
 static enum status check_outputs(const struct job *job)
@@ -113,10 +114,15 @@ static enum status check_outputs(const struct job *job)
 
 // Layers of 4 channels, and the image in the file's encoding. A software device has its images in
 // main memory too.
-static enum status check_memory(const struct job *job)
+static enum status check_memory(struct job *job)
 {
     const struct arguments *a = job->arguments;
     struct ag_device_info device;
+    struct ag_renderer_desc desc;
+    enum status status = estimate_memory(job, &desc); // with the size of the scene
+    if (status != DONE) return status;
+    detail("%s at %dx%d takes at most %.1f MB on the GPU, without the scene", desc.gi, desc.width,
+           desc.height, (double)job->gpu_bytes * 1e-6);
     ag_device_get_info(job->device, &device);
     return memory_check_size("render", a->positional[0], a->width, a->height,
                              16 * (uint64_t)(a->frame_samples > 1 ? 3 : 1) +

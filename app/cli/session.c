@@ -226,6 +226,15 @@ static void describe_light(struct session *session)
         session->light[used - 1] = 0;
 }
 
+float session_scene_size_m(const struct session *session)
+{
+    struct ag_scene_info info = { 0 };
+    float longest = 0.0f;
+    if (session->scene) ag_scene_get_info(session->scene, -1, 0.0, &info);
+    for (int i = 0; i < 3; i++) longest = fmaxf(longest, info.bounds_max[i] - info.bounds_min[i]);
+    return longest;
+}
+
 static void warn_of_empty_scene(struct session *session)
 {
     struct ag_scene_info info = { 0 };

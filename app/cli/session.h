@@ -46,6 +46,8 @@ enum status defaults_camera(struct session *session, double time_s, struct defau
 enum status session_light(struct session *session);
 // The camera at a time.
 enum status session_camera(struct session *session, double time_s, struct ag_camera *out);
+// The longest side of the scene, m; 0 before it is loaded.
+float session_scene_size_m(const struct session *session);
 // Prints the notes about default light and camera. Call it after everything that can fail early,
 // so that an error is the only line.
 void session_say(struct session *session);

@@ -74,7 +74,10 @@ struct ag_renderer_desc {
     /// which are read in place; others are converted in one pass (frame.gbuffer_convert) into
     /// images of the renderer. Needed only during the call. Default NULL.
     const struct ag_gbuffer_layout *gbuffer_layout;
-    uint64_t reserved[6]; ///< 0; see ABI in types.h
+    /// For estimates of memory alone: the longest side of the scene in metres, on which
+    /// vct:levels=0 depends. Default 0: a small scene.
+    float scene_size_m;
+    uint64_t reserved[5]; ///< 0; see ABI in types.h
 };
 /// Thread: any.
 AG_API void ag_renderer_desc_default(struct ag_renderer_desc *desc);

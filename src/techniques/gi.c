@@ -83,6 +83,7 @@ struct gi *gi_create_baked(struct host *host, struct gpu *gpu, const struct gi_s
     gi->width = width;
     gi->height = height;
     if (!gi_spec_copy(&gi->spec, spec)) goto fail;
+    gi_spec_fit_pose(&gi->spec, pose);
     for (int i = 0; i < gi->spec.count; i++)
         if (!gi_create_state(gi, gi->spec.technique[i], gi->spec.options[i], bakes->of_term[i],
                              pose, 0, &gi->state[i]))

@@ -18,6 +18,10 @@ struct gi_spec {
 // "" is "none". Errors name the unknown technique or option and the nearest known one.
 bool gi_spec_parse(struct gi_spec *spec, struct host *host, const char *text);
 void gi_spec_finish(struct gi_spec *spec); // accepts zero
+// Chooses what the options leave to the size of the scene (technique.fit).
+void gi_spec_fit(struct gi_spec *spec, float scene_size_m);
+// The same with a scene's bounds.
+void gi_spec_fit_pose(struct gi_spec *spec, const struct scene_pose *pose);
 // The spec with all options, owned by the caller.
 char *gi_spec_print(const struct gi_spec *spec);
 bool gi_spec_gathers_emission(const struct gi_spec *spec);

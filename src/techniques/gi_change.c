@@ -3,6 +3,8 @@
 
 #include "techniques/gi_spec.h"
 
+#include <string.h>
+
 // Whether a running technique can take these options.
 static bool may_continue(const struct technique *technique, const void *now, const void *next)
 {
@@ -86,6 +88,14 @@ static void **state_of(struct gi *gi, int view, int term)
     return view ? &gi->views[view].state[term] : &gi->state[term];
 }
 
+// A term that stays keeps what was chosen for it beside the rows of the table.
+static void keep_options(struct gi *gi, int term, void *now, void *next)
+{
+    set_options(gi, term, now, next);
+    const size_t size = gi->spec.technique[term]->options.size;
+    if (size > 0) memcpy(next, now, size);
+}
+
 // Takes over `next` and `created`.
 static void exchange(struct gi *gi, struct gi_spec *next, const struct gi_bakes *bakes,
                      const struct created *created)
@@ -98,7 +108,7 @@ static void exchange(struct gi *gi, struct gi_spec *next, const struct gi_bakes 
             *state_of(gi, v, i) = from < 0 ? created->state[v][i] : *state_of(&before, v, from);
             if (from >= 0) *state_of(&before, v, from) = NULL;
         }
-        if (from >= 0) set_options(gi, i, before.spec.options[from], next->options[i]);
+        if (from >= 0) keep_options(gi, i, before.spec.options[from], next->options[i]);
     }
     for (int v = 0; v < FRAME_MAX_VIEWS; v++)
         for (int i = next->count; i < GI_MAX_TERMS; i++) *state_of(gi, v, i) = NULL;
@@ -139,6 +149,7 @@ bool gi_change(struct gi *gi, const struct gi_spec *spec, const struct gi_bakes 
     struct created created = { { { NULL } } };
     if (all_stay(gi, spec, bakes) && gi_set_options(gi, spec)) return true;
     if (!gi_spec_copy(&next, spec)) return false;
+    gi_spec_fit_pose(&next, pose);
     for (int i = 0; i < next.count; i++)
         if (stays(gi, &next, bakes, i) < 0 &&
             !create_term(gi, &next, i, bakes->of_term[i], pose, &created))

@@ -6,6 +6,7 @@
 #include "techniques/registry.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -242,6 +243,19 @@ bool gi_spec_copy(struct gi_spec *spec, const struct gi_spec *from)
         insert_term(spec, from->technique[i], options);
     }
     return true;
+}
+
+void gi_spec_fit(struct gi_spec *spec, float scene_size_m)
+{
+    for (int i = 0; i < spec->count; i++)
+        if (spec->technique[i]->fit) spec->technique[i]->fit(spec->options[i], scene_size_m);
+}
+
+void gi_spec_fit_pose(struct gi_spec *spec, const struct scene_pose *pose)
+{
+    if (!pose || box3_is_empty(pose->bounds)) return;
+    const vec3s size = box3_size(pose->bounds);
+    gi_spec_fit(spec, fmaxf(size.x, fmaxf(size.y, size.z)));
 }
 
 // text + "separator name=value", freeing text. NULL in, NULL out.

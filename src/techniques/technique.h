@@ -102,6 +102,9 @@ struct technique {
     uint32_t (*more_needs)(const void *options);
     // false: it cannot run on this device and scene; host_fail has the reason.
     bool (*check)(const struct technique_create *how);
+    // Chooses what the options leave to the size of the scene, the longest side of its bounds; 0:
+    // unknown. The choice is beside the rows of their table, which stay. Before `objects`.
+    void (*fit)(void *options, float scene_size_m);
     // Replaces options that leave a choice to the scene by the choice: those of effect REBAKE, of
     // which a bake is identified. Idempotent.
     bool (*resolve)(struct host *host, const struct scene_pose *pose, void *options);

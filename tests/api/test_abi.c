@@ -30,7 +30,7 @@ TEST(reserved_members_are_zero_by_default_and_refused_otherwise)
     memset(&renderer, 0xff, sizeof renderer);
     ag_renderer_desc_default(&renderer);
     assert_int_equal(ag_renderer_estimate_memory(context, &renderer, 0, &bytes), AG_OK);
-    renderer.reserved[5] = 1;
+    renderer.reserved[4] = 1;
     assert_int_equal(ag_renderer_estimate_memory(context, &renderer, 0, &bytes), AG_ERROR_ARGUMENT);
 
     struct ag_view_desc view;

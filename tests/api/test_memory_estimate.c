@@ -161,3 +161,23 @@ TEST(estimates_of_techniques_are_exact)
     }
     fixture_close(&s);
 }
+
+static uint64_t estimate_of(struct renderer_fixture *s, const char *gi, float scene_size_m)
+{
+    struct ag_renderer_desc desc = renderer_desc(gi, false);
+    uint64_t bytes = 0;
+    desc.scene_size_m = scene_size_m;
+    assert_int_equal(ag_renderer_estimate_memory(s->context, &desc, 1, &bytes), AG_OK);
+    return bytes;
+}
+
+TEST(an_estimate_has_the_levels_of_a_large_scene)
+{
+    struct renderer_fixture s = open_scene();
+    CHECK(estimate_of(&s, "vct", 0) == estimate_of(&s, "vct:levels=1", 0));
+    CHECK(estimate_of(&s, "vct", 19) == estimate_of(&s, "vct:levels=1", 0));
+    CHECK(estimate_of(&s, "vct", 40) == estimate_of(&s, "vct:levels=3", 0));
+    CHECK(estimate_of(&s, "vct", 5000) == estimate_of(&s, "vct:levels=4", 0));
+    CHECK(estimate_of(&s, "vct:trace=cones", 40) == estimate_of(&s, "vct:trace=cones", 0));
+    fixture_close(&s);
+}

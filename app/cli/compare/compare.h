@@ -67,6 +67,8 @@ struct comparison {
 // method.c
 // Checks --gi, --size and --frame-options before the work.
 enum status methods_plan(struct comparison *c);
+// Their memory on the GPU, that of the largest in gpu_bytes.
+enum status methods_estimate(struct comparison *c);
 // Renders a method and reads its layers, times and memory.
 enum status method_render(struct comparison *c, int index);
 void methods_finish(struct comparison *c);

@@ -23,6 +23,7 @@ static void renderer_desc(const struct comparison *c, int index, struct ag_rende
     desc->frame_options = arguments_frame_options(a);
     desc->indirect_layer = true;
     desc->display_layer = false;
+    desc->scene_size_m = session_scene_size_m(&c->session);
 }
 
 // "2-lpv-steps-8": unique, and safe in file systems and URLs.
@@ -39,25 +40,38 @@ static void name_files(struct method *method, int number)
     method->stem[used] = 0;
 }
 
+static enum status estimate_memory(struct comparison *c, int method)
+{
+    struct ag_renderer_desc desc;
+    uint64_t bytes;
+    renderer_desc(c, method, &desc);
+    enum ag_result result =
+        ag_renderer_estimate_memory(c->session.context, &desc, c->arguments->light_count, &bytes);
+    if (result != AG_OK) return fail_library(c->session.context, result);
+    if (bytes > c->gpu_bytes) c->gpu_bytes = bytes;
+    if (c->session.scene)
+        detail("%s at %dx%d takes at most %.1f MB on the GPU, without the scene", desc.gi,
+               desc.width, desc.height, (double)bytes * 1e-6);
+    return DONE;
+}
+
+enum status methods_estimate(struct comparison *c)
+{
+    enum status status = DONE;
+    for (int i = 0; i < c->method_count && status == DONE; i++) status = estimate_memory(c, i);
+    return status;
+}
+
 enum status methods_plan(struct comparison *c)
 {
     const struct arguments *a = c->arguments;
     const char *const *gis = a->method_count > 0 ? a->methods : usual_methods;
     c->method_count = a->method_count > 0 ? a->method_count : 3;
     for (int i = 0; i < c->method_count; i++) {
-        struct ag_renderer_desc desc;
-        uint64_t bytes;
         c->methods[i].gi = gis[i];
         name_files(&c->methods[i], i + 1);
-        renderer_desc(c, i, &desc);
-        enum ag_result result =
-            ag_renderer_estimate_memory(c->session.context, &desc, a->light_count, &bytes);
-        if (result != AG_OK) return fail_library(c->session.context, result);
-        if (bytes > c->gpu_bytes) c->gpu_bytes = bytes;
-        detail("%s at %dx%d takes at most %.1f MB on the GPU, without the scene", desc.gi,
-               desc.width, desc.height, (double)bytes * 1e-6);
     }
-    return DONE;
+    return methods_estimate(c); // fails early
 }
 
 // ---- frames

@@ -5,6 +5,7 @@
 #include "viewer/methods/running.h"
 #include "viewer/methods/tone.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -210,6 +211,8 @@ static void show_bytes(struct viewer *v)
     desc.gi = v->gi;
     desc.frame_options = viewer_frame_options(v);
     desc.indirect_layer = desc.id_layer = true;
+    for (int i = 0; i < 3; i++)
+        desc.scene_size_m = fmaxf(desc.scene_size_m, info.bounds_max[i] - info.bounds_min[i]);
     if (ag_renderer_estimate_memory(v->desc->context, &desc, info.lights, &bytes) == AG_OK)
         ui_faint("%.1f MB on the GPU, without the scene", (double)bytes * 1e-6);
 }

@@ -41,6 +41,7 @@ enum ag_result ag_preparation_create(struct ag_renderer *r, const char *gi,
     const struct frame_input wants = wants_of(r);
     const bool ok = gi_spec_parse(&p->spec, host, gi) &&
                     (p->compiler = gpu_compiler_create(r->device->gpu, host)) != NULL;
+    if (ok) gi_spec_fit_pose(&p->spec, &r->pose);
     if (ok) p->frame = frame_pipelines_of(r->main.frame, &wants, gi_spec_needs(&p->spec));
     const enum ag_result result = api_done(context, ok);
     if (ok)

@@ -45,6 +45,7 @@ bool renderer_parse_quietly(struct ag_context *context, const struct ag_renderer
     const enum log_level log_up_to = host->log_up_to;
     host->log_up_to = LOG_ERROR; // ag_renderer_create logs the same warnings
     const bool ok = parse_options(host, desc, spec, options);
+    if (ok) gi_spec_fit(spec, desc->scene_size_m);
     host->log_up_to = log_up_to;
     return ok;
 }

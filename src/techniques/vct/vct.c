@@ -250,7 +250,7 @@ static void record_voxels(struct vct *vct, const struct vct_frame *frame)
     for (int i = 0; i < vct->clipmap.count; i++) {
         if (!vct->voxels.levels[i].revoxelized) continue;
         vct_volume_list_texels(&vct->volume, frame, i);
-        if (vct_has_rays(&vct->options)) vct_rays_list_blocks(&vct->rays, frame);
+        if (vct_has_rays(&vct->options)) vct_rays_list_blocks(&vct->rays, frame, i);
         if (!vct->options.occlusion) vct_list_parts(&vct->lighting, frame, i);
     }
     if (vct->voxels.revoxelized && vct_has_svo(&vct->options)) vct_octree_build(&vct->svo, frame);
@@ -395,6 +395,7 @@ const struct technique technique_vct = {
     .debug_views = debug_views,
     .more_needs = vct_more_needs,
     .check = vct_check,
+    .fit = vct_fit_options,
     .objects = vct_objects,
     .create = vct_create,
 };
@@ -412,6 +413,7 @@ const struct technique technique_vctao = {
     .debug_views = occlusion_views,
     .more_needs = vctao_more_needs,
     .check = vctao_check,
+    .fit = vct_fit_options,
     .objects = vctao_objects,
     .create = vctao_create,
 };

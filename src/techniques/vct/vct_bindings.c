@@ -14,6 +14,8 @@ struct gpu_binding vct_grid_binding(const struct vct_frame *frame, int level)
     params.cells_z = grid->cells[2];
     params.volume_first = level * params.volume_dim;
     params.level = frame->clipmap->count - 1 - level;
+    params.level_faces = vct_level_faces(frame->options);
+    params.face_first = (uint32_t)level * params.level_faces;
     for (int axis = 0; axis < 3; axis++) {
         params.scene_low.raw[axis] = (float)-grid->first[axis];
         params.scene_high.raw[axis] = (float)(grid->scene[axis] - grid->first[axis]);
@@ -21,21 +23,22 @@ struct gpu_binding vct_grid_binding(const struct vct_frame *frame, int level)
     return gpu_transient(frame->cmd, "vct_grid", &params, sizeof params);
 }
 
-static struct gpu_binding clipmap_binding(const struct vct_frame *frame, bool lit)
+static struct gpu_binding clipmap_binding(const struct vct_frame *frame, enum vct_clip_table_of of)
 {
     const struct vct_clip_table table =
-        vct_clipmap_table(frame->clipmap, frame->options->resolution, lit);
+        vct_clipmap_table(frame->clipmap, frame->options->resolution, of);
     return gpu_transient(frame->cmd, "vct_clipmap", &table, sizeof table);
 }
 
 struct gpu_binding vct_clipmap_binding(const struct vct_frame *frame)
 {
-    return clipmap_binding(frame, false);
+    return clipmap_binding(frame, VCT_OF_PIXELS);
 }
 
-struct gpu_binding vct_lit_clipmap_binding(const struct vct_frame *frame)
+struct gpu_binding vct_voxel_clipmap_binding(const struct vct_frame *frame)
 {
-    return clipmap_binding(frame, true);
+    return clipmap_binding(frame,
+                           vct_has_rays(frame->options) ? VCT_OF_VOXEL_RAYS : VCT_OF_VOXEL_CONES);
 }
 
 struct gpu_binding vct_svo_binding(const struct vct_frame *frame)

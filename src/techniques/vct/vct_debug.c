@@ -10,7 +10,7 @@ static void march(gpu_pipeline pipeline, const struct vct_frame *frame, int leve
     const struct vct_level_voxels *voxels = &frame->voxels->levels[level];
     gpu_dispatch(frame->cmd, pipeline,
                  GPU_BIND(vct_grid_binding(frame, level), vct_clipmap_binding(frame),
-                          view->constants_binding, VCT_BOTH_SETS(voxels),
+                          view->constants_binding, VCT_BOTH_SETS(voxels), VCT_LIT_BINDINGS(frame),
                           { .name = "static_surfaces", .image = voxels->static_set.surfaces },
                           { .name = "dynamic_surfaces", .image = voxels->dynamic_set.surfaces },
                           { .name = "result_image", .image = out }, vct_svo_binding(frame),

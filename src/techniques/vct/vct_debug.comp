@@ -77,9 +77,9 @@ bool face_at(ivec3 voxel, vec3 direction, out viewed_face found)
         if (slot == VCT_NO_SLOT) continue;
         viewed_face f;
         if (moving)
-            f.lit = vct_lit_face_at(dynamic_lit_voxels, slot);
+            f.lit = vct_lit_face_at(dynamic_lit_voxels, vct.face_first + slot);
         else
-            f.lit = vct_lit_face_at(static_lit_voxels, slot);
+            f.lit = vct_lit_face_at(static_lit_voxels, vct.face_first + slot);
         float towards = -dot(f.lit.normal, direction);
         if (towards <= most) continue;
         most = towards;

@@ -18,7 +18,7 @@ static void log_voxel_size(struct host *host, const char *technique,
 {
     const int32_t *cells = grid->cells;
     const double side = (double)grid->cell_m;
-    if (grid->cell_m <= COARSE_M)
+    if (ldexpf(grid->cell_m, 1 - vct_clip_count(options)) <= COARSE_M)
         host_log(host, LOG_INFO, "gi %s: %s: %d x %d x %d voxels of %.3g m", technique, scene,
                  (int)cells[0], (int)cells[1], (int)cells[2], side);
     else
@@ -39,7 +39,7 @@ void vct_log_diagnostics(struct host *host, const char *technique,
         return;
     }
     log_voxel_size(host, technique, options, &grid, pose->scene->name);
-    for (int i = 1; i < options->levels; i++)
+    for (int i = 1; i < vct_clip_count(options); i++)
         host_log(host, LOG_INFO, "gi %s: level %d has voxels of %.3g m", technique, i + 1,
                  ldexp((double)grid.cell_m, -i));
 }

@@ -6,7 +6,8 @@
 
 int vct_clip_count(const struct vct_options *options)
 {
-    return options->levels;
+    if (options->levels > 0) return options->levels;
+    return vct_pixels_have_rays(options) && options->fitted_levels > 0 ? options->fitted_levels : 1;
 }
 
 bool vct_has_svo(const struct vct_options *options)
@@ -16,7 +17,7 @@ bool vct_has_svo(const struct vct_options *options)
 
 static bool fits_rays(const struct vct_options *options)
 {
-    return options->levels == 1 && !vct_has_svo(options) && options->anisotropic;
+    return !vct_has_svo(options) && options->anisotropic;
 }
 
 bool vct_pixels_have_rays(const struct vct_options *options)
@@ -61,6 +62,11 @@ uint32_t vct_capacity(const struct vct_options *options)
     const uint32_t bound = (1u << 27) / (VCT_SUM_WORDS * (uint32_t)sizeof(uint32_t)) / face;
     const uint32_t most = (bound < 32 ? bound : 32) * face;
     return most < 6 * voxel_count(options) ? most : 6 * voxel_count(options);
+}
+
+uint32_t vct_level_faces(const struct vct_options *options)
+{
+    return gpu_groups(vct_capacity(options), VCT_VOXEL_ROW) * VCT_VOXEL_ROW;
 }
 
 size_t vct_mask_words(const struct vct_options *options)
@@ -109,13 +115,14 @@ struct gpu_image_desc vct_light_desc(const struct vct_options *options)
 
 struct gpu_image_desc vct_blocks_desc(const struct vct_options *options, enum gpu_format format)
 {
-    const uint32_t dim = vct_has_rays(options) ? vct_volume_dim(options) : 1;
+    const bool used = vct_has_rays(options);
+    const uint32_t dim = used ? vct_volume_dim(options) : 1;
     return (struct gpu_image_desc){ .name = "blocks",
                                     .dimension = GPU_3D,
                                     .format = format,
                                     .width = dim,
                                     .height = dim,
-                                    .depth = dim,
+                                    .depth = used ? (uint32_t)vct_clip_count(options) * dim : 1,
                                     .mips = 1,
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
 }

@@ -7,7 +7,7 @@
 #include "techniques/vct/volume/volume_shared.h"
 
 int vct_clip_count(const struct vct_options *options);
-// Rays need one grid of anisotropic voxels. Voxels use them where they can, pixels by option.
+// Rays need anisotropic voxels in grids. Voxels use them where they can, pixels by option.
 bool vct_pixels_have_rays(const struct vct_options *options);
 // Whether accumulated irradiance is filtered over pixels.
 bool vct_denoises(const struct vct_options *options);
@@ -20,6 +20,8 @@ uint32_t vct_block(const struct vct_options *options);
 
 // Voxel sets.
 uint32_t vct_capacity(const struct vct_options *options); // occupied faces of voxels
+// The capacity in whole rows of an image.
+uint32_t vct_level_faces(const struct vct_options *options);
 size_t vct_mask_words(const struct vct_options *options);
 size_t vct_block_count(const struct vct_options *options);
 

@@ -19,9 +19,12 @@ struct vct_options {
 #undef VCTAO_OPTION
 #undef VCT_OPTION
 #undef OPTION
-    bool occlusion; // vctao: cones measure visibility, not light
+    bool occlusion;        // vctao: cones measure visibility, not light
+    int32_t fitted_levels; // with levels=0, by the size of the scene; 0: not known
 };
 
+// Chooses fitted_levels: technique.fit.
+void vct_fit_options(void *options, float scene_size_m);
 // The options of a technique, with fixed values for those that it lacks.
 struct vct_options vct_light_options(const void *options);
 struct vct_options vct_occlusion_options(const void *options);

@@ -4,15 +4,21 @@
 
 // ---- Voxels -------------------------------------------------------------------------------------
 
-// An image of the faces of a set, `texels` texels for each; unused images of a shader are bound,
+// An image of the faces of sets, `texels` texels for each; unused images of a shader are bound,
 // too, with one row.
-static struct gpu_image_desc faces(const struct vct_options *o, uint32_t texels,
-                                   enum gpu_format format, bool used)
+static struct gpu_image_desc faces_of(const struct vct_options *o, uint32_t sets, uint32_t texels,
+                                      enum gpu_format format, bool used)
 {
     return (struct gpu_image_desc){ .format = format,
                                     .width = texels * VCT_VOXEL_ROW,
-                                    .height = used ? gpu_groups(vct_capacity(o), VCT_VOXEL_ROW) : 1,
+                                    .height = used ? sets * vct_level_faces(o) / VCT_VOXEL_ROW : 1,
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
+}
+
+static struct gpu_image_desc faces(const struct vct_options *o, uint32_t texels,
+                                   enum gpu_format format, bool used)
+{
+    return faces_of(o, 1, texels, format, used);
 }
 
 static void add_set(const struct vct_options *o, bool dynamic, size_t base, struct gpu_objects *out)
@@ -32,11 +38,9 @@ static void add_set(const struct vct_options *o, bool dynamic, size_t base, stru
             { GPU_BUFFER, SET(part_counts), .bytes = sizeof(struct vct_part_count),
               .usage = GPU_BUFFER_INDIRECT },
             { GPU_IMAGE, SET(surfaces), .image = faces(o, 2, GPU_RGBA32U, true) },
-            { GPU_IMAGE, SET(lit_voxels), .image = faces(o, 1, GPU_RGBA32U, true) },
             { GPU_IMAGE, SET(parts), .image = faces(o, 1, GPU_RGBA32U, lit) },
             { GPU_IMAGE, SET(bounced), .image = faces(o, 1, GPU_RGBA16F, lit) },
-            { GPU_IMAGE, SET(part_of_face), .image = faces(o, 1, GPU_R32U, lit) },
-            { GPU_IMAGE, SET(planes), .image = faces(o, 1, GPU_RG32U, vct_has_rays(o)) });
+            { GPU_IMAGE, SET(part_of_face), .image = faces(o, 1, GPU_R32U, lit) });
 }
 
 #define VCT(thing) offsetof(struct vct, thing)
@@ -52,6 +56,18 @@ static void add_level(const struct vct_options *o, size_t level, struct gpu_obje
             { GPU_BUFFER, "texel_mask", TEXELS(mask), .bytes = 4 * vct_texel_mask_words(o) },
             { GPU_BUFFER, "texel_counts", TEXELS(counts), .bytes = sizeof(struct vct_texel_levels),
               .usage = GPU_BUFFER_INDIRECT });
+}
+
+// Images with the faces of all levels.
+static void add_faces(const struct vct_options *o, struct gpu_objects *out)
+{
+    const uint32_t levels = (uint32_t)vct_clip_count(o);
+    const struct gpu_image_desc lit = faces_of(o, levels, 1, GPU_RGBA32U, true),
+                                planes = faces_of(o, levels, 1, GPU_RG32U, vct_has_rays(o));
+    GPU_ADD(out, 0, { GPU_IMAGE, "static_lit_voxels", VCT(voxels.lit_voxels[0]), .image = lit },
+            { GPU_IMAGE, "dynamic_lit_voxels", VCT(voxels.lit_voxels[1]), .image = lit },
+            { GPU_IMAGE, "static_planes", VCT(voxels.planes[0]), .image = planes },
+            { GPU_IMAGE, "dynamic_planes", VCT(voxels.planes[1]), .image = planes });
 }
 
 static void add_svo(const struct vct_options *o, struct gpu_objects *out)
@@ -73,6 +89,7 @@ void vct_add_volumes(const struct vct_options *o, struct gpu_objects *out)
     const struct gpu_image_desc light = vct_light_desc(o), blocks = vct_blocks_desc(o, GPU_RGBA32U),
                                 slots = vct_blocks_desc(o, GPU_R32U);
     for (int i = 0; i < vct_clip_count(o); i++) add_level(o, (size_t)i, out);
+    add_faces(o, out);
     if (vct_has_svo(o)) add_svo(o, out);
     GPU_ADD(out, 0, { GPU_BUFFER, "queue", VCT(voxels.queue), .bytes = 8 * VCT_QUEUE },
             { GPU_BUFFER, "queue_state", VCT(voxels.queue_state), .bytes = 16,

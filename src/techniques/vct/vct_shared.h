@@ -35,6 +35,8 @@ struct vct_params {
     vec3s scene_low, scene_high; // grid of the whole scene, in these voxels
     int32_t volume_first;        // first texel of this level's part of the volume along z
     int32_t level;               // of the clip map, 0 is the finest
+    uint32_t level_faces;        // of images that have the faces of all levels
+    uint32_t face_first;         // the first of them of this level
 };
 
 #define VCT_VIEW_REFLECTANCE 0
@@ -56,7 +58,7 @@ struct vct_view_push {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct vct_params) == 29 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_params) == 31 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_view_push) == 12, "layout is shared with GLSL");
 #endif
 

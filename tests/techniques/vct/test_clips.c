@@ -368,7 +368,7 @@ TEST_GPU(memory_estimate_of_levels_matches_the_allocation)
         struct vct_options options;
         struct gpu_memory owners[32];
         char text[64];
-        snprintf(text, sizeof text, "resolution=32,levels=%d", levels);
+        snprintf(text, sizeof text, "resolution=32,levels=%d,trace=rays,temporal=true", levels);
         option_defaults(&technique_vct.options, &options);
         CHECK(option_parse(test_host(), &technique_vct.options, "vct", text, &options));
         const double estimated_bytes = (double)technique_memory(&technique_vct, &options, 32, 32);

@@ -6,6 +6,7 @@ foreach(name bounces clips clip_light edge_cases hidden history kept_light light
   ag_test(techniques/vct/${name} USES techniques LIBRARIES ag_test_vct)
 endforeach()
 ag_test(techniques/vct/open_plane USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)
+ag_test(techniques/vct/large_scene USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)
 ag_test(techniques/vct/walls USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)
 ag_test(techniques/vct/double_sided USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)
 # Pipelines of many grids: minutes alone, more beside others.

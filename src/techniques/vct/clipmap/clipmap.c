@@ -110,12 +110,14 @@ float vct_clipmap_longest_side_m(const struct vct_clipmap *map)
 // ---- The uniform block --------------------------------------------------------------------------
 
 // box: in voxels of the grid, from the corner of the scene's grid.
-static struct vct_clip_level level_of(const struct vct_grid *grid, struct box3 box, int level)
+static struct vct_clip_level level_of(const struct vct_grid *grid, const struct vct_grid *lit,
+                                      struct box3 box, int level)
 {
     struct vct_clip_level out;
     const float voxel = 0.5f * (float)(1 << level); // in texels of the finest level
     for (int axis = 0; axis < 3; axis++) {
         out.corner.raw[axis] = (float)grid->first[axis] * voxel;
+        out.lit_corner.raw[axis] = (float)lit->first[axis] * voxel;
         out.size.raw[axis] = (float)(grid->cells[axis] / 2);
         out.low.raw[axis] = box.min.raw[axis] * voxel;
         out.high.raw[axis] = box.max.raw[axis] * voxel;
@@ -137,8 +139,10 @@ static struct box3 box_of(const struct vct_grid *grid)
     return box;
 }
 
-struct vct_clip_table vct_clipmap_table(const struct vct_clipmap *map, int resolution, bool lit)
+struct vct_clip_table vct_clipmap_table(const struct vct_clipmap *map, int resolution,
+                                        enum vct_clip_table_of of)
 {
+    const bool lit = of == VCT_OF_VOXEL_CONES;
     const struct vct_clip *first = &map->levels[0];
     struct vct_clip_table table = { .origin_m =
                                         lit ? first->lit_grid.origin_m : first->grid.origin_m,
@@ -147,8 +151,8 @@ struct vct_clip_table vct_clipmap_table(const struct vct_clipmap *map, int resol
         const struct vct_clip *clip = &map->levels[i];
         const struct vct_grid *grid = lit ? &clip->lit_grid : &clip->grid;
         const int level = map->count - 1 - i;
-        const struct box3 box = lit || i == 0 ? box_of(grid) : clip->cone_box;
-        table.levels[level] = level_of(grid, box, level);
+        const struct box3 box = of != VCT_OF_PIXELS || i == 0 ? box_of(grid) : clip->cone_box;
+        table.levels[level] = level_of(grid, &clip->lit_grid, box, level);
     }
     const int coarsest = map->count - 1;
     table.size = glms_vec3_scale(table.levels[coarsest].size, (float)(1 << coarsest));

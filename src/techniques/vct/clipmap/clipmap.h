@@ -32,8 +32,15 @@ enum vct_clipmap_change { // bits
 uint32_t vct_clipmap_update(struct vct_clipmap *map, int resolution, const struct frame_view *view);
 // The light volume has been filled from these grids.
 void vct_clipmap_note_lit(struct vct_clipmap *map);
-// The uniform block: see vct_clipmap_binding; lit: vct_lit_clipmap_binding.
-struct vct_clip_table vct_clipmap_table(const struct vct_clipmap *map, int resolution, bool lit);
+enum vct_clip_table_of {
+    VCT_OF_PIXELS,      // boxes around the camera
+    VCT_OF_VOXEL_RAYS,  // whole grids
+    VCT_OF_VOXEL_CONES, // whole grids, as they were when the light volume was filled
+};
+
+// The uniform block "vct_clipmap".
+struct vct_clip_table vct_clipmap_table(const struct vct_clipmap *map, int resolution,
+                                        enum vct_clip_table_of of);
 // Side of the finest texel of the light volume, m.
 float vct_clipmap_texel_m(const struct vct_clipmap *map);
 // The longest side of the grid of the whole scene, m.

@@ -6,9 +6,10 @@
 
 // A level as cones sample it: in texels of the finest level, from the corner of the scene's grid.
 struct vct_clip_level {
-    vec3s corner;    // of its first texel
-    vec3s size;      // in use, in its own texels
-    vec3s low, high; // the box in which cones sample it
+    vec3s corner;     // of its first texel
+    vec3s size;       // in use, in its own texels
+    vec3s low, high;  // the box in which cones and rays sample it
+    vec3s lit_corner; // as `corner`, of the grid when the light volume was filled
 };
 
 // Uniform block "vct_clipmap".
@@ -20,7 +21,7 @@ struct vct_clip_table {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct vct_clip_table) == (7 + 12 * VCT_MAX_CLIPS) * 4,
+_Static_assert(sizeof(struct vct_clip_table) == (7 + 15 * VCT_MAX_CLIPS) * 4,
                "layout is shared with GLSL");
 #endif
 

@@ -55,6 +55,13 @@ struct vct_cone_params vct_voxel_cones(const struct vct_frame *frame)
     return params;
 }
 
+// Low discrepancy over frames: multiples of the golden ratio.
+static float chance_of(uint32_t frame)
+{
+    const double turns = 0.6180339887498949 * (double)frame;
+    return (float)(turns - floor(turns));
+}
+
 // World-space axes. Each cone's weight, 1/count, is divided among the pixels of a block that trace
 // it.
 static struct vct_cone_params pixel_cones(const struct vct_cones *cones,
@@ -73,6 +80,7 @@ static struct vct_cone_params pixel_cones(const struct vct_cones *cones,
             vec4_of(cones->axes[i],
                     1.0f / (float)(count * (uint32_t)pixels_tracing(i, side * side, count)));
     vct_stratum_axes(temporal ? temporal->number : 0, params.set_axes);
+    params.level_chance = temporal ? chance_of(temporal->number) : 0.0f;
     if (temporal) vct_temporal_rotate_cones(temporal, &params);
     return params;
 }

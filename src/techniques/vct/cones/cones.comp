@@ -49,6 +49,8 @@ layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D blue;  // Σ d.z
 layout(set = 0, binding = 9) uniform writeonly image2D irradiance; // if each pixel traces all cones
 layout(set = 0, binding = 12) uniform sampler2D cone_normal;       // axis of the cone set
 
+const uint LEVEL_SET = 625u; // beyond the numbers of the strata
+
 #define VCT_SMALL_EMITTERS_BINDING 10
 #include "techniques/vct/cones/small_emitters.glsl"
 
@@ -62,6 +64,16 @@ void add_small_emitters(inout vct_cone_sums sum, uint part, uint parts, vec3 at,
         sum.light += outerProduct(to, arriving * (projected / PI));
     }
 }
+
+#if !VCT_SVO
+// Rays near the border of a level are divided between it and the next coarser one.
+int level_of_ray(vct_start start, uint tile, uint number)
+{
+    if (VCT_CLIPS == 1) return 0;
+    float chance = fract(vct_low_discrepancy(tile, number + LEVEL_SET).x + set.level_chance);
+    return start.level + (chance < start.next ? 1 : 0);
+}
+#endif
 
 void main()
 {
@@ -108,8 +120,8 @@ void main()
             vec4 traced;
 #if !VCT_SVO
             if (VCT_RAYS)
-                traced = vct_trace_ray(2.0 * at + VCT_RAY_LIFT * up, up, direction,
-                                       vct.cell_m * vct.decay_per_m);
+                traced = vct_trace_ray(at, up, direction, 0.5 * set.texel_m * vct.decay_per_m,
+                                       level_of_ray(start, tile, part + i * parts));
             else
 #endif
                 traced = vct_cone(light, at, up, direction, set.offset, set.width_per_m,

@@ -25,11 +25,14 @@ struct vct_cone_params {
     uint32_t last_mip;
     float environment_sigma; // of the lobes of the environment, rad (frame/environment_map.glsl)
     uint32_t columns;        // of the grid of strata, for rays
-    uint32_t new_sets;       // whose records are not of this frame's voxels: 1 static, 2 dynamic
-    uint32_t in_turns;       // bool, bounces: only parts whose turn it is gather
-    uint32_t frame;          // number of the frame
-    vec3s set_axes[3];       // axes of the strata of pixels, world space
-    uint32_t padding[4];     // vec4s is aligned to 16 bytes in C
+    // Sets whose records are not of this frame's voxels: 1 static, 2 dynamic, of each level from
+    // the finest on.
+    uint32_t new_sets;
+    uint32_t in_turns;   // bool, bounces: only parts whose turn it is gather
+    uint32_t frame;      // number of the frame
+    vec3s set_axes[3];   // axes of the strata of pixels, world space
+    float level_chance;  // of rays between two levels of the clip map: differs by frame
+    uint32_t padding[3]; // vec4s is aligned to 16 bytes in C
 };
 
 // Storage block "vct_small_emitters".

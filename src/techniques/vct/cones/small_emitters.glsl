@@ -120,8 +120,7 @@ vec3 vct_small_emitter_light(sampler3D light, uint point, vec3 at, vec3 normal, 
     vec3 emitter_at = (s.at - clips.origin_m) / set.texel_m;
 #ifdef AG_VCT_RAY_GLSL
     if (VCT_RAYS)
-        return s.light * vct_ray_visibility(2.0 * at + VCT_RAY_LIFT * normal, normal,
-                                            2.0 * emitter_at, VCT_EMITTER_NEAR_RAY);
+        return s.light * vct_ray_visibility(at, normal, emitter_at, VCT_EMITTER_NEAR_RAY, first);
 #endif
     return s.light * vct_emitter_visibility(light, at, normal, first, emitter_at, s.emitter_normal);
 }

@@ -80,8 +80,10 @@ vec3 in_cone(ivec2 pixel, vec3 axis, float tan_half)
 // Light of the place that a ray meets, filtered to the texels of its width.
 vec3 met_light(vct_ray_sum s, vec3 place, vec3 direction, float texel)
 {
-    float weight, level = min(log2(max(texel, 1.0)), float(set.last_mip));
-    int fine = int(level), coarse = min(fine + 1, int(set.last_mip));
+    int coarsest = int(set.last_mip) + VCT_CLIPS - 1; // the last mip of the coarsest level
+    float weight,
+        level = clamp(log2(max(texel, 1.0)), float(vct_ray_place_level(s.place)), float(coarsest));
+    int fine = int(level), coarse = min(fine + 1, coarsest);
     vec4 a = vct_sample_volume(light, vct_within_volume(place, fine, weight), direction, direction,
                                fine)
                  .light,
@@ -98,7 +100,7 @@ vec3 ray_light(ivec2 pixel, vec3 at, vec3 n, vec3 mirror, float tan_half)
 {
     vec3 direction = lifted(in_cone(pixel, mirror, tan_half), n);
     float share = tan_half / float(VCT_REFLECT_SIDE); // of the cone that the ray stands for
-    vct_ray_sum s = vct_ray_faces(vct_ray_of(2.0 * at + VCT_RAY_LIFT * n, n, direction), 0.0);
+    vct_ray_sum s = vct_ray_faces(vct_ray_of(at, n, direction, vct_start_at(at).level), 0.0);
     vec3 last = vec3(0.0);
     if (s.visible > 0.0)
         last = met_light(s, at + 0.5 * s.distance * direction, direction, share * s.distance);

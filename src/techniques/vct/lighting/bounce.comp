@@ -72,8 +72,7 @@ vec3 sum_of_rays(vec3 at, mat3 world_from_local, uint part_number)
         vec3 direction = world_from_local *
                          vct_cosine_direction(
                              vct_in_stratum(i, set.columns, set.cone_count / set.columns, jitter));
-        sum += arriving(vct_trace_ray(2.0 * at + VCT_RAY_LIFT * normal, normal, direction, 0.0),
-                        direction);
+        sum += arriving(vct_trace_ray(at, normal, direction, 0.0, vct.level), direction);
     }
     return sum * (PI / float(set.cone_count));
 }

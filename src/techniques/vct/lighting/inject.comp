@@ -87,5 +87,5 @@ void main()
         if (part < vct.capacity) arriving += texelFetch(vct_bounced, vct_face_texel(part), 0).rgb;
     }
     r.reflected = min(arriving * surface.reflectance / PI, vec3(HALF_MAX));
-    imageStore(vct_lit_voxels, vct_face_texel(slot), vct_pack(r));
+    imageStore(vct_lit_voxels, vct_face_texel(vct.face_first + slot), vct_pack(r));
 }

@@ -9,14 +9,14 @@
 #include <string.h>
 
 static void inject(const struct vct_lighting *lighting, const struct vct_frame *frame, int level,
-                   const struct vct_voxel_set *set)
+                   const struct vct_voxel_set *set, gpu_image lit_voxels)
 {
     gpu_dispatch_indirect(frame->cmd, lighting->inject[frame->params.light_count > 0],
                           GPU_BIND(vct_grid_binding(frame, level),
                                    FRAME_LIGHT_BINDINGS(frame->view),
                                    { .name = "vct_list", .buffer = set->list },
                                    { .name = "vct_surfaces", .image = set->surfaces },
-                                   { .name = "vct_lit_voxels", .image = set->lit_voxels },
+                                   { .name = "vct_lit_voxels", .image = lit_voxels },
                                    { .name = "vct_bounced", .image = set->bounced },
                                    { .name = "vct_part_of_face", .image = set->part_of_face },
                                    { .name = "vct_arguments", .buffer = set->arguments }),
@@ -37,8 +37,9 @@ static void light_voxels(const struct vct_lighting *lighting, const struct vct_f
     gpu_scope_begin(frame->cmd, "inject");
     for (int i = 0; i < frame->clipmap->count; i++) {
         const struct vct_level_voxels *voxels = &frame->voxels->levels[i];
-        inject(lighting, frame, i, &voxels->static_set);
-        if (vct_frame_moves(frame)) inject(lighting, frame, i, &voxels->dynamic_set);
+        const gpu_image *lit = frame->voxels->lit_voxels;
+        inject(lighting, frame, i, &voxels->static_set, lit[0]);
+        if (vct_frame_moves(frame)) inject(lighting, frame, i, &voxels->dynamic_set, lit[1]);
     }
     gpu_scope_end(frame->cmd);
     vct_refill_volume(frame);
@@ -101,7 +102,7 @@ static void bounce(const struct vct_lighting *lighting, const struct vct_frame *
                    const struct vct_voxel_set *set, struct gpu_binding cones, bool in_turns)
 {
     gpu_dispatch_indirect(frame->cmd, lighting->bounce[vct_light_variant(frame)],
-                          GPU_BIND(vct_grid_binding(frame, level), vct_lit_clipmap_binding(frame),
+                          GPU_BIND(vct_grid_binding(frame, level), vct_voxel_clipmap_binding(frame),
                                    frame->view->constants_binding, frame->view->environment_binding,
                                    cones, { .name = "vct_parts", .image = set->parts },
                                    { .name = "vct_part_counts", .buffer = set->part_counts },
@@ -116,37 +117,45 @@ static void bounce(const struct vct_lighting *lighting, const struct vct_frame *
 enum { RAYS = 16, RAYS_COLUMNS = 4, RAYS_OF_MOVING = 4 };
 
 struct bounce_how {
-    uint32_t new_sets; // of voxels whose records are not of this frame
+    uint32_t new_sets; // as vct_cone_params.new_sets
     bool in_turns;     // light changes as in the previous frame: a part of it now
 };
+
+// A set of a level in the bits of vct_cone_params.new_sets.
+static uint32_t set_bit(const struct vct_frame *frame, int level, uint32_t set)
+{
+    return set << (2 * (frame->clipmap->count - 1 - level));
+}
 
 static void bounce_all(const struct vct_lighting *lighting, const struct vct_frame *frame,
                        struct bounce_how how)
 {
     struct gpu_cmd *cmd = frame->cmd;
-    struct vct_cone_params params = vct_voxel_cones(frame), moving;
+    struct vct_cone_params params = vct_voxel_cones(frame), turns, moving;
     params.new_sets = how.new_sets;
     if (vct_has_rays(frame->options)) {
         params.cone_count = RAYS;
         params.columns = RAYS_COLUMNS;
     }
-    moving = params;
+    turns = moving = params;
     if (how.in_turns && vct_has_rays(frame->options)) {
-        params.in_turns = (how.new_sets & 1u) == 0;
-        params.frame = (uint32_t)frame->view->index;
+        turns.in_turns = true;
+        turns.frame = (uint32_t)frame->view->index;
         moving.cone_count = RAYS_OF_MOVING;
         moving.columns = 2;
     }
     const struct gpu_binding cones[] = {
         gpu_transient(cmd, "vct_cones", &params, sizeof params),
+        gpu_transient(cmd, "vct_cones", &turns, sizeof turns),
         gpu_transient(cmd, "vct_cones", &moving, sizeof moving),
     };
     gpu_scope_begin(cmd, "bounce");
-    for (int i = 0; i < frame->clipmap->count; i++) {
+    for (int i = lighting->first_level; i < frame->clipmap->count; i++) {
         const struct vct_level_voxels *voxels = &frame->voxels->levels[i];
-        bounce(lighting, frame, i, &voxels->static_set, cones[0], params.in_turns);
+        const bool in_turns = turns.in_turns && (how.new_sets & set_bit(frame, i, 1)) == 0;
+        bounce(lighting, frame, i, &voxels->static_set, cones[in_turns], in_turns);
         if (vct_frame_moves(frame))
-            bounce(lighting, frame, i, &voxels->dynamic_set, cones[1], false);
+            bounce(lighting, frame, i, &voxels->dynamic_set, cones[2], false);
     }
     gpu_scope_end(cmd);
 }
@@ -213,9 +222,29 @@ static void restart_light(const struct vct_lighting *lighting, const struct vct_
 }
 
 // Moving voxels are new in each frame in which they move.
-static uint32_t new_sets(const struct vct_voxels *voxels)
+static uint32_t new_sets(const struct vct_frame *frame)
 {
-    return (voxels->levels[0].new_statics ? 1u : 0) | (voxels->revoxelized ? 2u : 0);
+    uint32_t sets = 0;
+    for (int i = 0; i < frame->clipmap->count; i++) {
+        const struct vct_level_voxels *level = &frame->voxels->levels[i];
+        if (level->new_statics) sets |= set_bit(frame, i, 1);
+        if (level->revoxelized) sets |= set_bit(frame, i, 2);
+    }
+    return sets;
+}
+
+// The light of a level comes from it and from coarser ones: after a step of a level those keep
+// theirs.
+static int first_level(const struct vct_lighting *lighting, const struct vct_frame *frame,
+                       const struct vct_bounce_inputs *inputs, bool restart)
+{
+    const bool other = memcmp(inputs, &lighting->inputs, sizeof *inputs) != 0;
+    if (restart || other || !lighting->bounced || frame->view->lights_changed) return 0;
+    const int before =
+        lighting->bounces_left > 0 ? lighting->first_level : frame->clipmap->count - 1;
+    for (int i = 0; i < before; i++)
+        if (frame->voxels->levels[i].revoxelized) return i;
+    return before;
 }
 
 bool vct_record_bounce(struct vct_lighting *lighting, struct vct_frame *frame)
@@ -229,6 +258,7 @@ bool vct_record_bounce(struct vct_lighting *lighting, struct vct_frame *frame)
                          (frame->voxels->revoxelized && vct_has_svo(frame->options)) ||
                          light_jumps(lighting, frame, &inputs);
     frame->params.bounced = many || has_sky(view) || view->scene->max_emissive > 0.0f;
+    lighting->first_level = first_level(lighting, frame, &inputs, restart);
     bool moves = false;
     const int bounces =
         frame->params.bounced ? bounces_now(lighting, frame, &inputs, restart, &moves) : 0;
@@ -238,7 +268,7 @@ bool vct_record_bounce(struct vct_lighting *lighting, struct vct_frame *frame)
     // Bounced light of blocks whose turn is later has the scale of the frame that gathered it.
     const bool same_scale = view->constants->previous_scale_ratio == 1.0f;
     bounce_all(lighting, frame,
-               (struct bounce_how){ restart ? 0 : new_sets(frame->voxels), moves && same_scale });
+               (struct bounce_how){ restart ? 0 : new_sets(frame), moves && same_scale });
     frame->params.light_scale = 1.0f;
     for (int i = 1; i < bounces; i++) {
         light_voxels(lighting, frame);

@@ -18,6 +18,7 @@ struct vct_lighting {
     bool bounced;           // bounced irradiance is that of `inputs`
     struct vct_bounce_inputs inputs;
     int bounces_left; // that still propagate a change of light
+    int first_level;  // of the clip map, the coarsest one whose light that change reaches
 };
 
 struct vct_frame;

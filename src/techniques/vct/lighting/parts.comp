@@ -284,8 +284,9 @@ uint enter(vct_part part, uint number)
     atomicMax(counts.groups[0], place / VCT_BLOCK_LOCAL + 1u);
     atomicMax(counts.turn_groups[0], place / (VCT_BLOCK_LOCAL * VCT_PARTS_EACH) + 1u);
     vec3 position = vec3(2 * block_texel) + start_of(part);
-    uint tile = vct_morton(uvec2(vct_morton(uvec2(block_texel.xy)), block_texel.z));
-    uvec3 block = uvec3(block_texel) / VCT_BLOCK;
+    // From the corner of the scene's grid: the same rays after a step of a level.
+    uvec3 texel = uvec3(block_texel + ivec3(0.5 - 0.5 * vct.scene_low)), block = texel / VCT_BLOCK;
+    uint tile = vct_morton(uvec2(vct_morton(texel.xy), texel.z));
     vct_part_record record = vct_part_record(position, normalize(part.normal),
                                              64u * (number + 1u) + 8u * tile + block_face,
                                              block.x + 3u * block.z + 5u * block.y);

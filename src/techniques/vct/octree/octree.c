@@ -74,6 +74,7 @@ static void over_bricks(const struct vct_svo *svo, const struct vct_frame *frame
     gpu_dispatch_indirect(frame->cmd, pipeline,
                           GPU_BIND(vct_grid_binding(frame, 0), vct_svo_binding(frame),
                                    VCT_BOTH_SETS(&frame->voxels->levels[0]),
+                                   VCT_LIT_BINDINGS(frame),
                                    { .name = "light", .image = frame->volume->light },
                                    { .name = "vct_svo_nodes", .buffer = svo->nodes },
                                    { .name = "vct_svo_brick_coords", .buffer = svo->brick_coords },

@@ -62,7 +62,8 @@ uint with_alignment(uint word, uint slot, usampler2D planes)
 {
     uint others = 0u; // voxels with other surfaces
     for (uint rest = word; rest != 0u && slot < vct.capacity; rest &= rest - 1u, slot++) {
-        vct_plane plane = vct_unpack_plane(texelFetch(planes, vct_face_texel(slot), 0).rg);
+        vct_plane plane =
+            vct_unpack_plane(texelFetch(planes, vct_face_texel(vct.face_first + slot), 0).rg);
         if (!vct_plane_aligned(plane.normal)) others |= 1u << (uint(findLSB(rest)) & 24u);
     }
     return word | (VCT_EACH_VOXEL - others) << 6;
@@ -75,15 +76,16 @@ void main()
     ivec3 texel = vct_texel(i);
     uvec4 faces = uvec4(static_mask_words[2u * i], static_mask_words[2u * i + 1u],
                         dynamic_mask_words[2u * i], dynamic_mask_words[2u * i + 1u]);
+    ivec3 to = texel + ivec3(0, 0, vct.volume_first);
     if (faces == uvec4(0u)) {
         faces.x = VCT_BLOCK_EMPTY | empty_level(texel);
     } else {
-        imageStore(static_first_slots, texel, uvec4(static_offsets[2u * i]));
-        imageStore(dynamic_first_slots, texel, uvec4(dynamic_offsets[2u * i]));
+        imageStore(static_first_slots, to, uvec4(vct.face_first + static_offsets[2u * i]));
+        imageStore(dynamic_first_slots, to, uvec4(vct.face_first + dynamic_offsets[2u * i]));
         faces.x = with_alignment(faces.x, static_offsets[2u * i], static_planes);
         faces.y = with_alignment(faces.y, static_offsets[2u * i + 1u], static_planes);
         faces.z = with_alignment(faces.z, dynamic_offsets[2u * i], dynamic_planes);
         faces.w = with_alignment(faces.w, dynamic_offsets[2u * i + 1u], dynamic_planes);
     }
-    imageStore(vct_blocks, texel, faces);
+    imageStore(vct_blocks, to, faces);
 }

@@ -98,5 +98,5 @@ void main()
     uint bits = code.x | code.y << 8 | uint(roundEven((distance + 1.0) * 511.0)) << 16 |
                 uint(roundEven(clamp(opacity, 0.0, 1.0) * 63.0)) << 26;
     uint extent = e.first.x | e.first.y << 4 | e.last.x << 8 | e.last.y << 12;
-    imageStore(vct_planes, vct_face_texel(slot), uvec4(bits, extent, 0u, 0u));
+    imageStore(vct_planes, vct_face_texel(vct.face_first + slot), uvec4(bits, extent, 0u, 0u));
 }

@@ -2,7 +2,8 @@
 // plane within the voxel, at the true distance and on one side, so that nothing behind a thin
 // partition is seen. Within blocks a ray passes from voxel to voxel (Amanatides & Woo 1987); empty
 // space is skipped by the mips of occupancy. Faces that are covered in part accumulate as samples
-// of cones do (volume/over.glsl). Include after vct_grid.glsl.
+// of cones do (volume/over.glsl). Where a ray leaves a level of the clip map it goes on in the next
+// coarser one. Include after vct_grid.glsl and clipmap/clipmap.glsl.
 #ifndef AG_VCT_RAY_GLSL
 #define AG_VCT_RAY_GLSL
 
@@ -36,11 +37,26 @@ const float VCT_RAY_LEAST = 0.01, VCT_RAY_OWN = 0.25;
 const float VCT_RAY_COVERED = 0.1; // least opacity of a texel whose radiance is taken
 
 struct vct_ray {
-    vec3 from, direction, inverse; // in voxels of the grid
+    vec3 from, direction, inverse; // in voxels of the level's grid
     vec3 normal;                   // of the surface at the start
     uint facing, facing_aligned;   // faces that may face the ray, a byte for each voxel
-    float end;                     // distance at which it leaves the grid or ends
+    float end;                     // distance at which it leaves the level or ends
+    float most;                    // distance at which it ends in any level
+    int level;                     // of the clip map, 0 is the finest
 };
+
+// Voxels of a level along a side of one of the finest level.
+float vct_ray_scale(vct_ray ray)
+{
+    return VCT_CLIPS > 1 ? 1.0 / float(1 << ray.level) : 1.0;
+}
+
+// A place in texels of the finest level, in voxels of a level's grid.
+vec3 vct_ray_place_in(vec3 at, int level)
+{
+    if (VCT_CLIPS == 1) return 2.0 * at;
+    return (at - clips.levels[level].corner) * (2.0 / float(1 << level));
+}
 
 // Faces whose normals can be against the direction. slope: of their normals to the axis.
 uint vct_facing(vec3 d, float slope)
@@ -61,17 +77,25 @@ float vct_ray_exit(vct_ray ray, vec3 low, float size)
 
 float vct_ray_end(vct_ray ray)
 {
-    vec3 cells = vec3(vct_cells());
+    vec3 cells = VCT_CLIPS > 1 ? 2.0 * clips.levels[ray.level].size : vec3(vct_cells());
     if (any(lessThan(ray.from, vec3(0.0))) || any(greaterThanEqual(ray.from, cells))) return 0.0;
-    vec3 ends = mix(vec3(0.0), cells, greaterThan(ray.direction, vec3(0.0)));
+    vec3 low = vec3(0.0), high = cells;
+    if (VCT_CLIPS > 1) {
+        low = max(low, vct_ray_place_in(clips.levels[ray.level].low, ray.level));
+        high = min(high, vct_ray_place_in(clips.levels[ray.level].high, ray.level));
+    }
+    vec3 ends = mix(low, high, greaterThan(ray.direction, vec3(0.0)));
     vec3 t = (ends - ray.from) * ray.inverse;
     return min(t.x, min(t.y, t.z)) - VCT_RAY_STEP;
 }
 
-vct_ray vct_ray_of(vec3 from, vec3 normal, vec3 direction)
+// From a surface at a place in texels of the finest level, in that level.
+vct_ray vct_ray_of(vec3 at, vec3 normal, vec3 direction, int level)
 {
     vct_ray ray;
-    ray.from = from;
+    ray.level = VCT_CLIPS > 1 ? level : 0;
+    ray.most = 1e9;
+    ray.from = vct_ray_place_in(at, ray.level) + VCT_RAY_LIFT * normal;
     ray.direction = direction;
     ray.normal = normal;
     vec3 sign = mix(vec3(1.0), vec3(-1.0), lessThan(direction, vec3(0.0)));
@@ -80,6 +104,24 @@ vct_ray vct_ray_of(vec3 from, vec3 normal, vec3 direction)
     ray.facing_aligned = VCT_EACH_VOXEL * vct_facing(direction, VCT_ALIGNED_SLOPE);
     ray.end = vct_ray_end(ray);
     return ray;
+}
+
+// Whether there is more of a ray from a distance on.
+bool vct_ray_goes_on(vct_ray ray, float distance)
+{
+    return distance < ray.end ||
+           (VCT_CLIPS > 1 && ray.level < VCT_CLIPS - 1 && distance < ray.most);
+}
+
+// Into the next coarser level. distance: at which the ray leaves its own.
+void vct_ray_leave(inout vct_ray ray, inout float distance)
+{
+    vec3 shift = clips.levels[ray.level].corner - clips.levels[ray.level + 1].corner;
+    ray.level++;
+    ray.from = 0.5 * ray.from + shift * (2.0 / float(1 << ray.level));
+    ray.most *= 0.5;
+    distance = 0.5 * max(min(distance, ray.end), 0.0); // empty blocks reach beyond the end
+    ray.end = min(vct_ray_end(ray), ray.most);
 }
 
 // A voxel that a ray passes, and its faces that may meet the ray.
@@ -99,14 +141,24 @@ uint vct_ray_shift(ivec3 voxel)
 // Loops test at their end: on software drivers the body of one that tests at its start runs once
 // more than it has iterations, for no invocation.
 
+// The texel of a voxel's block.
+ivec3 vct_ray_block(vct_ray ray, ivec3 voxel)
+{
+    ivec3 block = voxel >> 1;
+    if (VCT_CLIPS > 1) block.z += (VCT_CLIPS - 1 - ray.level) * vct.volume_dim;
+    return block;
+}
+
 // The next voxel with such a face from v.last on, if there is one.
-void vct_ray_next(vct_ray ray, inout vct_ray_voxel v)
+void vct_ray_next(inout vct_ray ray, inout vct_ray_voxel v)
 {
     uvec4 masks;
     do {
+        if (VCT_CLIPS > 1 && v.last >= ray.end && ray.level < VCT_CLIPS - 1)
+            vct_ray_leave(ray, v.last);
         v.first = v.last;
         v.at = ivec3(ray.from + ray.direction * (v.first + VCT_RAY_STEP));
-        masks = texelFetch(vct_blocks, v.at >> 1, 0);
+        masks = texelFetch(vct_blocks, vct_ray_block(ray, v.at), 0);
         bool empty = (masks.x & VCT_BLOCK_EMPTY) != 0u;
         uvec4 aligned = masks >> 6u & VCT_EACH_VOXEL;
         aligned = (aligned << 6u) - aligned; // all faces of aligned voxels
@@ -118,13 +170,14 @@ void vct_ray_next(vct_ray ray, inout vct_ray_voxel v)
         uint level = empty ? (masks.x & 7u) + 1u : none ? 1u : 0u;
         v.last = max(vct_ray_exit(ray, vec3(v.at >> level << level), float(1u << level)),
                      v.first + VCT_RAY_STEP);
-    } while (v.faces == 0u && v.last < ray.end);
+    } while (v.faces == 0u && vct_ray_goes_on(ray, v.last));
     const uint all_faces = VCT_EACH_VOXEL * 63u;
     bool upper = (v.at.z & 1) != 0;
     v.words = (upper ? masks.yw : masks.xz) & all_faces;
     v.slots = upper ? uvec2(bitCount(masks.xz & all_faces)) : uvec2(0u);
-    v.slots.x += texelFetch(static_first_slots, v.at >> 1, 0).r;
-    if (VCT_HAS_DYNAMIC) v.slots.y += texelFetch(dynamic_first_slots, v.at >> 1, 0).r;
+    v.slots.x += texelFetch(static_first_slots, vct_ray_block(ray, v.at), 0).r;
+    if (VCT_HAS_DYNAMIC)
+        v.slots.y += texelFetch(dynamic_first_slots, vct_ray_block(ray, v.at), 0).r;
 }
 
 const uint VCT_RAY_DYNAMIC = 0x80000000u; // bit of a face's number
@@ -138,12 +191,13 @@ uint vct_ray_face(vct_ray_voxel v, uint face)
     return dynamic ? v.slots.y + before | VCT_RAY_DYNAMIC : v.slots.x + before;
 }
 
-vct_plane vct_ray_plane(uint face)
+vct_plane vct_ray_plane(vct_ray ray, uint face)
 {
     uint slot = face & ~VCT_RAY_DYNAMIC;
+    uint first = VCT_CLIPS > 1 ? uint(VCT_CLIPS - 1 - ray.level) * vct.level_faces : 0u;
     uvec2 packed = uvec2(0u);
     ivec2 at = vct_face_texel(slot);
-    if (slot < vct.capacity) {
+    if (slot - first < vct.capacity) {
         if (VCT_HAS_DYNAMIC && face >= VCT_RAY_DYNAMIC)
             packed = texelFetch(dynamic_planes, at, 0).rg;
         else
@@ -167,34 +221,56 @@ float vct_ray_meets(vct_ray ray, vct_ray_voxel v, vct_plane plane, uint face)
     return meets ? t : -1.0;
 }
 
+// Texel, face and level of the clip map.
+uint vct_ray_place(vct_ray ray, ivec3 voxel, uint face)
+{
+    ivec3 at = voxel >> 1;
+    uint place = uint(at.x | at.y << 8 | at.z << 16) | face % VCT_FACES << 24;
+    return VCT_CLIPS > 1 ? place | uint(ray.level) << 27 : place;
+}
+
+int vct_ray_place_level(uint place)
+{
+    return VCT_CLIPS > 1 ? int(place >> 27) : 0;
+}
+
 #ifdef VCT_RAY_VOXELS_CHANGE
+// Light of a texel of the previous frame's light volume, along one of its directions. middle: of a
+// finer texel within, in texels of the finest level. Levels beyond the coarsest are its mips.
+vec4 vct_ray_previous_texel(vec3 middle, int level, int volume)
+{
+    int grid = min(level, VCT_CLIPS - 1), mip = level - grid, tile = vct.volume_dim >> mip;
+    vec3 within = (middle - clips.levels[grid].lit_corner) / float(1 << grid);
+    bool inside =
+        all(greaterThan(within, vec3(0.0))) && all(lessThan(within, clips.levels[grid].size));
+    ivec3 texel = ivec3(within) >> mip;
+    return inside ? texelFetch(light,
+                               texel + ivec3(volume * tile, 0, (VCT_CLIPS - 1 - grid) * tile), mip)
+                  : vec4(0.0);
+}
+
 // Radiance of a face of new voxels, whose records are not written yet: that of the previous frame's
-// light volume. Where a moving surface has only just come, coarser texels hold its light. place:
-// see vct_ray_place.
+// light volume. Where a moving surface has only just come, or the level has moved to, coarser
+// texels hold its light. place: see vct_ray_place.
 vec3 vct_ray_previous_light(uint place)
 {
     ivec3 texel = ivec3(place & 255u, place >> 8 & 255u, place >> 16 & 255u);
-    int volume = int(place >> 24 ^ 1u); // seen along a direction against the normal
+    int volume = int(place >> 24 & 7u ^ 1u); // seen along a direction against the normal
+    int level = vct_ray_place_level(place);
+    vec3 middle = (vec3(texel) + 0.5) * float(1 << level) + clips.levels[level].corner;
     vec4 found = vec4(0.0);
-    for (int mip = 0; mip < 3 && found.a < VCT_RAY_COVERED; mip++)
-        found =
-            texelFetch(light, (texel >> mip) + ivec3(volume * (vct.volume_dim >> mip), 0, 0), mip);
+    for (int i = 0; i < 3 && found.a < VCT_RAY_COVERED; i++)
+        found = vct_ray_previous_texel(middle, level + i, volume);
     return found.rgb / max(found.a, 1e-3);
 }
 #endif
-
-// Texel and face.
-uint vct_ray_place(ivec3 voxel, uint face)
-{
-    ivec3 at = voxel >> 1;
-    return uint(at.x | at.y << 8 | at.z << 16) | face % VCT_FACES << 24;
-}
 
 // Radiance of a face, from its own record.
 vec3 vct_ray_light(uint face, uint place)
 {
 #ifdef VCT_RAY_VOXELS_CHANGE
-    if ((set.new_sets & (face >= VCT_RAY_DYNAMIC ? 2u : 1u)) != 0u)
+    uint new_sets = set.new_sets >> (2 * vct_ray_place_level(place));
+    if ((new_sets & (face >= VCT_RAY_DYNAMIC ? 2u : 1u)) != 0u)
         return vct_ray_previous_light(place);
 #endif
     ivec2 at = vct_face_texel(face & ~VCT_RAY_DYNAMIC);
@@ -215,7 +291,7 @@ struct vct_ray_sum {
     float previous; // opacity of the last face; 0 where that is not next to what follows
     uint face, place;
     float visible;  // visible part of the last face, not yet in `light`
-    float distance; // of the last face
+    float distance; // of the last face, in voxels of the finest level
 };
 
 // The nearest face of a voxel that a ray meets.
@@ -232,7 +308,7 @@ vct_ray_meeting vct_ray_meet(vct_ray ray, inout vct_ray_voxel v)
     do {
         uint bit = uint(max(findLSB(rest), 0));
         uint face = vct_ray_face(v, bit);
-        vct_plane plane = vct_ray_plane(face);
+        vct_plane plane = vct_ray_plane(ray, face);
         float t = vct_ray_meets(ray, v, plane, bit);
         bool meets = rest != 0u && t >= 0.0 && plane.opacity > 0.0;
         bool nearer = meets && t < m.distance;
@@ -241,7 +317,7 @@ vct_ray_meeting vct_ray_meet(vct_ray ray, inout vct_ray_voxel v)
         m.distance = nearer ? t : m.distance;
         m.opacity = nearer ? plane.opacity : m.opacity;
         m.face = nearer ? face : m.face;
-        m.place = nearer ? vct_ray_place(v.at, bit) : m.place;
+        m.place = nearer ? vct_ray_place(ray, v.at, bit) : m.place;
         rest &= rest - 1u;
     } while (rest != 0u);
     v.faces = met & ~nearest;
@@ -249,16 +325,16 @@ vct_ray_meeting vct_ray_meet(vct_ray ray, inout vct_ray_voxel v)
 }
 
 // The next face along a ray, if there is one. Returns whether others may follow.
-bool vct_ray_next_face(vct_ray ray, inout vct_ray_voxel v, inout vct_ray_sum s)
+bool vct_ray_next_face(inout vct_ray ray, inout vct_ray_voxel v, inout vct_ray_sum s)
 {
     vct_ray_meeting m;
     bool more;
     do {
-        float end = v.last;
+        float end = v.last / vct_ray_scale(ray);
         if (v.faces == 0u) vct_ray_next(ray, v);
-        s.previous = v.first > end + 1.0 ? 0.0 : s.previous;
+        s.previous = v.first > end * vct_ray_scale(ray) + 1.0 ? 0.0 : s.previous;
         m = vct_ray_meet(ray, v);
-        more = v.faces != 0u || v.last < ray.end;
+        more = v.faces != 0u || vct_ray_goes_on(ray, v.last);
     } while (m.opacity == 0.0 && more);
     s.visible = m.opacity > 0.0 ? vct_visible_alpha(1.0 - s.opacity, m.opacity,
                                                     min(s.previous + m.opacity, 1.0))
@@ -267,11 +343,12 @@ bool vct_ray_next_face(vct_ray ray, inout vct_ray_voxel v, inout vct_ray_sum s)
     s.place = m.place;
     s.opacity += s.visible;
     s.previous = m.opacity;
-    s.distance = m.distance;
+    s.distance = m.distance / vct_ray_scale(ray);
     return more && s.opacity < VCT_RAY_OPAQUE;
 }
 
-// Faces along a ray, without the light of the last one. decay: of occlusion per voxel.
+// Faces along a ray, without the light of the last one. decay: of occlusion per voxel of the finest
+// level.
 vct_ray_sum vct_ray_faces(vct_ray ray, float decay)
 {
     vct_ray_voxel v;
@@ -297,22 +374,27 @@ vec4 vct_ray_total(vct_ray_sum s, vec3 last)
     return s.opacity > VCT_RAY_OPAQUE ? vec4(sum / s.opacity, 1.0) : vec4(sum, s.opacity);
 }
 
-// From a surface of that normal, in voxels.
-vec4 vct_trace_ray(vec3 from, vec3 normal, vec3 direction, float decay)
+// From a surface of that normal: see vct_ray_of.
+vec4 vct_trace_ray(vec3 at, vec3 normal, vec3 direction, float decay, int level)
 {
-    vct_ray_sum s = vct_ray_faces(vct_ray_of(from, normal, direction), decay);
+    vct_ray_sum s = vct_ray_faces(vct_ray_of(at, normal, direction, level), decay);
     vec3 last = vec3(0.0);
     if (s.visible > 0.0) last = vct_ray_light(s.face, s.place);
     return vct_ray_total(s, last);
 }
 
-// Visibility between a surface of that normal and a place, up to `near` voxels before it.
-float vct_ray_visibility(vec3 from, vec3 normal, vec3 to, float near)
+// Visibility between a surface of that normal and a place, up to `near` voxels before it. Both in
+// texels of the finest level.
+float vct_ray_visibility(vec3 at, vec3 normal, vec3 to, float near, int level)
 {
-    vec3 path = to - from;
+    vec3 from = vct_ray_place_in(at, level) + VCT_RAY_LIFT * normal;
+    vec3 path = vct_ray_place_in(to, level) - from;
     float distance = length(path);
-    vct_ray ray = vct_ray_of(from, normal, path / max(distance, 1e-6));
-    ray.end = min(ray.end, distance - near - VCT_RAY_SEAM);
+    vct_ray ray = vct_ray_of(at, normal, path / max(distance, 1e-6), level);
+    // The level at the end of the ray may have larger voxels.
+    if (VCT_CLIPS > 1) near *= max(vct_texel_at(to) * vct_ray_scale(ray), 1.0);
+    ray.most = distance - near - VCT_RAY_SEAM;
+    ray.end = min(ray.end, ray.most);
     float opacity = vct_ray_faces(ray, 0.0).opacity;
     return opacity > VCT_RAY_OPAQUE ? 0.0 : 1.0 - opacity;
 }

@@ -72,12 +72,14 @@ void gather_in_block(ivec3 from, ivec3 at, ivec3 size, out directional s)
     uint faces = inside ? static_faces(voxel) : 0u;
     uint slot = faces != 0u ? static_slot(first + uint(findLSB(faces))) : VCT_NO_SLOT;
     uint end = slot == VCT_NO_SLOT ? slot : min(slot + uint(bitCount(faces)), vct.capacity);
-    for (; slot < end; slot++) add_face(vct_lit_face_at(static_lit_voxels, slot), s);
+    for (; slot < end; slot++)
+        add_face(vct_lit_face_at(static_lit_voxels, vct.face_first + slot), s);
     if (VCT_HAS_DYNAMIC) {
         faces = inside ? dynamic_faces(voxel) : 0u;
         slot = faces != 0u ? dynamic_slot(first + uint(findLSB(faces))) : VCT_NO_SLOT;
         end = slot == VCT_NO_SLOT ? slot : min(slot + uint(bitCount(faces)), vct.capacity);
-        for (; slot < end; slot++) add_face(vct_lit_face_at(dynamic_lit_voxels, slot), s);
+        for (; slot < end; slot++)
+            add_face(vct_lit_face_at(dynamic_lit_voxels, vct.face_first + slot), s);
     }
     limit_opacity(s);
 }

@@ -8,8 +8,10 @@ void vct_volume_list_texels(struct vct_volume *volume, const struct vct_frame *f
     const struct vct_options *options = frame->options;
     const struct vct_level_voxels *voxels = &frame->voxels->levels[level];
     const struct vct_level_texels *texels = &volume->levels[level];
-    // Levels beyond the first have no mips; the blocks of lighting/bounce.comp are texels of one.
-    const uint32_t mips = level == 0 ? vct_volume_mips(options) : vct_block_level(options) + 1;
+    // Light has mips in the first level alone. The blocks of lighting/bounce.comp are texels of
+    // one, and rays skip empty texels of all.
+    const bool all = level == 0 || vct_has_rays(options);
+    const uint32_t mips = all ? vct_volume_mips(options) : vct_block_level(options) + 1;
     const struct vct_texels_push push = vct_texels_push(options, mips);
     const size_t counts = offsetof(struct vct_texel_levels, count);
     struct gpu_cmd *cmd = frame->cmd;
@@ -35,13 +37,13 @@ void vct_volume_list_texels(struct vct_volume *volume, const struct vct_frame *f
 static void fill(const struct vct_volume *volume, const struct vct_frame *frame, int level)
 {
     const struct vct_level_texels *texels = &volume->levels[level];
-    gpu_dispatch_indirect(frame->cmd, volume->fill[vct_frame_moves(frame)],
-                          GPU_BIND(vct_grid_binding(frame, level),
-                                   VCT_BOTH_SETS(&frame->voxels->levels[level]),
-                                   { .name = "light", .image = volume->light },
-                                   { .name = "vct_texels", .buffer = texels->list },
-                                   { .name = "vct_texel_counts", .buffer = texels->counts }),
-                          NULL, 0, texels->counts, vct_level_groups(0));
+    gpu_dispatch_indirect(
+        frame->cmd, volume->fill[vct_frame_moves(frame)],
+        GPU_BIND(vct_grid_binding(frame, level), VCT_BOTH_SETS(&frame->voxels->levels[level]),
+                 VCT_LIT_BINDINGS(frame), { .name = "light", .image = volume->light },
+                 { .name = "vct_texels", .buffer = texels->list },
+                 { .name = "vct_texel_counts", .buffer = texels->counts }),
+        NULL, 0, texels->counts, vct_level_groups(0));
 }
 
 // Texels of a mip that are in use, rounded up.

@@ -6,20 +6,19 @@
 #include "techniques/vct/voxelize/voxelize_shared.h"
 
 // The occupied voxels of the static or of the moving draws in one level of the clip map. Images
-// and buffers by face lie here, those of rays/ and lighting/ too.
+// and buffers by face lie here, those of lighting/ too.
 struct vct_voxel_set {
-    gpu_buffer mask;                // a bit for each voxel
-    gpu_buffer word_offsets;        // occupied voxels before each word of the mask
-    gpu_buffer blocks;              // the same for blocks of words
-    gpu_buffer list;                // indices of the occupied voxels
-    gpu_buffer arguments;           // struct vct_voxel_counts
-    gpu_buffer accumulated;         // a bit for each voxel whose triangles are summed up
-    gpu_buffer accumulated_list;    // slots of those voxels
-    gpu_image surfaces, lit_voxels; // RGBA32U, one entry for each occupied voxel
-    gpu_image planes;               // RG32U, for rays: see rays/plane.glsl
-    gpu_image part_of_face;         // R32U: see lighting/parts.comp
-    gpu_image parts, bounced;       // RGBA32U and RGBA16F: parts, irradiance on them
-    gpu_buffer part_counts;         // struct vct_part_count
+    gpu_buffer mask;             // a bit for each voxel
+    gpu_buffer word_offsets;     // occupied voxels before each word of the mask
+    gpu_buffer blocks;           // the same for blocks of words
+    gpu_buffer list;             // indices of the occupied voxels
+    gpu_buffer arguments;        // struct vct_voxel_counts
+    gpu_buffer accumulated;      // a bit for each voxel whose triangles are summed up
+    gpu_buffer accumulated_list; // slots of those voxels
+    gpu_image surfaces;          // RGBA32U, two texels for each occupied face
+    gpu_image part_of_face;      // R32U: see lighting/parts.comp
+    gpu_image parts, bounced;    // RGBA32U and RGBA16F: parts, irradiance on them
+    gpu_buffer part_counts;      // struct vct_part_count
 };
 
 // Draws by the maps of their materials; a map that a material lacks is white.
@@ -53,9 +52,13 @@ struct vct_voxels {
     gpu_buffer queue, queue_state; // tiles of large triangles
     gpu_buffer sums;               // over the triangles of the faces of a set
     struct vct_level_voxels levels[VCT_MAX_CLIPS];
-    bool revoxelized;    // some level is, in this frame
-    int moving_draws;    // of the voxels
-    uint64_t static_set; // of scene_gpu
+    // Faces of the static and of the moving set, all levels one after the other: rays go from level
+    // to level.
+    gpu_image lit_voxels[2]; // RGBA32U: see volume/lit_face.glsl
+    gpu_image planes[2];     // RG32U, for rays: see rays/plane.glsl
+    bool revoxelized;        // some level is, in this frame
+    int moving_draws;        // of the voxels
+    uint64_t static_set;     // of scene_gpu
 };
 
 struct vct_frame;
