@@ -274,7 +274,7 @@ const struct technique technique_radiosity = {
     .capabilities =
         CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION | PUBLISHES_PROBES,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID,
-    .bake_version = 18,
+    .bake_version = 19,
     .options = OPTION_TABLE(struct radiosity_options, option_rows, NULL),
     .presets = presets,
     .debug_views = radiosity_views,

@@ -360,6 +360,22 @@ void trial_panel(struct frame_fixture *s, struct gpu *gpu)
     fixture_look(s, vec3_of(0, 0.3f, 1.9f), vec3_of(0, 3, -0.5f));
 }
 
+void trial_sheet_below_ceiling(struct frame_fixture *s, struct gpu *gpu)
+{
+    fixture_init(s, gpu);
+    struct material m = material_default();
+    m.emissive = grey(1000);
+    m.base_color = vec4_of(grey(0.7f), 1);
+    m.metallic = 0;
+    m.double_sided = true;
+    const int white = fixture_matte(s, grey(0.5f)), sheet = fixture_material(s, &m);
+    const int materials[6] = { white, white, white, white, white, white };
+    add_walls(s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), materials);
+    fixture_quad(s, vec3_of(-0.5f, 2.98f, -0.4f), vec3_of(0.5f, 2.98f, -0.4f),
+                 vec3_of(0.5f, 2.98f, 0.4f), vec3_of(-0.5f, 2.98f, 0.4f), sheet);
+    fixture_look(s, vec3_of(1.7f, 2, 1.7f), vec3_of(-1.3f, 0.5f, -1.3f));
+}
+
 void trial_ceiling_light(struct frame_fixture *s, struct gpu *gpu, float gap)
 {
     fixture_init(s, gpu);

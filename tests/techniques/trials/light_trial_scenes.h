@@ -67,6 +67,11 @@ void trial_strips(struct frame_fixture *s, struct gpu *gpu);
 // the camera looks.
 void trial_panel(struct frame_fixture *s, struct gpu *gpu);
 
+// A room of 4 × 3 × 4 (albedo 0.5) with a panel of 1 × 0.8, 2 cm below the ceiling, that emits and
+// reflects on both sides: between both it is far brighter than elsewhere. The camera sees walls and
+// floor.
+void trial_sheet_below_ceiling(struct frame_fixture *s, struct gpu *gpu);
+
 // A room of 6 × 5 × 6 (albedo 0.7) with a black emissive box of 2 × 0.1 × 2, `gap` below the
 // ceiling. The camera sees the floor and the walls.
 void trial_ceiling_light(struct frame_fixture *s, struct gpu *gpu, float gap);

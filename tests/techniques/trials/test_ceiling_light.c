@@ -57,3 +57,20 @@ TEST_GPU(a_small_box_below_a_ceiling_lights_a_room_at_its_level)
         }
     }
 }
+
+// Texels of 2 and 4 cm: clusters and groups of the ceiling would reach past the panel's edge.
+TEST_GPU(light_between_a_panel_and_the_ceiling_does_not_light_the_room)
+{
+    static const char *const gis[] = { "radiosity:texels=65536", "radiosity:texels=16384" };
+    struct frame_fixture s;
+    trial_sheet_below_ceiling(&s, gpu);
+    const struct trial_irradiance expected = trial_reference(&s, -1, 256);
+    fixture_finish(&s);
+    for (size_t i = 0; i < sizeof gis / sizeof gis[0]; i++) {
+        trial_sheet_below_ceiling(&s, gpu);
+        const double share = trial_technique(&s, gis[i]).mean[1] / expected.mean[1];
+        fixture_finish(&s);
+        print_message("%s: %.3f of the reference's %.3f lux\n", gis[i], share, expected.mean[1]);
+        CHECK_NEAR(share, 1.0, 0.05);
+    }
+}

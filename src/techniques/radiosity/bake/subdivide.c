@@ -1,23 +1,38 @@
 // Walls that stand on a chart subdivide its clusters, and nodes are groups only if their clusters
-// are visible from each other: else light would leak from one room to the next.
+// are visible from each other: else light would leak from one room to the next. So does the edge of
+// a surface that is near in front of a part of them, as a panel below a ceiling: else the light
+// between both, which the room hardly sees, would leak into it.
 #include "techniques/radiosity/bake/gather.h"
 
 #include "core/parallel.h"
 #include "trace/texels/walls.h"
 
+#include <math.h>
+
 // Points are compared at this height over the surface, in distances between them, so that a curved
 // surface does not hide its own.
 static const float HEIGHT = 0.25f;
 
+// A surface in front covers a place, and not another one, if it is nearer to it than they are to
+// each other, and this factor nearer than what is in front of the other.
+static const float NEARER = 2.0f;
+
 struct surface_point {
     vec3s position, normal;
+    float opening; // distance to what is in front, along the normal
 };
 
 static struct surface_point point_of(const struct radiosity_scene *scene, uint32_t texel)
 {
     const struct charts *charts = &scene->map.charts;
-    return (struct surface_point){ chart_texel_of(charts, texel)->position,
-                                   chart_texel_normal(charts, texel) };
+    const struct chart_triangle *of = chart_triangle_of(charts, texel);
+    const struct trace_mesh *mesh = trace_mesh_of(scene->trace, of->instance);
+    const vec3s position = chart_texel_of(charts, texel)->position,
+                normal = chart_texel_normal(charts, texel);
+    const vec3s from = glms_vec3_muladds(normal, mesh->facets[of->triangle].reach, position);
+    struct trace_hit hit;
+    const bool covered = trace_closest(scene->trace, from, normal, INFINITY, &hit);
+    return (struct surface_point){ position, normal, covered ? hit.distance : INFINITY };
 }
 
 static bool are_mutually_visible(const struct radiosity_scene *scene, struct surface_point a,
@@ -27,6 +42,18 @@ static bool are_mutually_visible(const struct radiosity_scene *scene, struct sur
     const vec3s from = glms_vec3_muladds(a.normal, height, a.position);
     const vec3s to = glms_vec3_muladds(b.normal, height, b.position);
     return height == 0.0f || !trace_occluded(scene->trace, from, glms_vec3_sub(to, from), 1.0f);
+}
+
+static bool are_equally_open(struct surface_point a, struct surface_point b)
+{
+    const float least = fminf(a.opening, b.opening), most = fmaxf(a.opening, b.opening);
+    return least >= glms_vec3_distance(a.position, b.position) || most <= NEARER * least;
+}
+
+static bool are_alike(const struct radiosity_scene *scene, struct surface_point a,
+                      struct surface_point b)
+{
+    return are_equally_open(a, b) && are_mutually_visible(scene, a, b);
 }
 
 bool radiosity_texels_see(const struct radiosity_scene *scene, uint32_t a, uint32_t b)
@@ -54,8 +81,7 @@ static void subdivide_cluster(void *user, size_t cluster)
     if (map->first[cluster + 1] - map->first[cluster] < 2) return;
     const struct surface_point from = point_of(scene, first_open(scene, (uint32_t)cluster));
     for (uint32_t m = map->first[cluster]; m < map->first[cluster + 1]; m++)
-        scene->part[map->members[m]] =
-            !are_mutually_visible(scene, from, point_of(scene, map->members[m]));
+        scene->part[map->members[m]] = !are_alike(scene, from, point_of(scene, map->members[m]));
 }
 
 static void find_group(void *user, size_t n)
@@ -67,7 +93,7 @@ static void find_group(void *user, size_t n)
     const struct surface_point from = point_of(scene, first_open(scene, node->first));
     scene->is_group[n] = true;
     for (uint32_t c = node->first + 1; c < node->first + node->count; c++)
-        if (!are_mutually_visible(scene, from, point_of(scene, first_open(scene, c))))
+        if (!are_alike(scene, from, point_of(scene, first_open(scene, c))))
             scene->is_group[n] = false;
 }
 
