@@ -286,13 +286,13 @@ static double furnace_specular(const float *position, const float *normal, vec3s
 }
 
 // Pixels have the light of the furnace, or lie between it and the light of the source, whose coarse
-// voxels have an error. Beside its lower edges the box is a pixel or two from the hits, and darker:
+// cones have an error. Beside its lower edges the box is a pixel or two from the hits, and darker:
 // their filter includes it.
 TEST_GPU(a_furnace_stays_uniform)
 {
     static const float roughnesses[] = { 0, 0.1f, 0.2f, 0.3f };
-    static const char source_gi[] = "vct:resolution=16,levels=2,specular=true";
-    static const char both_gi[] = "vct:resolution=16,levels=2,specular=true+ssr";
+    static const char source_gi[] = "vct:resolution=16,storage=svo,specular=true";
+    static const char both_gi[] = "vct:resolution=16,storage=svo,specular=true+ssr";
     struct frame_fixture camera;
     open_furnace(&camera, gpu, 0);
     const vec3s eye = camera.input.camera.eye;
