@@ -10,16 +10,6 @@ static const vec3s LOW = { { -3, 0, -2.5f } }, HIGH = { { 3, 2.8f, 2.5f } }; // 
 static const float WALL = 0.2f;                                              // m
 static const float SUN_LUX = 1000;
 
-static int matte(struct frame_fixture *s, vec3s reflectance)
-{
-    struct material m = material_default();
-    m.base_color = vec4_of(reflectance, 1);
-    m.metallic = 0;
-    m.roughness = 1;
-    m.specular = 0;
-    return fixture_material(s, &m);
-}
-
 static void add_window_wall(struct frame_fixture *s, int white)
 {
     const float z = HIGH.z, out = HIGH.z + WALL;
@@ -31,8 +21,8 @@ static void add_window_wall(struct frame_fixture *s, int white)
 
 static void add_house(struct frame_fixture *s, bool window)
 {
-    const int white = matte(s, vec3_of(0.75f, 0.75f, 0.72f)),
-              ground = matte(s, vec3_of(0.3f, 0.32f, 0.2f));
+    const int white = fixture_matte(s, vec3_of(0.75f, 0.75f, 0.72f)),
+              ground = fixture_matte(s, vec3_of(0.3f, 0.32f, 0.2f));
     const vec3s a = LOW, b = HIGH;
     const float t = WALL;
     fixture_box(s, vec3_of(-20, -0.4f, -20), vec3_of(20, -0.2f, 20), false, ground);

@@ -79,7 +79,8 @@ bool is_opening(uvec2 faces, int face)
     return (faces.y & MRT_ROW_OPENING << face) != 0u;
 }
 
-// The first texel of a wall's tile (level/atlas.c). Software drivers divide integers one by one.
+// The first texel of a wall's tile (level/atlas.c). In floats: software drivers have no vector
+// division of integers.
 vec2 tile_of(uvec2 faces, int face)
 {
     float tile = float(faces.x) + float(bitCount(faces.y & (1u << face) - 1u));

@@ -22,7 +22,7 @@ static void set_probabilities(struct prt_samples *s, uint32_t receivers)
     double total = 0.0;
     for (uint32_t i = 0; i < receivers; i++) total += (double)power_of(s, i);
     for (uint32_t i = 0; i < receivers; i++) {
-        const double p = total > 0.0 ? s->count * (double)power_of(s, i) / total : 0.0;
+        const double p = total > 0.0 ? (double)s->count * (double)power_of(s, i) / total : 0.0;
         s->probability[i] = (float)p;
         s->below[i + 1] = s->below[i] + p;
     }
@@ -37,7 +37,7 @@ bool prt_samples_init(struct prt_samples *out, const struct bake_task *task, con
                                  .host = task->host,
                                  .point = point,
                                  .sent = sent,
-                                 .count = (double)prt_sample_count(&scene->options) };
+                                 .count = prt_sample_count(&scene->options) };
     out->probability = host_alloc(out->host, receivers, sizeof *out->probability);
     out->below = host_alloc(out->host, (size_t)receivers + 1, sizeof *out->below);
     if (!out->probability || !out->below) return false;
@@ -118,8 +118,8 @@ static vec4s gather_samples(const struct prt_samples *s, uint32_t i, vec3s from)
 {
     const double place = (double)rng_unit(pcg_hash(i));
     vec4s sum = { { 0, 0, 0, 0 } };
-    for (double k = 0.0; k < s->count; k++) {
-        const uint32_t j = receiver_at(s, k + place);
+    for (int k = 0; k < s->count; k++) {
+        const uint32_t j = receiver_at(s, (double)k + place);
         const vec3s to = place_of(s, j);
         const float factor = form_factor(s, i, j, from, to);
         if (!(factor > 0.0f) || !(s->probability[j] > 0.0f)) continue;

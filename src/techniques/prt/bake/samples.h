@@ -18,7 +18,7 @@ struct prt_samples {
     const vec4s *sent;  // [receivers] radiosity
     float *probability; // [receivers] p_j, K times; 0: none chooses it
     double *below;      // [receivers + 1] sum of those before
-    double count;       // K
+    int count;          // K
 };
 
 // Texels of a light map alone: vertices have no area. point, sent: stay where they are until

@@ -19,20 +19,26 @@ static const float NEARER = 2.0f;
 
 struct surface_point {
     vec3s position, normal;
-    float opening; // distance to what is in front, along the normal
+    float opening; // distance to what is in front, along the normal; of open_point_of
 };
 
 static struct surface_point point_of(const struct radiosity_scene *scene, uint32_t texel)
 {
     const struct charts *charts = &scene->map.charts;
-    const struct chart_triangle *of = chart_triangle_of(charts, texel);
-    const struct trace_mesh *mesh = trace_mesh_of(scene->trace, of->instance);
-    const vec3s position = chart_texel_of(charts, texel)->position,
-                normal = chart_texel_normal(charts, texel);
-    const vec3s from = glms_vec3_muladds(normal, mesh->facets[of->triangle].reach, position);
+    return (struct surface_point){ .position = chart_texel_of(charts, texel)->position,
+                                   .normal = chart_texel_normal(charts, texel) };
+}
+
+static struct surface_point open_point_of(const struct radiosity_scene *scene, uint32_t texel)
+{
+    const struct chart_triangle *of = chart_triangle_of(&scene->map.charts, texel);
+    const float reach = trace_mesh_of(scene->trace, of->instance)->facets[of->triangle].reach;
+    struct surface_point p = point_of(scene, texel);
     struct trace_hit hit;
-    const bool covered = trace_closest(scene->trace, from, normal, INFINITY, &hit);
-    return (struct surface_point){ position, normal, covered ? hit.distance : INFINITY };
+    const vec3s from = glms_vec3_muladds(p.normal, reach, p.position);
+    const bool covered = trace_closest(scene->trace, from, p.normal, INFINITY, &hit);
+    p.opening = covered ? hit.distance : INFINITY;
+    return p;
 }
 
 static bool are_mutually_visible(const struct radiosity_scene *scene, struct surface_point a,
@@ -79,9 +85,10 @@ static void subdivide_cluster(void *user, size_t cluster)
     struct radiosity_scene *scene = user;
     const struct radiosity_map *map = &scene->map;
     if (map->first[cluster + 1] - map->first[cluster] < 2) return;
-    const struct surface_point from = point_of(scene, first_open(scene, (uint32_t)cluster));
+    const struct surface_point from = open_point_of(scene, first_open(scene, (uint32_t)cluster));
     for (uint32_t m = map->first[cluster]; m < map->first[cluster + 1]; m++)
-        scene->part[map->members[m]] = !are_alike(scene, from, point_of(scene, map->members[m]));
+        scene->part[map->members[m]] =
+            !are_alike(scene, from, open_point_of(scene, map->members[m]));
 }
 
 static void find_group(void *user, size_t n)
@@ -90,10 +97,10 @@ static void find_group(void *user, size_t n)
     const struct radiosity_map *map = &scene->map;
     const struct radiosity_node *node = &map->tree.nodes[n];
     if (node->count > RADIOSITY_GROUP) return;
-    const struct surface_point from = point_of(scene, first_open(scene, node->first));
+    const struct surface_point from = open_point_of(scene, first_open(scene, node->first));
     scene->is_group[n] = true;
     for (uint32_t c = node->first + 1; c < node->first + node->count; c++)
-        if (!are_alike(scene, from, point_of(scene, first_open(scene, c))))
+        if (!are_alike(scene, from, open_point_of(scene, first_open(scene, c))))
             scene->is_group[n] = false;
 }
 
