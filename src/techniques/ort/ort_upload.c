@@ -164,7 +164,7 @@ bool ort_upload(struct ort *s, const struct tensors *bake)
                     upload_maps(s, &c) && upload_places(s) &&
                     light_map_upload_texels(&c.texels, s->host, s->gpu, &s->tables.texels) &&
                     light_map_emission_upload(&s->emission, s->host, s->gpu, &s->materials.emission,
-                                              s->map.texel_count, bake) &&
+                                              s->map.texel_count, bake, false) &&
                     light_map_upload_sky(&c.texels, s->host, s->gpu, bake, &s->tables.sky) &&
                     light_map_upload(&s->light_map, (uint32_t)s->followed.places.count,
                                      c.nearest_valid, c.texels.sky, bake);

@@ -30,7 +30,8 @@ static bool create(void *state, const struct technique_create *how)
     struct radiosity *s = state;
     s->host = how->host;
     s->gpu = how->gpu;
-    light_map_init(&s->light_map, s->host, s->gpu, &s->map.charts, s->options.specular);
+    light_map_init(&s->light_map, s->host, s->gpu, &s->map.charts,
+                   s->options.specular ? LIGHT_MAP_FLUENCE_TOO : LIGHT_MAP_DIFFUSE);
     light_map_paint_init(&s->paint, s->host, s->gpu, &s->map.charts);
     if (!how->pose) return true;
     struct scene_statics statics;
@@ -57,6 +58,9 @@ static void list_tables(const struct radiosity *s, struct gpu_objects *out)
         out, 0, { GPU_IMAGE, "flux", TABLE(flux), .image = light_map_table(GPU_RGBA32F, texels) },
         { GPU_IMAGE, "light", TABLE(light), .image = light_map_table(GPU_RG32U, 3 * texels) },
         { GPU_IMAGE, "smoothed", TABLE(smoothed), .image = light_map_table(GPU_RG32U, 3 * texels) },
+        { GPU_IMAGE, "fluence", TABLE(fluence), .image = light_map_table(GPU_RG32U, texels) },
+        { GPU_IMAGE, "smoothed_fluence", TABLE(smoothed_fluence),
+          .image = light_map_table(GPU_RG32U, texels) },
         { GPU_IMAGE, "sent", TABLE(sent), .image = light_map_table(GPU_RG32U, nodes) },
         { GPU_IMAGE, "radiosity", TABLE(radiosity[0]), .image = light_map_table(GPU_RG32U, nodes) },
         { GPU_IMAGE, "radiosity", TABLE(radiosity[1]), .image = light_map_table(GPU_RG32U, nodes) },
@@ -249,12 +253,13 @@ static uint64_t memory_estimate(const void *options)
     const uint64_t nodes = 2 * clusters, sources = (uint64_t)o->sources;
     const uint64_t of_texels =
         light_map_table_bytes((TEXEL_PARTS + TEXEL_SKY_WORDS) * texels, 16) +
-        light_map_table_bytes(COLUMNS * texels, 16) + rows_bytes(texels, 8 * sources) +
-        rows_bytes(texels, 4 * sources) + // of strata
+        light_map_table_bytes(2 * COLUMNS * texels, 16) +                   // with their fluence
+        rows_bytes(texels, 8 * sources) + rows_bytes(texels, 4 * sources) + // of strata
         light_map_table_bytes(texels * sources / STRATUM_TEXELS, 8 + 4) +
         light_map_table_bytes(
             RADIOSITY_SMOOTH_PASSES * RADIOSITY_NEIGHBOURS / RADIOSITY_PAIR * texels, 16) +
-        light_map_table_bytes(texels, 16) + 2 * light_map_table_bytes(3 * texels, 8) +
+        light_map_table_bytes(texels, 16) + 2 * light_map_table_bytes(4 * texels, 8) +
+        2 * 8 * places + // fluence
         places * sizeof(struct radiosity_gpu_label);
     const uint64_t of_clusters =
         rows_bytes(clusters, 8 * sources) + light_map_table_bytes(clusters, 16) +
@@ -274,7 +279,7 @@ const struct technique technique_radiosity = {
     .capabilities =
         CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION | PUBLISHES_PROBES,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID,
-    .bake_version = 19,
+    .bake_version = 20,
     .options = OPTION_TABLE(struct radiosity_options, option_rows, NULL),
     .presets = presets,
     .debug_views = radiosity_views,

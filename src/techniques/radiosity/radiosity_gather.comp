@@ -1,6 +1,6 @@
 // Light of each texel: form factors times the light of its block's strata, and the sky; emissive
 // surfaces and paint only without smoothing, which adds them. By colour: irradiance along the
-// normal and the vector irradiance.
+// normal, vector irradiance and fluence.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -24,13 +24,14 @@ layout(set = 0, binding = 3) uniform usampler2D radiosity_tiles; // first texel,
 // Pairs of source and form factor; components along the tangents (halves).
 layout(set = 0, binding = 4, rgba32ui) uniform readonly uimage2D radiosity_factors;
 layout(set = 0, binding = 5, rg32ui) uniform readonly uimage2D radiosity_strata;
-layout(set = 0, binding = 6, rg32ui) uniform writeonly uimage2D texel_light; // [colour][texel]
+layout(set = 0, binding = 6, rg32ui) uniform writeonly uimage2D texel_light;    // [colour][texel]
+layout(set = 0, binding = 10, rg32ui) uniform writeonly uimage2D texel_fluence; // [texel]
 
-// Light of strata: irradiance, and vector irradiance along the tangents.
+// Light of strata: irradiance, vector irradiance along the tangents, and fluence.
 struct received {
-    vec3 irradiance, by_u, by_v;
+    vec3 irradiance, by_u, by_v, fluence;
 };
-received sum = received(vec3(0.0), vec3(0.0), vec3(0.0));
+received sum = received(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
 
 // strata: the first one of the block.
 void add_entry(uint strata, uvec2 word)
@@ -41,6 +42,8 @@ void add_entry(uint strata, uvec2 word)
     sum.irradiance += light;
     sum.by_u += along.x * light;
     sum.by_v += along.y * light;
+    // Light from one direction: `along` is its tangent, so that this is 1 / cosine.
+    sum.fluence += sqrt(1.0 + dot(along, along)) * light;
 }
 
 void store_light(uint texel)
@@ -55,6 +58,10 @@ void store_light(uint texel)
         imageStore(texel_light, light_map_at(c * push.texels + texel),
                    uvec4(light_map_pack(light), 0u, 0u));
     }
+    vec3 fluence = sum.fluence + light_map_sky_fluence(sky, texel, push.texels) +
+                   push.sharp * light_map_sharp_fluence(texel, push.texels, push.sources);
+    imageStore(texel_fluence, light_map_at(texel),
+               uvec4(light_map_pack(vec4(fluence, 0.0)), 0u, 0u));
 }
 
 void main()

@@ -132,7 +132,8 @@ static void record_gather_of(struct radiosity *s, struct gpu_cmd *cmd,
                  { .name = "radiosity_tiles", .image = s->tables.factors.tiles },
                  { .name = "radiosity_factors", .image = block->table },
                  { .name = "radiosity_strata", .image = s->tables.strata },
-                 { .name = "texel_light", .image = s->tables.light }),
+                 { .name = "texel_light", .image = s->tables.light },
+                 { .name = "texel_fluence", .image = s->tables.fluence }),
         &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
@@ -154,13 +155,16 @@ static void record_smooth(struct radiosity *s, struct gpu_cmd *cmd, const struct
         pass,       (float)pass, light_map_sources(&s->paint, view, s->options.emitters)
     };
     const gpu_image light[2] = { s->tables.light, s->tables.smoothed };
+    const gpu_image fluence[2] = { s->tables.fluence, s->tables.smoothed_fluence };
     gpu_dispatch(
         cmd, s->pipelines.smooth,
         GPU_BIND(view->constants_binding,
                  LIGHT_MAP_TEXEL_BINDINGS(view, &s->paint, s->tables.texels, s->tables.sky),
                  { .name = "radiosity_neighbours", .image = s->tables.neighbours },
                  { .name = "texel_light", .image = light[pass] },
-                 { .name = "radiosity_smoothed", .image = light[1 - pass] }),
+                 { .name = "texel_fluence", .image = fluence[pass] },
+                 { .name = "radiosity_smoothed", .image = light[1 - pass] },
+                 { .name = "radiosity_smoothed_fluence", .image = fluence[1 - pass] }),
         &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
@@ -197,6 +201,7 @@ static void record_rows(struct radiosity *s, struct gpu_cmd *cmd, const struct f
                         const struct radiosity_part *part)
 {
     const struct span rows = { part->first, part->count };
+    const struct light_map_tables tables = { s->tables.light, s->tables.fluence };
     switch (part->stage) {
     case RADIOSITY_DIRECT:
         record_direct(s, cmd, view, rows);
@@ -217,10 +222,10 @@ static void record_rows(struct radiosity *s, struct gpu_cmd *cmd, const struct f
         record_smooth(s, cmd, view, rows, 1);
         break;
     case RADIOSITY_LIGHT_MAP:
-        light_map_record_show(&s->light_map, cmd, s->tables.light, rows.first, rows.count);
+        light_map_record_show(&s->light_map, cmd, tables, rows.first, rows.count);
         break;
     default:
-        light_map_record_seams(&s->light_map, cmd, s->tables.light, rows.first, rows.count);
+        light_map_record_seams(&s->light_map, cmd, tables, rows.first, rows.count);
     }
 }
 

@@ -34,6 +34,7 @@ struct radiosity_tables {
     gpu_image texels, sky, neighbours;          // of texels
     gpu_image clusters, spans, members, groups; // of clusters
     gpu_image flux, light, smoothed;            // [texels] of the newest light
+    gpu_image fluence, smoothed_fluence;        // [texels] of it by colour
     gpu_image sent, radiosity[2];               // [clusters and nodes] likewise
     gpu_image solution;                         // [clusters and nodes] of all bounces
     gpu_image strata;                           // [strata of blocks] of the solution

@@ -32,6 +32,7 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
            (out->surface = EXPECT(RADIOSITY_SURFACE, TENSOR_F32, n, 10)) &&
            (out->nearness = EXPECT(RADIOSITY_NEARNESS, TENSOR_F32, n, 4)) &&
            light_map_find_texels(&out->texels, s->host, &s->map.charts, bake) &&
+           (out->texels.fluence = EXPECT(LIGHT_MAP_SKY_FLUENCE, TENSOR_F32, n)) &&
            (out->cluster_source = EXPECT(RADIOSITY_CLUSTER_SOURCE, TENSOR_U32, c, 2 * k)) &&
            (out->cluster_factor = EXPECT(RADIOSITY_CLUSTER_FACTOR, TENSOR_F16, c, 2 * k));
 #undef EXPECT
@@ -195,7 +196,7 @@ static bool upload_all(struct radiosity *s, const struct content *c, const struc
 {
     return light_map_upload_texels(&c->texels, s->host, s->gpu, &s->tables.texels) &&
            light_map_emission_upload(&s->emission, s->host, s->gpu, &s->materials.emission,
-                                     s->map.texel_count, bake) &&
+                                     s->map.texel_count, bake, true) &&
            light_map_upload_sky(&c->texels, s->host, s->gpu, bake, &s->tables.sky) &&
            upload_factors(s, c) && upload_light_map(s, c, bake) && upload_clusters(s) &&
            radiosity_view_init(s, c->texels.point, c->nearest_valid);

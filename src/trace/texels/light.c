@@ -96,6 +96,7 @@ static void add_column(void *user, int column, float radiance)
 {
     const struct column_sums *to = user;
     add_light(&to->out->columns[column], to->direction, to->cosine, radiance / to->density);
+    to->out->column_fluence[column] += radiance / to->density;
 }
 
 static void add_emission(struct texel_lights *out, const struct trace_scene *scene,
@@ -119,6 +120,7 @@ static void add_sky(struct texel_lights *out, float rays, vec3s direction, float
 {
     const float weight = GLM_PIf / rays; // of a cosine-distributed ray, sr
     out->sky.irradiance += weight;
+    out->sky_fluence += weight / cosine;
     out->sky_patches[environment_patch_of(direction)] += weight;
     for (int k = 0; k < 3; k++) out->sky.vector[k] += weight * direction.raw[k] / cosine;
 }

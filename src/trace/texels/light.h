@@ -67,9 +67,11 @@ struct texel_light {
 struct texel_lights {
     struct texel_light sky;                 // of radiance 1
     float sky_patches[ENVIRONMENT_PATCHES]; // irradiance by patches of radiance 1
+    float sky_fluence;                      // ∫ L dω of radiance 1
     struct texel_light emitted[3];          // by colour, lux
     // By columns, for a radiance of 1; with texel_receiver.emission.
     struct texel_light columns[EMISSION_COLUMNS];
+    float column_fluence[EMISSION_COLUMNS]; // ∫ L dω likewise
     // The vector irradiance of radiance 1 from everywhere, by the same samples: along the surface
     // it is their error, of which light that is nearly uniform has the same share.
     float uniform_vector[3];

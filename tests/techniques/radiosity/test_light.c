@@ -234,6 +234,35 @@ TEST_GPU(metal_reflects_the_side_that_light_comes_from)
     CHECK(seen_from(gpu, 0.3f, -1, "radiosity:texels=2048,specular=false") == 0.0);
 }
 
+// Radiance of a metal floor below a panel 1 m wide and 2 m above it, for a view at an angle from
+// the normal, per E/π.
+static double seen_below_a_panel(struct gpu *gpu, float angle)
+{
+    struct frame_fixture s;
+    struct baked_fixture run;
+    fixture_init(&s, gpu);
+    fixture_floor(&s, 1, metal(&s, 0.4f));
+    fixture_quad(&s, vec3_of(-0.5f, 2, -0.5f), vec3_of(0.5f, 2, -0.5f), vec3_of(0.5f, 2, 0.5f),
+                 vec3_of(-0.5f, 2, 0.5f), fixture_emissive(&s, 0, 100));
+    fixture_look(&s, vec3_of(1.5f * sinf(angle), 1.5f * cosf(angle), 0), vec3_of(0, 0, 0));
+    baked_fixture_open(&run, &s, "radiosity:texels=2048");
+    fixture_render(&s);
+    const double e = (double)fixture_pixel(&s, READ_IRRADIANCE, s.width / 2, s.height / 2).x;
+    const double seen = (double)middle_specular(&s) * GLM_PI / e;
+    baked_fixture_close(&run, &s);
+    return seen;
+}
+
+// The vector irradiance is that of uniform light; the fluence tells them apart.
+TEST_GPU(metal_reflects_light_from_overhead_upwards)
+{
+    const double upwards = seen_below_a_panel(gpu, 0.2f), sideways = seen_below_a_panel(gpu, 1.3f);
+    print_message("radiance of a floor below a panel: %.2f E/pi from above, %.3f from the side\n",
+                  upwards, sideways);
+    CHECK(upwards > 1.5);
+    CHECK(sideways >= 0.0 && sideways < 0.1);
+}
+
 // Two bands have no image of the panel: mirrors have the mean radiance, without a step to lobes.
 TEST_GPU(mirrors_reflect_the_mean_radiance_and_rougher_metal_the_direction)
 {

@@ -51,6 +51,8 @@ layout(set = 0, binding = 12, rgba16f) uniform writeonly image2D specular;
 #endif
 #if REFLECTED
 layout(set = 0, binding = 16) uniform sampler2DArray reflected_map;
+#elif FLUENCE
+layout(set = 0, binding = 18) uniform sampler2DArray fluence_map;
 #endif
 
 // One division, where normalize has three on software drivers.
@@ -71,7 +73,14 @@ vec3 reflected(ivec2 pixel, light_map_surface s, light_map_light light, vec3 pla
         place.z < 0.0 ? vec3(0.0) : textureLod(reflected_map, vec3(uv, place.z), 0.0).rgb;
 #else
     float alpha = brdf_alpha(m.roughness);
-    vec3 radiance = light_map_radiance(light, n, to_viewer, alpha);
+    light_map_lobe lobe = light_map_lobe_of(n, to_viewer, alpha);
+#if FLUENCE
+    vec2 uv = place.xy * vec2(push.per_width, push.per_height);
+    vec3 fluence = place.z < 0.0 ? vec3(0.0) : textureLod(fluence_map, vec3(uv, place.z), 0.0).rgb;
+    vec3 radiance = light_map_radiance_by_fluence(light, fluence, n, lobe);
+#else
+    vec3 radiance = light_map_radiance_of(light, n, lobe);
+#endif
     if (MIRRORS && place.z >= 0.0) {
         vec3 at = vec3(place.xy * vec2(push.per_width, push.per_height), place.z);
         radiance += light_map_mirrored(at, n, to_viewer, m.roughness);

@@ -15,9 +15,22 @@ layout(set = 0, binding = 0, scalar) readonly buffer light_map_emission_weights
 {
     vec4 weight_table[]; // [column] by colour, cd/m²
 };
-// [column][texel]: irradiance along the normal, vector irradiance: radiance 1
+// [column][texel]: irradiance along the normal, vector irradiance: radiance 1;
+// [column / 4][texel]: fluence of four columns
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D light_map_emission;
-layout(set = 0, binding = 2, rgba32f) uniform writeonly image2D light_map_texels;
+layout(set = 0, binding = 2, rgba32f) uniform image2D light_map_texels;
+
+// The part of the sky stays.
+void add_fluence(uint i)
+{
+    uint part = TEXEL_FLUENCE * push.texels + i, first = push.columns * push.texels + i;
+    vec4 fluence = vec4(vec3(0.0), imageLoad(light_map_texels, light_map_at(part)).w);
+    for (uint k = 0u; k < push.columns; k++) {
+        vec4 four = imageLoad(light_map_emission, light_map_at(first + k / 4u * push.texels));
+        fluence.rgb += four[k % 4u] * weight_table[k].rgb;
+    }
+    imageStore(light_map_texels, light_map_at(part), fluence);
+}
 
 void main()
 {
@@ -32,4 +45,5 @@ void main()
         uint part = TEXEL_EMITTED_0 + c;
         imageStore(light_map_texels, light_map_at(part * push.texels + i), light[c]);
     }
+    if (push.fluence != 0u) add_fluence(i);
 }

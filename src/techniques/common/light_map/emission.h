@@ -10,18 +10,21 @@ struct tensors;
 struct gpu_objects;
 
 struct light_map_emission {
-    gpu_image columns;     // [column][texel] irradiance and vector irradiance
+    // [column][texel] irradiance and vector irradiance; [column / 4][texel] fluence of four columns
+    gpu_image columns;
     gpu_pipeline sum;      // emission.comp
     gpu_pipeline set_rows; // rows.comp
     uint32_t count, texels;
+    bool has_fluence;
     vec4s weights[EMISSION_COLUMNS]; // by colour, cd/m²
     bool pending;                    // the table has not the sum of these weights
 };
 
 // The tensor LIGHT_MAP_EMISSION of a bake, which is untrusted. false: host_fail has the reason.
+// fluence: with LIGHT_MAP_EMISSION_FLUENCE.
 bool light_map_emission_upload(struct light_map_emission *out, struct host *host, struct gpu *gpu,
                                const struct emission_basis *basis, uint32_t texels,
-                               const struct tensors *bake);
+                               const struct tensors *bake, bool fluence);
 // Objects for the table of the technique; `at`: offset of the struct in the state.
 void light_map_emission_list(size_t at, struct gpu_objects *out);
 void light_map_emission_set(struct light_map_emission *emission, const struct emission_basis *basis,

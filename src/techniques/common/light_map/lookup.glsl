@@ -63,6 +63,17 @@ float light_map_mean_of_exp(float b2)
     return 1.0 + q * (1.0 / 2.0 + q * (1.0 / 12.0 + q * (1.0 / 144.0 + q / 2880.0)));
 }
 
+// Exponent p of the cosine in light L(ω) ∝ cosᵖ θ exp(b·t) with the part v of V along the surface,
+// per irradiance E, and of square v2. φ/(2E) of it, with φ the fluence ∫ L dω, is
+// (p + 2)/(2 (p + 1)) (1 + v² (p + 1)² (p + 3)/(2 (p + 2)² (p + 4))), here with the second factor
+// of p = 0: 0 in uniform light, positive for light from overhead.
+float light_map_cosine_exponent(float fluence, float v2)
+{
+    const float LEAST = 0.55, MOST = 1.5; // of φ/(2E): exponents of 9 and −1/2
+    float f = clamp(0.5 * fluence / (1.0 + 0.0935 * v2), LEAST, MOST);
+    return 2.0 * (1.0 - f) / (2.0 * f - 1.0);
+}
+
 // Radiance in a lobe of light whose logarithm is linear in the direction, L(ω) = E(n)/π exp(b·t)/M
 // with t the part of ω along the surface. M, the mean of exp(b·t) over the disc of t, keeps the
 // irradiance E(n), and V along the surface is (b cosh b − sinh b)/(b I1(b)) of it: the fit of b is
@@ -79,6 +90,29 @@ vec3 light_map_radiance_of(light_map_light light, vec3 n, light_map_lobe lobe)
         b *= lobe.share * min(MOST * inversesqrt(max(dot(b, b), 1e-12)), 1.0);
         radiance[c] = INV_PI * light.irradiance[c] * exp(dot(b, lobe.along)) /
                       light_map_mean_of_exp(dot(b, b));
+    }
+    return radiance;
+}
+
+// The same of light that is also proportional to cosᵖ θ, with p from the fluence by colour. The
+// irradiance stays: cosᵖ⁺¹ θ has the mean 2/(p + 2) of the cosine's over solid angles, and M and b
+// are those of p to their first order.
+vec3 light_map_radiance_by_fluence(light_map_light light, vec3 fluence, vec3 n, light_map_lobe lobe)
+{
+    const float MOST = 4.0, LEAST_COSINE = 0.02;
+    float cosine = sqrt(max(1.0 - dot(lobe.along, lobe.along), LEAST_COSINE * LEAST_COSINE));
+    vec3 radiance;
+    for (int c = 0; c < 3; c++) {
+        float per = 1.0 / max(light.irradiance[c], 1e-6);
+        vec3 v = per * (light.vector[c] - dot(light.vector[c], n) * n);
+        float v2 = min(dot(v, v), 9.0);
+        float p = light_map_cosine_exponent(per * fluence[c], v2);
+        vec3 b = (p + 1.0) * (p + 3.0) / (p + 2.0) * (1.0 + 0.06 * v2) * v;
+        b *= lobe.share * min(MOST * inversesqrt(max(dot(b, b), 1e-12)), 1.0);
+        p *= lobe.share;
+        radiance[c] = INV_PI * light.irradiance[c] * exp(dot(b, lobe.along)) /
+                      light_map_mean_of_exp(4.0 / (p + 4.0) * dot(b, b)) * 0.5 * (p + 2.0) *
+                      pow(cosine, p);
     }
     return radiance;
 }

@@ -20,6 +20,12 @@ void light_map_init(struct light_map *out, struct host *host, struct gpu *gpu,
                                .columns = light_map_columns_for(gpu) };
 }
 
+// Whether pixels reflect the map's light, and the visible environment.
+static bool has_lobes(const struct light_map *map)
+{
+    return map->specular == LIGHT_MAP_SPECULAR || map->specular == LIGHT_MAP_FLUENCE_TOO;
+}
+
 #define MEMBER(thing) offsetof(struct light_map, thing)
 
 static const struct gpu_shader *apply_shader(enum light_map_specular specular)
@@ -29,6 +35,8 @@ static const struct gpu_shader *apply_shader(enum light_map_specular specular)
         return &shader_common_light_map_apply_diffuse_comp;
     case LIGHT_MAP_SPECULAR:
         return &shader_common_light_map_apply_specular_comp;
+    case LIGHT_MAP_FLUENCE_TOO:
+        return &shader_common_light_map_apply_fluence_comp;
     case LIGHT_MAP_REFLECTED:
         break;
     }
@@ -59,7 +67,7 @@ static void list_pipelines(const struct light_map *map, size_t base, struct gpu_
             { GPU_PIPELINE, PIPELINE(apply[0][1]), .shader = apply, .consts = still | 1u << 5 },
             { GPU_PIPELINE, PIPELINE(apply[1][0]), .shader = apply, .consts = moved | 1u << 4 },
             { GPU_PIPELINE, PIPELINE(apply[1][1]), .shader = apply, .consts = moved | 1u << 5 });
-    if (map->specular != LIGHT_MAP_SPECULAR) return;
+    if (!has_lobes(map)) return;
     GPU_ADD(out, base,
             { GPU_PIPELINE, PIPELINE(mirror[0]), .shader = apply, .consts = mirrors | 1u << 4 },
             { GPU_PIPELINE, PIPELINE(mirror[1]), .shader = apply, .consts = mirrors | 1u << 5 });
@@ -75,6 +83,10 @@ void light_map_list(const struct light_map *map, size_t base, struct gpu_objects
             { GPU_IMAGE, "light_map", MEMBER(images[1]), .image = image });
     if (map->specular == LIGHT_MAP_REFLECTED)
         GPU_ADD(out, base, { GPU_IMAGE, "reflected", MEMBER(reflected), .image = reflected });
+    const struct gpu_image_desc fluence = light_map_image(map->charts, "fluence", 1);
+    if (map->specular == LIGHT_MAP_FLUENCE_TOO)
+        GPU_ADD(out, base, { GPU_IMAGE, "fluence", MEMBER(fluence[0]), .image = fluence },
+                { GPU_IMAGE, "fluence", MEMBER(fluence[1]), .image = fluence });
     list_pipelines(map, base, out);
     // Created by light_map_upload.
     GPU_ADD(out, base, { GPU_IMAGE, .member = MEMBER(owners) },
@@ -196,7 +208,7 @@ bool light_map_upload(struct light_map *map, uint32_t instances, const uint32_t 
     const bool ok = find_rows(map, bake, seams.count, &rows) && upload_walls(map, bake) &&
                     upload_owners(map, nearest_valid) && upload_places(map, &seams) &&
                     upload_rows(map, &rows, nearest_valid) && upload_triangles(map, instances) &&
-                    (map->specular != LIGHT_MAP_SPECULAR ||
+                    (!has_lobes(map) ||
                      light_map_upload_visible_sky(map->host, map->gpu, map->charts, &seams, &rows,
                                                   nearest_valid, sky, &map->visible_sky));
     charts_seams_finish(&seams);
@@ -254,16 +266,25 @@ static struct map_target newest(const struct light_map *map, gpu_image light)
     return (struct map_target){ light, map->images[1 - map->front], LIGHT_MAP_LAYERS };
 }
 
-void light_map_record_show(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
-                           uint32_t first, uint32_t count)
+static struct map_target newest_fluence(const struct light_map *map, gpu_image fluence)
 {
-    record_show(map, cmd, newest(map, light), first, count);
+    return (struct map_target){ fluence, map->fluence[1 - map->front], 1 };
 }
 
-void light_map_record_seams(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
-                            uint32_t first, uint32_t count)
+void light_map_record_show(const struct light_map *map, struct gpu_cmd *cmd,
+                           struct light_map_tables from, uint32_t first, uint32_t count)
 {
-    record_seams(map, cmd, newest(map, light), first, count);
+    record_show(map, cmd, newest(map, from.light), first, count);
+    if (map->specular == LIGHT_MAP_FLUENCE_TOO)
+        record_show(map, cmd, newest_fluence(map, from.fluence), first, count);
+}
+
+void light_map_record_seams(const struct light_map *map, struct gpu_cmd *cmd,
+                            struct light_map_tables from, uint32_t first, uint32_t count)
+{
+    record_seams(map, cmd, newest(map, from.light), first, count);
+    if (map->specular == LIGHT_MAP_FLUENCE_TOO)
+        record_seams(map, cmd, newest_fluence(map, from.fluence), first, count);
 }
 
 static void record_whole(const struct light_map *map, struct gpu_cmd *cmd, struct map_target s,
@@ -291,8 +312,7 @@ void light_map_record_reflected(const struct light_map *map, struct gpu_cmd *cmd
 static gpu_pipeline apply_of(const struct light_map *map, const struct frame_view *view)
 {
     const bool dielectric = view->layers[FRAME_DIELECTRIC].id != 0;
-    if (map->specular == LIGHT_MAP_SPECULAR && view->constants->environment_scale > 0.0f)
-        return map->mirror[dielectric];
+    if (has_lobes(map) && view->constants->environment_scale > 0.0f) return map->mirror[dielectric];
     return map->apply[map->surfaces.moves != NULL][dielectric];
 }
 
@@ -308,15 +328,17 @@ void light_map_record_apply(const struct light_map *map, struct gpu_cmd *cmd,
     light_map_clear_pixels(cmd, view);
     gpu_dispatch(
         cmd, apply_of(map, view),
-        GPU_BIND(FRAME_SURFACE_BINDINGS(view), view->environment_binding,
-                 { .name = "id", .image = layers[FRAME_ID] },
-                 LIGHT_MAP_SURFACE_BINDINGS(&map->surfaces, cmd),
-                 { .name = "light_map", .image = map->images[map->front], .sampler = map->linear },
-                 { .name = "light_map_walls", .image = map->walls },
-                 { .name = "reflected_map", .image = map->reflected, .sampler = map->linear },
-                 { .name = "visible_sky", .image = map->visible_sky, .sampler = map->linear },
-                 { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
-                 { .name = "specular", .image = layers[FRAME_SPECULAR] }),
+        GPU_BIND(
+            FRAME_SURFACE_BINDINGS(view), view->environment_binding,
+            { .name = "id", .image = layers[FRAME_ID] },
+            LIGHT_MAP_SURFACE_BINDINGS(&map->surfaces, cmd),
+            { .name = "light_map", .image = map->images[map->front], .sampler = map->linear },
+            { .name = "fluence_map", .image = map->fluence[map->front], .sampler = map->linear },
+            { .name = "light_map_walls", .image = map->walls },
+            { .name = "reflected_map", .image = map->reflected, .sampler = map->linear },
+            { .name = "visible_sky", .image = map->visible_sky, .sampler = map->linear },
+            { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
+            { .name = "specular", .image = layers[FRAME_SPECULAR] }),
         &push, sizeof push, gpu_groups(view->width, map->columns.width),
         gpu_groups(view->height, map->columns.height * map->columns.rows), 1);
     gpu_scope_end(cmd);

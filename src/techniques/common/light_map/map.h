@@ -11,9 +11,10 @@ struct tensors;
 
 // How pixels get specular light.
 enum light_map_specular {
-    LIGHT_MAP_DIFFUSE,   // none
-    LIGHT_MAP_SPECULAR,  // of the map's light, and of the visible environment
-    LIGHT_MAP_REFLECTED, // that of texels, light_map_record_reflected
+    LIGHT_MAP_DIFFUSE,     // none
+    LIGHT_MAP_SPECULAR,    // of the map's light, and of the visible environment
+    LIGHT_MAP_FLUENCE_TOO, // as LIGHT_MAP_SPECULAR, and the map has the fluence
+    LIGHT_MAP_REFLECTED,   // that of texels, light_map_record_reflected
 };
 
 struct light_map {
@@ -28,6 +29,7 @@ struct light_map {
     gpu_image walls;                  // lookups beside walls, of texels (map_shared.h)
     gpu_image visible_sky;            // with LIGHT_MAP_SPECULAR (visible_sky.h)
     gpu_image images[2];              // a map appears whole: one is looked up, one is written
+    gpu_image fluence[2];             // of both with LIGHT_MAP_FLUENCE_TOO
     int front;                        // the image that lookups read
     gpu_image reflected;              // with LIGHT_MAP_REFLECTED, of the newest view
     gpu_sampler linear;
@@ -52,12 +54,16 @@ bool light_map_upload(struct light_map *map, uint32_t instances, const uint32_t 
 // Approximate bytes on the GPU of a map; texels: of both sides.
 uint64_t light_map_bytes(uint64_t texels);
 
-// Writes rows first … first + count − 1, of owner_count and seam_count, of the back image. light:
-// [colour][texel]. Seams overwrite their places.
-void light_map_record_show(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
-                           uint32_t first, uint32_t count);
-void light_map_record_seams(const struct light_map *map, struct gpu_cmd *cmd, gpu_image light,
-                            uint32_t first, uint32_t count);
+// Light of texels, [colour][texel], and fluence by colour, [texel], if the map has it.
+struct light_map_tables {
+    gpu_image light, fluence;
+};
+// Writes rows first … first + count − 1, of owner_count and seam_count, of the back image. Seams
+// overwrite their places.
+void light_map_record_show(const struct light_map *map, struct gpu_cmd *cmd,
+                           struct light_map_tables from, uint32_t first, uint32_t count);
+void light_map_record_seams(const struct light_map *map, struct gpu_cmd *cmd,
+                            struct light_map_tables from, uint32_t first, uint32_t count);
 // Writes the whole map in a scope, with or without closed seams, and swaps the images.
 void light_map_record_all(struct light_map *map, struct gpu_cmd *cmd, gpu_image light, bool seams);
 // The radiance that the specular lobes of texels reflect towards a view. light: [texel], four

@@ -19,7 +19,8 @@
 #define TEXEL_REFLECTANCE 3 // by colour
 #define TEXEL_SKY_LIGHT   4 // irradiance along the normal, vector irradiance: radiance 1
 #define TEXEL_EMITTED_0   5 // the same by colour, lux
-#define TEXEL_PARTS       8
+#define TEXEL_FLUENCE     8 // of emissive surfaces by colour, lux; w: the sky's per irradiance
+#define TEXEL_PARTS       9
 
 // Words of 16 bytes of a texel in the table of shares of the environment's patches, a byte each:
 // entry word · texels + texel. They sum to 255, or 0.
@@ -54,6 +55,7 @@ struct light_map_paint_push {
 
 struct light_map_emission_push {
     uint32_t texels, columns;
+    uint32_t fluence; // 0: there are no rows of it
 };
 
 struct light_map_rows_push {
@@ -93,7 +95,7 @@ struct light_map_checker_push {
 _Static_assert(sizeof(struct light_map_sources) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_painted) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_paint_push) == 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct light_map_emission_push) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct light_map_emission_push) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_rows_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_show_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct light_map_seams_push) == 24, "layout is shared with GLSL");

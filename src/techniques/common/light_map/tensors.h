@@ -3,6 +3,10 @@
 
 #include "scene/charts/seams.h"
 
+// Fluence, F32: [texels] of the sky, [texels][columns, at least 1] of emissive surfaces.
+#define LIGHT_MAP_SKY_FLUENCE      "texels/sky_fluence"
+#define LIGHT_MAP_EMISSION_FLUENCE "texels/emission_fluence"
+
 #define LIGHT_MAP_ALBEDO      "texels/reflectance" // F32 [texels][4]
 #define LIGHT_MAP_SKY         "texels/sky"         // F32 [texels][4]
 #define LIGHT_MAP_SKY_SHARES  "texels/sky_shares"  // U8 [texels][ENVIRONMENT_PATCHES]

@@ -53,6 +53,8 @@ static void fill_texel(const struct light_map_texels *t, uint32_t i, vec4s *part
     parts[TEXEL_REFLECTANCE * count + i] =
         vec4_of(vec3_of(reflectance[0], reflectance[1], reflectance[2]), 0.0f);
     memcpy(&parts[TEXEL_SKY_LIGHT * count + i], t->sky + 4 * (size_t)i, sizeof *parts);
+    if (t->fluence && t->sky[4 * (size_t)i] > 0.0f)
+        parts[TEXEL_FLUENCE * count + i].w = t->fluence[i] / t->sky[4 * (size_t)i];
     for (size_t k = 0; t->emitted && k < 3; k++)
         memcpy(&parts[(TEXEL_EMITTED_0 + k) * count + i], t->emitted + 12 * (size_t)i + 4 * k,
                sizeof *parts);

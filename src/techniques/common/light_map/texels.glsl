@@ -72,6 +72,21 @@ vec3 light_map_painted_light(uint texel, light_map_sources sources)
     return min(lux * frame.radiance_scale, vec3(HALF_MAX));
 }
 
+// Fluence ∫ L dω by colour of what light_map_sky_light gives.
+vec3 light_map_sky_fluence(vec4 sky[3], uint texel, uint texels)
+{
+    float per_irradiance = light_map_texel_part(texel, texels, TEXEL_FLUENCE).w;
+    return per_irradiance * vec3(sky[0].x, sky[1].x, sky[2].x);
+}
+
+// The same of light_map_sharp_light. Paint is light from everywhere above: twice its irradiance.
+vec3 light_map_sharp_fluence(uint texel, uint texels, light_map_sources sources)
+{
+    return light_map_texel_part(texel, texels, TEXEL_FLUENCE).rgb *
+               (sources.emitters * frame.radiance_scale) +
+           2.0 * light_map_painted_light(texel, sources);
+}
+
 // Light of emissive surfaces and of paint along the normal, as light_map_emitted_light.
 vec4[3] light_map_sharp_light(uint texel, uint texels, light_map_sources sources)
 {

@@ -12,6 +12,7 @@ struct light_map_texels {
     const float *sky;         // [texels][4] irradiance and vector irradiance: radiance 1
     // [texels][3][4] the same of emissive surfaces by colour, lux. NULL: emission.h adds it.
     const float *emitted;
+    const float *fluence; // [texels] of the sky: radiance 1. NULL: not needed
     // [texels][3] mean shading normals, which receive first-order light. NULL: the surface's
     // normal, times the mean cosine.
     const float *shading;

@@ -94,6 +94,8 @@ enum {
     OUT_SKY,
     OUT_SKY_SHARES,
     OUT_EMISSION,
+    OUT_SKY_FLUENCE,
+    OUT_EMISSION_FLUENCE,
     OUT_POINT,
     OUT_PART,
     OUT_NEARNESS,
@@ -145,6 +147,9 @@ static bool gather_texel(const struct bake_task *task, struct scratch *scratch, 
     texel_sky_shares(&gather->light, bake_row(task, OUT_SKY_SHARES, i));
     memcpy(bake_row(task, OUT_EMISSION, i), gather->light.columns,
            (size_t)job->scene.statics.emission.count * sizeof *gather->light.columns);
+    *(float *)bake_row(task, OUT_SKY_FLUENCE, i) = gather->light.sky_fluence;
+    memcpy(bake_row(task, OUT_EMISSION_FLUENCE, i), gather->light.column_fluence,
+           (size_t)job->scene.statics.emission.count * sizeof(float));
     memcpy(bake_row(task, OUT_NEARNESS, i), gather->nearness.raw, sizeof gather->nearness.raw);
     const struct texel_factors factors = texel_free_factors(job->scene.trace, charts, texel);
     memcpy(bake_row(task, OUT_SURFACE, i), &factors, sizeof factors);
@@ -204,6 +209,8 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
           BAKE_ROWS,
           BAKE_SAVED },
         { LIGHT_MAP_EMISSION, TENSOR_F32, 3, { texels, columns, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_SKY_FLUENCE, TENSOR_F32, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
+        { LIGHT_MAP_EMISSION_FLUENCE, TENSOR_F32, 2, { texels, columns }, BAKE_ROWS, BAKE_SAVED },
         { LIGHT_MAP_POINT, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_PART, TENSOR_U8, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_NEARNESS, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
