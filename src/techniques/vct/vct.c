@@ -230,7 +230,7 @@ static void clear(const struct vct_frame *frame)
 {
     const float open = frame->options->occlusion ? 1.0f : 0.0f;
     gpu_clear_image(frame->cmd, vct_result(frame), (const float[4]){ open, open, open, 1.0f });
-    if (frame->options->specular)
+    if (frame->options->specular != VCT_SPECULAR_NONE)
         gpu_clear_image(frame->cmd, frame->view->layers[FRAME_SPECULAR],
                         (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
 }
@@ -319,7 +319,8 @@ static void record_view(struct vct *vct, const struct vct_frame *frame)
         vct_temporal_denoise(temporal, &vct->history, frame->cmd, frame->view,
                              vct_clipmap_longest_side_m(&vct->clipmap), options->wide_filter,
                              result);
-    if (options->specular) record_specular(vct, of, frame);
+    if (options->specular == VCT_SPECULAR_TRACED) record_specular(vct, of, frame);
+    if (options->specular == VCT_SPECULAR_METALS) vct_record_metals(&vct->specular, frame);
 }
 
 static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -366,7 +367,8 @@ static void vct_destroy(void *state)
 static uint32_t vct_more_needs(const void *options)
 {
     const struct vct_options *o = options;
-    return (o->temporal ? FRAME_NEEDS_MOTION : 0) | (o->specular ? FRAME_WRITES_SPECULAR : 0) |
+    const bool specular = o->specular != VCT_SPECULAR_NONE;
+    return (o->temporal ? FRAME_NEEDS_MOTION : 0) | (specular ? FRAME_WRITES_SPECULAR : 0) |
            (o->occlusion ? 0 : FRAME_NEEDS_EMITTERS);
 }
 

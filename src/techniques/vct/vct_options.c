@@ -27,7 +27,7 @@ struct vct_options vct_light_options(const void *options)
 struct vct_options vct_occlusion_options(const void *options)
 {
     struct vct_options out = *(const struct vct_options *)options;
-    out.specular = false;
+    out.specular = VCT_SPECULAR_NONE;
     out.aperture = 0.0f;
     out.gain = GLM_1_PIf;
     out.bounces = 1;

@@ -9,6 +9,7 @@
 
 enum vct_storage { VCT_MIPS, VCT_SVO }; // choices of the options
 enum vct_trace_by { VCT_BY_CONES, VCT_BY_RAYS };
+enum vct_specular_by { VCT_SPECULAR_NONE, VCT_SPECULAR_METALS, VCT_SPECULAR_TRACED };
 
 // Options of vct and vctao.
 struct vct_options {

@@ -133,13 +133,13 @@ void vct_add_pixels(const struct vct_options *o, int view, uint32_t width, uint3
             CONES("traced_green", traced[1]), CONES("traced_blue", traced[2]),
             CONES("gathered_red", gathered[0]), CONES("gathered_green", gathered[1]),
             CONES("gathered_blue", gathered[2]));
-    if (o->specular)
+    if (o->specular == VCT_SPECULAR_TRACED)
         GPU_ADD(out, base,
                 { GPU_IMAGE, "arriving", VIEW(reflections.arriving),
                   .image = pixels(GPU_RGBA16F, width, height, "arriving") },
                 { GPU_IMAGE, "averaged", VIEW(reflections.averaged[0]),
                   .image = pixels(GPU_RGBA16F, width, height, o->temporal ? NULL : "averaged") });
-    if (o->specular && o->temporal)
+    if (o->specular == VCT_SPECULAR_TRACED && o->temporal)
         GPU_ADD(out, base,
                 { GPU_IMAGE, "averaged", VIEW(reflections.averaged[1]),
                   .image = pixels(GPU_RGBA16F, width, height, NULL) });

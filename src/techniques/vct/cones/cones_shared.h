@@ -54,6 +54,7 @@ struct vct_specular_params {
     float gain;
     float texel_m; // of the finest level
     uint32_t last_mip;
+    uint32_t traced;         // bool: not metals alone, by E/π
     uint32_t has_dielectric; // bool: FRAME_DIELECTRIC is bound
     uint32_t turn;           // number of the directions, which differ from frame to frame
     uint32_t stride; // one in stride × stride pixels of rough surfaces has a ray in a frame
@@ -97,7 +98,7 @@ _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 28 * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_small_emitter) == (2 + 9 * VCT_EMITTER_POINTS) * 4,
                "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_specular_params) == 9 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_specular_params) == 10 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_history_params) == 24 * 4, "layout is shared with GLSL");
 #endif
 

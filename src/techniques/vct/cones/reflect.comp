@@ -1,6 +1,7 @@
 // The specular light of each pixel: the mean of what arrives by the rays of pixels around it,
 // beside E/π of the diffuse cones for the wide part of the lobe (frame/lobe.glsl), times the
-// directional albedo of the GGX BRDF. Of rougher surfaces E/π is all of it.
+// directional albedo of the GGX BRDF. Of rougher surfaces E/π is all of it, and of metals where
+// nothing is traced.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -54,13 +55,15 @@ vec3 reflected_radiance(ivec2 pixel, float z)
 {
     brdf_material m = pixel_material(pixel, set.has_dielectric != 0u);
     lobe_pixel p = lobe_pixel_at(pixel, z);
+    bool traced = set.traced != 0u;
     float tail = set.tan_half > 0.0 ? 0.0 : lobe_tail(brdf_alpha(m.roughness));
     vec3 radiance = texelFetch(irradiance, pixel, 0).rgb / PI;
-    if (tail < 1.0) {
+    if (traced && tail < 1.0) {
         vec4 mean = mean_arriving(pixel, p);
         radiance = mix(radiance, set.gain * mean.rgb, mean.a * (1.0 - tail));
     }
-    return pixel_reflected(m, p.normal, normalize(frame_to_viewer(p.position)), radiance);
+    return (traced ? 1.0 : m.metallic) *
+           pixel_reflected(m, p.normal, normalize(frame_to_viewer(p.position)), radiance);
 }
 
 void main()

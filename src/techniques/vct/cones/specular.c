@@ -24,6 +24,7 @@ static struct vct_specular_params params_of(const struct vct_frame *frame,
         .last_mip = vct_volume_mips(options) - 1,
         .stride = t && vct_has_rays(options) ? 2 : 1,
         .turn = t ? t->frame : 0,
+        .traced = options->specular == VCT_SPECULAR_TRACED,
         .has_dielectric = frame->view->layers[FRAME_DIELECTRIC].id != 0,
     };
 }
@@ -61,10 +62,23 @@ static void average(const struct vct_specular *specular, const struct vct_reflec
         NULL, 0, gpu_groups(view->width, VCT_LOCAL_2D), gpu_groups(view->height, VCT_LOCAL_2D), 1);
 }
 
+// arriving: of rays or a cone, which nothing reads without them.
+static void reflect(const struct vct_specular *specular, const struct vct_frame *frame,
+                    const struct gpu_binding *set, gpu_image arriving)
+{
+    const struct frame_view *view = frame->view;
+    gpu_dispatch(frame->cmd, specular->reflect,
+                 GPU_BIND(*set, FRAME_SURFACE_BINDINGS(view),
+                          { .name = "irradiance", .image = vct_result(frame) },
+                          { .name = "arriving", .image = arriving },
+                          { .name = "specular", .image = view->layers[FRAME_SPECULAR] }),
+                 NULL, 0, gpu_groups(view->width, VCT_LOCAL_2D),
+                 gpu_groups(view->height, VCT_LOCAL_2D), 1);
+}
+
 void vct_record_specular(const struct vct_specular *specular, const struct vct_reflections *images,
                          const struct vct_temporal *temporal, const struct vct_frame *frame)
 {
-    const struct frame_view *view = frame->view;
     const struct vct_specular_params params = params_of(frame, temporal);
     const struct gpu_binding set =
         gpu_transient(frame->cmd, "vct_specular", &params, sizeof params);
@@ -72,12 +86,16 @@ void vct_record_specular(const struct vct_specular *specular, const struct vct_r
     gpu_scope_begin(frame->cmd, "specular");
     trace(specular, frame, &set, images->arriving);
     if (rays) average(specular, images, temporal, frame, &set);
-    gpu_dispatch(
-        frame->cmd, specular->reflect,
-        GPU_BIND(
-            set, FRAME_SURFACE_BINDINGS(view), { .name = "irradiance", .image = vct_result(frame) },
-            { .name = "arriving", .image = rays ? averaged(images, temporal) : images->arriving },
-            { .name = "specular", .image = view->layers[FRAME_SPECULAR] }),
-        NULL, 0, gpu_groups(view->width, VCT_LOCAL_2D), gpu_groups(view->height, VCT_LOCAL_2D), 1);
+    reflect(specular, frame, &set, rays ? averaged(images, temporal) : images->arriving);
+    gpu_scope_end(frame->cmd);
+}
+
+void vct_record_metals(const struct vct_specular *specular, const struct vct_frame *frame)
+{
+    const struct vct_specular_params params = params_of(frame, NULL);
+    const struct gpu_binding set =
+        gpu_transient(frame->cmd, "vct_specular", &params, sizeof params);
+    gpu_scope_begin(frame->cmd, "specular");
+    reflect(specular, frame, &set, vct_result(frame));
     gpu_scope_end(frame->cmd);
 }

@@ -22,3 +22,6 @@ struct vct_temporal;
 // temporal: NULL without it.
 void vct_record_specular(const struct vct_specular *specular, const struct vct_reflections *images,
                          const struct vct_temporal *temporal, const struct vct_frame *frame);
+// Metals reflect E/π, the mean radiance. Dielectrics reflect nothing: towards the horizon, where
+// their reflectance grows, light from overhead is not.
+void vct_record_metals(const struct vct_specular *specular, const struct vct_frame *frame);
