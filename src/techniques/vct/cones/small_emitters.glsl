@@ -28,7 +28,7 @@ layout(constant_id = VCT_CONSTANT_SMALL_EMITTERS) const bool VCT_HAS_SMALL_EMITT
 const float VCT_WIDTH_FROM_SURFACE = 0.15, VCT_WIDTH_FROM_EMITTER = 0.5;
 // Texels around a sample point in which occluders are ignored: they are the emitter itself.
 const float VCT_EMITTER_NEAR = 1.5;
-const float VCT_EMITTER_NEAR_RAY = 1.0; // the same for rays, in voxels
+const float VCT_EMITTER_NEAR_RAY = 0.25; // the same for rays, in voxels
 
 // Visibility between a surface and an emitter; both ends are offset from their surfaces. Lengths in
 // texels of level 0. first: level at the receiver. Sheets and the start are as in vct_trace.

@@ -25,7 +25,7 @@ layout(set = 0, binding = 30) uniform usampler2D dynamic_lit_voxels;
 layout(constant_id = VCT_CONSTANT_RAYS) const bool VCT_RAYS = false;
 layout(constant_id = VCT_CONSTANT_HAS_DYNAMIC) const
     bool VCT_HAS_DYNAMIC = true;   // false: the second set is empty
-const float VCT_RAY_LIFT = 0.25;   // of the start along the normal, voxels
+const float VCT_RAY_LIFT = 0.1;    // of the start along the normal, voxels
 const float VCT_RAY_OPAQUE = 0.98; // a ray of this opacity ends
 // A ray meets a plane up to this far beyond the voxel, so that none passes between the planes of
 // neighbours on a curved surface. In voxels along the ray.
