@@ -5,11 +5,12 @@
 //     [SCENE]…
 //
 // Each process has one thread, which is the hardest case: rank 0 has the most others to serve. spp:
-// paths per texel of a light map; 0, the default: the data of the technique. repeat: the tasks of
-// the first wave N times, as a light map with N times the paths has; default 1. threads: of the
-// measurement. The model has, per wave, the tasks in their order; 3 ms for a task to be given to an
-// idle thread at the end; results that pass the link of rank 0 one after the other; and inputs,
-// which it sends to every rank. Preparation of the scene's rays is repeated by each rank.
+// paths per texel of a light map; 0, the default: the data of the technique. repeat: N times the
+// work of the first wave, as a light map with N times the paths has: in tasks of 16384 paths, or of
+// a tile of 16 texels where that has more; default 1. threads: of the measurement. The model has,
+// per wave, the tasks in their order; 3 ms for a task to be given to an idle thread at the end;
+// results that pass the link of rank 0 one after the other; and inputs, which it sends to every
+// rank. Each rank repeats the plan of the bake, with its charts, and the scene's rays.
 #include "bench.h"
 
 #include <jansson.h>
@@ -18,6 +19,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum { MOST_RANKS = 256, MOST_REPEATS = 8 };
 static const double LATENCY_S = 3e-3;
@@ -73,9 +75,21 @@ static void deal_task(struct dealing *d, double seconds)
     d->end = fmax(d->end, d->free_at[first]);
 }
 
-static struct dealing deal(const json_t *stages, int wave, int repeat, int ranks)
+// As src/lightmap/rows.c and gather.h have them.
+enum { PATHS_PER_TASK = 16384, TEXELS_OF_TILE = 16 };
+
+// Tasks into which one that is repeated is divided.
+static int pieces_of(const struct scaling *b, int repeat)
 {
-    const int times = wave == 0 ? repeat : 1;
+    const int tiles = b->spp > 0 ? PATHS_PER_TASK / (TEXELS_OF_TILE * b->spp) : repeat;
+    return tiles < 1 ? 1 : tiles < repeat ? tiles : repeat;
+}
+
+static struct dealing deal(const struct scaling *b, const json_t *stages, int wave, int repeat,
+                           int ranks)
+{
+    const int times = wave == 0 ? pieces_of(b, repeat) : 1;
+    const double longer = wave == 0 ? (double)repeat / times : 1.0;
     struct dealing d = { .ranks = ranks };
     d.left = (size_t)sum_of(stages, wave, "tasks") * (size_t)times;
     const json_t *stage, *seconds;
@@ -83,7 +97,7 @@ static struct dealing deal(const json_t *stages, int wave, int repeat, int ranks
     for (int again = 0; again < times; again++)
         json_array_foreach(stages, s, stage) json_array_foreach(
             json_object_get(stage, "task_seconds"), i, seconds) if (is_of_wave(stage, wave))
-            deal_task(&d, json_number_value(seconds));
+            deal_task(&d, longer * json_number_value(seconds));
     return d;
 }
 
@@ -94,7 +108,7 @@ static void replay_wave(const struct scaling *b, const json_t *stages, int wave,
     const double send = FETCH_S + sum_of(stages, wave, "input_bytes") / b->bytes_per_s;
     const double worth = wave == 0 ? ranks : 1.0 + floor(sqrt(work / send));
     const int on = tasks > 1 ? (int)fmin(ranks, worth) : 1;
-    const struct dealing d = deal(stages, wave, repeat, on);
+    const struct dealing d = deal(b, stages, wave, repeat, on);
     const double others = on - 1;
     const double inputs = others * sum_of(stages, wave, "input_bytes") / b->bytes_per_s;
     const double results = others / on * sum_of(stages, wave, "result_bytes") / b->bytes_per_s;
@@ -110,13 +124,21 @@ static struct shares replay(const struct scaling *b, const json_t *report, int r
     const json_t *stages = json_object_get(report, "stages");
     const json_t *last = json_array_get(stages, json_array_size(stages) - 1);
     const int waves = 1 + (int)json_number_value(json_object_get(last, "wave"));
-    struct shares out = { .wall = json_number_value(json_object_get(report, "prepare_seconds")) };
+    struct shares out = { .wall = json_number_value(json_object_get(report, "prepare_seconds")) +
+                                  json_number_value(json_object_get(report, "plan_seconds")) };
     out.alone = out.wall;
     for (int wave = 0; wave < waves; wave++) replay_wave(b, stages, wave, repeat, ranks, &out);
     return out;
 }
 
 // ---- the measurement
+
+static double now_s(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
 
 static json_t *measure(const struct scaling *b, struct ag_context *context, const char *name)
 {
@@ -129,11 +151,14 @@ static json_t *measure(const struct scaling *b, struct ag_context *context, cons
     desc.lightmap_samples = b->spp;
     enum ag_result result = ag_scene_load(context, name, &scene);
     if (result == AG_OK) result = ag_scene_add_default_lighting(scene, NULL);
+    const double begun = now_s();
     if (result == AG_OK) result = ag_bake_create(scene, b->gi, &desc, &bake);
+    const double planned_s = now_s() - begun;
     if (result == AG_OK) result = ag_bake_run(bake, NULL, NULL);
     if (result == AG_OK) result = ag_bake_report(bake, &text);
     if (result != AG_OK) fprintf(stderr, "scaling: %s\n", ag_context_last_error(context));
     json_t *report = text ? json_loads(text, 0, NULL) : NULL;
+    if (report) json_object_set_new(report, "plan_seconds", json_real(planned_s));
     ag_bake_destroy(bake);
     ag_scene_destroy(scene);
     return report;

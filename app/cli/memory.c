@@ -41,6 +41,23 @@ uint64_t memory_limit(void)
     return least == UINT64_MAX ? 0 : least;
 }
 
+uint64_t memory_resident(void)
+{
+    unsigned long long all = 0, resident = 0;
+    FILE *file = fopen("/proc/self/statm", "re");
+    if (!file) return memory_peak();
+    const bool known = fscanf(file, "%llu %llu", &all, &resident) == 2;
+    fclose(file);
+    const long page = sysconf(_SC_PAGESIZE);
+    return known && page > 0 ? resident * (uint64_t)page : memory_peak();
+}
+
+uint64_t memory_peak(void)
+{
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? (uint64_t)usage.ru_maxrss << 10 : 0;
+}
+
 enum status memory_check(uint64_t bytes, const char *what, const char *remedy)
 {
     const uint64_t limit = memory_limit();

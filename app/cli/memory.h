@@ -8,6 +8,9 @@
 // Main memory that the program may use, in bytes: of the machine, or of the control group or
 // address space limit (ulimit -v) where that is less. 0: unknown.
 uint64_t memory_limit(void);
+// Main memory that the process has, and the most that it had, in bytes. 0: unknown.
+uint64_t memory_resident(void);
+uint64_t memory_peak(void);
 // Fails if `bytes` are more than that: "cannot <what>: it takes about 90 GB of memory, this machine
 // allows 16 GB; <remedy>". --verbose shows the estimate.
 enum status memory_check(uint64_t bytes, const char *what, const char *remedy);

@@ -69,7 +69,7 @@ struct ag_bake_estimate {
     double texels, rays;        ///< 0 where the technique has none
     double seconds;             ///< NaN without a probe
     uint64_t file_bytes;        ///< of the finished file
-    uint64_t peak_memory_bytes; ///< beyond the scene
+    uint64_t peak_memory_bytes; ///< beyond the scene; of a light map until its files are written
     uint32_t charts;            ///< of a light map; 0 where the technique has none
     float texels_per_m;         ///< of a light map, on all charts
     float utilisation;          ///< of a light map: texels on surfaces over all of its atlas

@@ -63,7 +63,9 @@ struct ag_lightmap_info {
     int noisy_charts;     ///< whose noise is above the bound, with the most paths. Small charts of
                           ///< an instance count together, here and for `noise`
     int pages;            ///< at least 1 (ag_lightmap_desc.page)
-    uint64_t reserved[2]; ///< 0; see ABI in types.h
+    int noise_charts;     ///< whose noise is estimated; 0: not known
+    int quiet_charts;     ///< of them: below half of the bound by few paths, or without light
+    uint64_t reserved[1]; ///< 0; see ABI in types.h
 };
 /// Thread: the context's.
 AG_API enum ag_result ag_lightmap_get_info(const struct ag_lightmap *lightmap,

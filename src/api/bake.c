@@ -130,7 +130,7 @@ static bool add_lightmap_stages(struct ag_bake *b, struct bake_plan *plan, const
                                        .noise = b->lightmap_noise,
                                        .charts = b->spec.technique[b->term]->charts,
                                        .options = b->spec.options[b->term] };
-    return lightmap_add_stages(plan, &how);
+    return lightmap_add_stages(plan, &how, &b->charts);
 }
 
 // The light map's texels are the technique's; a path needs none of its other data.

@@ -25,7 +25,8 @@ struct ag_bake {
     // The identity of a light map.
     int lightmap_version;
     uint64_t seed;
-    bool updates; // an earlier light map
+    const struct charts *charts; // of a light map; the bake owns them
+    bool updates;                // an earlier light map
     struct lightmap_change change;
 };
 

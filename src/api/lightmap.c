@@ -125,7 +125,7 @@ enum ag_result ag_lightmap_from_bake(const struct ag_bake *bake,
     const enum ag_result begun = begin(__func__, bake->scene, desc, &l);
     if (begun != AG_OK) return begun;
     l->facts.samples = bake->lightmap_samples;
-    bool ok = make_map(l, &bake->spec, bake->term, &bake->pose, bake->change.charts);
+    bool ok = make_map(l, &bake->spec, bake->term, &bake->pose, bake->charts);
     if (!desc->no_light)
         ok = ok && lightmap_tracing_init(&l->tracing, &bake->pose, &l->map.charts) &&
              lightmap_set_paths(&l->map, bake_tensors(bake->bake), !desc->indirect_only,
@@ -242,7 +242,9 @@ enum ag_result ag_lightmap_get_info(const struct ag_lightmap *l, struct ag_light
                                       .paths = l->noise.paths,
                                       .noise = l->noise.largest,
                                       .noisy_charts = l->noise.above,
-                                      .pages = (int)charts_page_count(charts) };
+                                      .pages = (int)charts_page_count(charts),
+                                      .noise_charts = l->noise.units,
+                                      .quiet_charts = l->noise.quiet };
     return AG_OK;
 }
 

@@ -94,7 +94,9 @@ static bool add_stages(struct ag_bake *b, struct bake_plan *plan, const char *fo
     const struct lightmap_update update = {
         .how = &how, .folder = folder, .was = record, .charts = &charts
     };
-    return lightmap_add_update_stages(plan, &update, &b->change);
+    const bool ok = lightmap_add_update_stages(plan, &update, &b->change);
+    b->charts = b->change.charts;
+    return ok;
 }
 
 bool api_update_add_stages(struct ag_bake *b, struct bake_plan *plan, const char *folder,

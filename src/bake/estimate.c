@@ -30,15 +30,27 @@ static uint64_t wave_memory(const struct bake *bake, int wave, int threads)
     return bytes + (uint64_t)threads * scratch;
 }
 
+static uint64_t result_memory(const struct bake *bake)
+{
+    uint64_t bytes = 0;
+    for (int s = 0; s < bake->plan.stage_count; s++)
+        for (int i = 0; i < bake->plan.stages[s].what.output_count; i++)
+            if (bake->plan.stages[s].outputs[i].what.keep == BAKE_SAVED)
+                bytes += bake->plan.stages[s].outputs[i].bytes;
+    return bytes;
+}
+
 uint64_t estimate_peak_memory(const struct bake *bake, int threads)
 {
+    const uint64_t files = result_memory(bake) + bake->plan.job.files_bytes;
     uint64_t peak = 0;
     if (threads <= 0) threads = parallel_threads();
     for (int wave = 0; wave < bake->plan.waves; wave++) {
         const uint64_t bytes = wave_memory(bake, wave, threads);
         if (bytes > peak) peak = bytes;
     }
-    return peak + bake->plan.job.bytes;
+    peak += bake->plan.job.bytes;
+    return peak > files ? peak : files;
 }
 
 static void add_stages(const struct bake *bake, const struct bake_run_options *options,

@@ -111,7 +111,9 @@ struct bake_job {
     // Frees the memory that planning and preparing keep between runs: called once, when the plan
     // ends; may be NULL.
     void (*destroy)(void *job);
-    size_t bytes; // of memory that `prepare` takes, for the estimate
+    // For the estimate: memory that planning and `prepare` take; and, in place of it, what is taken
+    // when the complete results become files. 0: no more than the results.
+    size_t bytes, files_bytes;
 };
 void bake_plan_set_job(struct bake_plan *plan, const struct bake_job *job);
 

@@ -99,8 +99,11 @@ static bool run_counts(const struct bake_task *task)
     uint32_t *counts = bake_row(task, 0, 0);
     const float bound = job->how.noise;
     const float least = LEAST_LIGHT * noise_mean_light(&job->units, sums);
+    const float typical = noise_typical(&job->units, sums, least, (float *)(void *)counts);
     for (uint32_t u = 0; u < job->units.count; u++) {
-        const struct noise_state state = noise_of(&job->units.at[u], sums, least);
+        const struct noise_unit *unit = &job->units.at[u];
+        const struct noise_state state =
+            noise_with_prior(unit, noise_of(unit, sums, least), typical);
         const uint64_t most = (uint64_t)state.paths * GROWTH,
                        limit = (uint64_t)job->how.samples / NOISE_GROUPS * NOISE_GROUPS;
         counts[u] = state.noise <= NEARLY * bound
@@ -256,7 +259,9 @@ static bool read_units(const struct lightmap *map, const struct tensors *bake, f
     for (uint64_t u = 0; rows && u < units; u++) {
         const float *row = rows + 3 * u;
         out->largest = fmaxf(out->largest, row[0]);
+        out->units++;
         out->above += row[0] > NEARLY * bound;
+        out->quiet += row[0] < 0.5f * bound;
         paths += (double)row[1] * (double)row[2];
         texels += (double)row[2];
     }

@@ -47,7 +47,7 @@ struct surface gather_surface(const struct gather_scene *scene, const struct gat
 // Irradiance by punctual lights: the mean over the points.
 vec3s gather_punctual(const struct gather_scene *scene, const struct gather_points *points);
 // Texels next to each other, of one side of a chart, whose paths are shared (trace/share.h).
-enum { GATHER_TILE = 16 };
+enum { GATHER_TILE = NOISE_TILE };
 struct gather_tile {
     uint32_t first, count; // texels; count 0: none yet
     struct gather_points points[GATHER_TILE];

@@ -30,8 +30,10 @@ struct lightmap_bake {
 };
 // In the identity of the bake.
 #define LIGHTMAP_NAME "lightmap"
-enum { LIGHTMAP_VERSION = 5 };
-bool lightmap_add_stages(struct bake_plan *plan, const struct lightmap_bake *how);
+enum { LIGHTMAP_VERSION = 6 };
+// charts: those of the texels, which are valid while the plan is; NULL: not wanted.
+bool lightmap_add_stages(struct bake_plan *plan, const struct lightmap_bake *how,
+                         const struct charts **charts);
 
 // ---- lightmap.c
 
@@ -73,7 +75,9 @@ bool lightmap_set_paths(struct lightmap *map, const struct tensors *bake, bool p
 struct lightmap_noise {
     float paths;   // of a texel, in the mean
     float largest; // of all units of texels (noise.h); NaN: not estimated
-    int above;     // units above the bound
+    int units;     // 0: not estimated
+    int above;     // the bound, with the most paths
+    int quiet;     // below half of the bound by few paths, or without light
 };
 // samples, bound: of the bake.
 bool lightmap_noise_read(const struct lightmap *map, const struct tensors *bake, int samples,

@@ -1,17 +1,22 @@
 #include "lightmap/noise.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-// Texels of a unit that are enough to estimate its variance within a fifth.
-enum { ENOUGH_TEXELS = 32 };
+// The noise of a unit of four tiles is known within some 13 %: it has 28 degrees of freedom.
+enum { ENOUGH_TEXELS = 32, ENOUGH_TILES = 4 };
 
 // ---- units
 
-static bool joins(const struct charts *charts, const struct noise_unit *last, uint32_t last_chart,
-                  const struct chart *next)
+static bool is_small(uint32_t texels, uint32_t tiles)
 {
-    return last->count < ENOUGH_TEXELS && next->texel_count < ENOUGH_TEXELS &&
-           charts->charts[last_chart].instance == next->instance;
+    return texels < ENOUGH_TEXELS || tiles < ENOUGH_TILES;
+}
+
+// Blocks that `count` texels from `first` on touch.
+static uint32_t tiles_of(uint32_t first, uint32_t count)
+{
+    return (first + count - 1) / NOISE_TILE - first / NOISE_TILE + 1;
 }
 
 // Appends the side of a chart that begins at texel `first`. last_chart: of the last unit.
@@ -19,11 +24,15 @@ static void append(struct noise_units *units, const struct charts *charts, uint3
                    uint32_t first, uint32_t *last_chart)
 {
     const struct chart *next = &charts->charts[chart];
+    const uint32_t count = next->texel_count, tiles = tiles_of(first, count);
     struct noise_unit *last = units->count > 0 ? &units->at[units->count - 1] : NULL;
-    if (last && *last_chart != CHART_NONE && joins(charts, last, *last_chart, next))
-        last->count += next->texel_count;
-    else
-        units->at[units->count++] = (struct noise_unit){ first, next->texel_count };
+    if (last && *last_chart != CHART_NONE && is_small(last->count, last->tiles) &&
+        is_small(count, tiles) && charts->charts[*last_chart].instance == next->instance) {
+        last->count += count;
+        last->tiles += tiles;
+    } else {
+        units->at[units->count++] = (struct noise_unit){ first, count, tiles };
+    }
     *last_chart = chart;
 }
 
@@ -100,6 +109,35 @@ struct noise_state noise_of(const struct noise_unit *unit, const struct noise_su
     return state;
 }
 
+static int compare(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+float noise_typical(const struct noise_units *units, const struct noise_sums *sums, float least,
+                    float *scratch)
+{
+    size_t count = 0;
+    for (uint32_t u = 0; u < units->count; u++) {
+        const struct noise_state state = noise_of(&units->at[u], sums, least);
+        if (state.noise > 0.0f) scratch[count++] = state.noise * state.noise * state.paths;
+    }
+    if (count == 0) return 0.0f;
+    qsort(scratch, count, sizeof *scratch, compare);
+    return scratch[count / 2];
+}
+
+struct noise_state noise_with_prior(const struct noise_unit *unit, struct noise_state state,
+                                    float typical)
+{
+    const float freedom = (float)((NOISE_GROUPS - 1) * unit->tiles);
+    if (!(state.paths > 0.0f)) return state;
+    const float variance = freedom * state.noise * state.noise + typical / state.paths;
+    state.noise = sqrtf(variance / (freedom + 1.0f));
+    return state;
+}
+
 float noise_mean_light(const struct noise_units *units, const struct noise_sums *sums)
 {
     double light = 0.0;
@@ -118,6 +156,6 @@ uint32_t noise_paths_for(struct noise_state state, float bound, uint32_t most)
 {
     const double ratio = (double)state.noise / (double)bound;
     const double paths = (double)state.paths * fmax(ratio * ratio, 1.0);
-    const double groups = ceil(fmin(paths, (double)most) / NOISE_GROUPS);
+    const double groups = fmin(ceil(paths / NOISE_GROUPS), floor((double)most / NOISE_GROUPS));
     return (uint32_t)fmax(groups * NOISE_GROUPS, (double)state.paths);
 }

@@ -7,7 +7,12 @@
 
 #include "scene/charts/charts.h"
 
-enum { NOISE_GROUPS = 4 };
+enum { NOISE_GROUPS = 8 };
+
+// Texels that share paths at most: an aligned block of texels of one side of a chart, a tile. Their
+// noise has much in common, so that a tile counts as one estimate of NOISE_GROUPS − 1 degrees of
+// freedom.
+enum { NOISE_TILE = 16 };
 
 // Sums over the paths of a texel.
 struct noise_sums {
@@ -17,9 +22,10 @@ struct noise_sums {
 };
 
 // Texels that have one number of paths: a side of a chart, or of several small charts of an
-// instance in a row, whose few texels would give no estimate.
+// instance in a row, whose few tiles would give no estimate.
 struct noise_unit {
     uint32_t first, count; // of the texels of both sides
+    uint32_t tiles;
 };
 struct noise_units {
     struct noise_unit *at;
@@ -40,6 +46,13 @@ struct noise_state {
 // least: luminance, lux, in place of the unit's mean where that is darker.
 struct noise_state noise_of(const struct noise_unit *unit, const struct noise_sums *sums,
                             float least);
+// The relative variance of one path: the median over units, as the prior of each. scratch: [units].
+float noise_typical(const struct noise_units *units, const struct noise_sums *sums, float least,
+                    float *scratch);
+// The noise with that prior, which weighs as one degree of freedom: few paths of few tiles may all
+// have missed the light, and would state no noise.
+struct noise_state noise_with_prior(const struct noise_unit *unit, struct noise_state state,
+                                    float typical);
 // Mean luminance of all texels, lux.
 float noise_mean_light(const struct noise_units *units, const struct noise_sums *sums);
 // Paths per texel that lower the noise to `bound`, a multiple of NOISE_GROUPS, from `state.paths`

@@ -4,6 +4,7 @@
 #include "bake/scene_key.h"
 
 #include <string.h>
+#include <sys/stat.h>
 
 static bool prepare(void *argument, struct host *host)
 {
@@ -26,13 +27,44 @@ static void destroy(void *argument)
     charts_finish(&job->charts);
 }
 
+static size_t charts_bytes(const struct charts *charts)
+{
+    return charts->triangle_count * sizeof *charts->triangles +
+           (size_t)charts->width * charts->height * sizeof *charts->owner +
+           charts->texel_count * sizeof *charts->texels;
+}
+
 // About two triangles meet a texel.
-size_t lightmap_job_bytes(const struct charts *charts)
+static size_t rays_bytes(const struct charts *charts)
 {
     enum { OF_LISTS = 12 };
-    return charts->triangle_count * (sizeof *charts->triangles + TRACE_TRIANGLE_BYTES) +
-           (size_t)charts->width * charts->height * sizeof *charts->owner +
-           charts->texel_count * (sizeof *charts->texels + OF_LISTS);
+    return charts->triangle_count * (size_t)TRACE_TRIANGLE_BYTES + charts->texel_count * OF_LISTS;
+}
+
+size_t lightmap_job_bytes(const struct charts *charts)
+{
+    return charts_bytes(charts) + rays_bytes(charts);
+}
+
+// Bytes of the file and of its copy; of a built-in scene its data.
+static size_t copy_bytes(const struct scene *scene)
+{
+    struct stat file;
+    return stat(scene->name, &file) == 0 && S_ISREG(file.st_mode) ? 2 * (size_t)file.st_size
+                                                                  : scene_memory_bytes(scene);
+}
+
+// The map has charts of its own. Rays measure the map before its files are written.
+size_t lightmap_files_bytes(const struct charts *charts, const struct scene *scene)
+{
+    enum { OF_MEASURES = 96 }; // of a texel: seams, quality, images of the report
+    const bool has_back = charts->side_texel_count > charts->texel_count;
+    const size_t image = (size_t)charts->width * charts->height * 3 * sizeof(float);
+    const size_t rows = charts->side_texel_count * (sizeof(struct lightmap_texel) +
+                                                    LIGHTMAP_COLUMNS * sizeof(float) + OF_MEASURES);
+    const size_t rays = rays_bytes(charts), copy = copy_bytes(scene);
+    return 2 * charts_bytes(charts) + image * (has_back ? 2 : 1) + rows +
+           (rays > copy ? rays : copy);
 }
 
 // ---- one number of paths for all texels
@@ -94,7 +126,8 @@ static bool plan_job(struct lightmap_job *job, struct host *host, const struct l
     return ok && (!(how->noise > 0.0f) || noise_units_init(&job->units, &job->charts));
 }
 
-bool lightmap_add_stages(struct bake_plan *plan, const struct lightmap_bake *how)
+bool lightmap_add_stages(struct bake_plan *plan, const struct lightmap_bake *how,
+                         const struct charts **charts)
 {
     struct lightmap_job *job = bake_plan_alloc(plan, 1, sizeof *job);
     if (!job) return false;
@@ -103,7 +136,10 @@ bool lightmap_add_stages(struct bake_plan *plan, const struct lightmap_bake *how
                                                 .prepare = prepare,
                                                 .finish = finish,
                                                 .destroy = destroy,
-                                                .bytes = lightmap_job_bytes(&job->charts) });
+                                                .bytes = lightmap_job_bytes(&job->charts),
+                                                .files_bytes = lightmap_files_bytes(
+                                                    &job->charts, how->pose->scene) });
+    if (charts) *charts = &job->charts;
     if (!ok || how->noise > 0.0f) return ok && adaptive_add_stages(plan, job);
     // An empty scene has one row, of zeros.
     return add_stage(plan, how->samples,

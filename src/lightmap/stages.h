@@ -15,5 +15,7 @@ struct lightmap_job {
     struct gather_scene scene;
 };
 
-// Memory of the charts, and of the rays among the surfaces: about.
+// About: memory of the charts, and of the rays among the surfaces.
 size_t lightmap_job_bytes(const struct charts *charts);
+// About: memory of the charts of the bake, and of a light map while its files are written.
+size_t lightmap_files_bytes(const struct charts *charts, const struct scene *scene);

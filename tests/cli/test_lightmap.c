@@ -61,6 +61,29 @@ TEST(light_map_to_a_bound_of_noise_is_the_same_in_parts)
                           path_of("maps-noise-merged/irradiance.exr")));
 }
 
+// Sanitizers have memory of their own.
+#if !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
+static void check_memory(const char *bake)
+{
+    char words[256];
+    snprintf(words, sizeof words, "%s --spp 1 --force --quiet --json --lightmap", bake);
+    json_t *result = run_json(run_expect(0, words, path_of("maps-memory"), NULL));
+    const json_t *memory = json_object_get(result, "memory");
+    const double estimate = json_number_value(json_object_get(memory, "estimate_bytes")),
+                 peak = json_number_value(json_object_get(memory, "peak_bytes"));
+    print_message("%s: %.1f MB, estimated %.1f\n", bake, peak * 1e-6, estimate * 1e-6);
+    CHECK(peak > 1e6 && peak <= 1.25 * estimate && estimate <= 1.25 * peak);
+    json_decref(result);
+}
+
+TEST(peak_memory_is_within_the_estimate)
+{
+    use_cache("lightmap-memory");
+    check_memory("bake @cornell --gi radiosity:texels=131072");
+    check_memory("bake @atrium --gi radiosity:density=5");
+}
+#endif
+
 TEST(wrong_bounds_of_noise_are_refused_in_one_line)
 {
     static const char *const wrong[] = {

@@ -45,7 +45,7 @@ struct bake *fixture_bake(const struct fixture_bake *of)
                                        .charts = fixture_charts,
                                        .options = &of->texels };
     struct bake *bake = bake_create(test_host(), &identity);
-    CHECK(bake && lightmap_add_stages(bake_plan_of(bake), &how));
+    CHECK(bake && lightmap_add_stages(bake_plan_of(bake), &how, NULL));
     CHECK(bake_run(bake, &(struct bake_run_options){ .threads = of->threads }));
     return bake;
 }

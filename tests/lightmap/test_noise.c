@@ -31,6 +31,14 @@ TEST(units_are_all_texels_in_order_and_small_charts_are_joined)
         assert_int_equal(noise_unit_of(&units, next - 1), u);
     }
     assert_int_equal(next, charts.side_texel_count);
+    // Small units are followed by another instance, or by a chart that is enough alone.
+    for (uint32_t u = 0; u + 1 < units.count; u++) {
+        const struct chart_triangle *last = chart_triangle_of(&charts, units.at[u + 1].first - 1),
+                                    *first = chart_triangle_of(&charts, units.at[u + 1].first);
+        const bool joined = units.at[u].tiles < 4 && units.at[u + 1].tiles < 4;
+        if (joined && units.at[u + 1].first != charts.texel_count)
+            CHECK(last->instance != first->instance);
+    }
     for (uint32_t c = 0; c < charts.count; c++) small += charts.charts[c].texel_count < 32;
     CHECK(small > 0 && units.count < charts.count);
     noise_units_finish(&units, test_host());
@@ -41,25 +49,52 @@ TEST(units_are_all_texels_in_order_and_small_charts_are_joined)
 
 TEST(noise_is_the_standard_error_over_the_mean_light)
 {
-    // Means of groups 8, 12, 8, 12: their variance over 4 is (4 · 2²/3)/4.
-    struct noise_sums sums[3] = { { .paths = 40, .group = { 80, 120, 80, 120 } },
-                                  { .paths = 40, .group = { 80, 120, 80, 120 } },
-                                  { .paths = 0 } };
-    const struct noise_unit unit = { 0, 3 };
+    // Means of groups 8 and 12 in turn: the variance of their mean is 8 · 2² / (8 · 7).
+    struct noise_sums sums[3] = { { .paths = 80 }, { .paths = 80 }, { .paths = 0 } };
+    for (int g = 0; g < NOISE_GROUPS; g++) sums[0].group[g] = sums[1].group[g] = g % 2 ? 120 : 80;
+    const struct noise_unit unit = { 0, 3, 1 };
     const struct noise_state found = noise_of(&unit, sums, 0.0f);
-    CHECK_RELATIVE(found.noise, sqrt(4.0 / 3.0) / 10.0, 1e-5);
-    CHECK_NEAR(found.paths, 40, 0);
+    CHECK_RELATIVE(found.noise, sqrt(4.0 / 7.0) / 10.0, 1e-5);
+    CHECK_NEAR(found.paths, 80, 0);
     // A dark unit counts against the least light.
-    CHECK_RELATIVE(noise_of(&unit, sums, 100.0f).noise, sqrt(4.0 / 3.0) / 100.0, 1e-5);
-    const struct noise_units units = { (struct noise_unit[]){ { 0, 3 } }, 1 };
+    CHECK_RELATIVE(noise_of(&unit, sums, 100.0f).noise, sqrt(4.0 / 7.0) / 100.0, 1e-5);
+    const struct noise_units units = { (struct noise_unit[]){ { 0, 3, 1 } }, 1 };
     CHECK_RELATIVE(noise_mean_light(&units, sums), 10.0, 1e-6);
+}
+
+// Paths that all missed a small source of light state no noise. One tile needs more of them, some
+// hundred tiles do not.
+TEST(prior_adds_paths_to_units_of_few_tiles)
+{
+    struct noise_sums sums[4] = { 0 };
+    struct noise_unit at[4];
+    for (uint32_t u = 0; u < 4; u++) {
+        at[u] = (struct noise_unit){ u, 1, 1 };
+        sums[u].paths = 32;
+        // Relative variance of a path: 0, and about 1, 4 and 16.
+        const float step = u == 0 ? 0.0f : (float)(1 << (u - 1)) * sqrtf(7.0f / 8.0f) / sqrtf(4);
+        for (int g = 0; g < NOISE_GROUPS; g++)
+            sums[u].group[g] = 4.0f * (g % 2 ? 1.0f + step : 1.0f - step);
+    }
+    float scratch[4];
+    const struct noise_units units = { at, 4 };
+    const float typical = noise_typical(&units, sums, 0.0f, scratch);
+    CHECK_RELATIVE(typical, 4.0, 0.01); // the median of those with noise
+    const struct noise_state none = { .paths = 32 };
+    const struct noise_unit one = { 0, 16, 1 }, many = { 0, 1600, 100 };
+    CHECK_RELATIVE(noise_with_prior(&one, none, typical).noise, sqrt(4.0 / 32 / 8), 0.01);
+    CHECK(noise_with_prior(&many, none, typical).noise < 0.02f);
+    const struct noise_state like = { .paths = 32, .noise = sqrtf(typical / 32) };
+    CHECK_RELATIVE(noise_with_prior(&one, like, typical).noise, like.noise, 1e-5);
+    CHECK_NEAR(noise_with_prior(&one, (struct noise_state){ 0 }, typical).noise, 0, 0);
 }
 
 TEST(paths_grow_with_the_square_of_the_noise_up_to_the_most)
 {
     const struct noise_state found = { .noise = 0.1f, .paths = 40 };
     assert_int_equal(noise_paths_for(found, 0.05f, 1000), 160);
-    assert_int_equal(noise_paths_for(found, 0.05f, 100), 100);
+    assert_int_equal(noise_paths_for(found, 0.05f, 104), 104);
+    assert_int_equal(noise_paths_for(found, 0.05f, 100), 96);
     assert_int_equal(noise_paths_for(found, 0.2f, 1000), 40);
     assert_int_equal(noise_paths_for(found, 1e-9f, 4096), 4096);
     CHECK(noise_paths_for(found, 0.09f, 1000) % NOISE_GROUPS == 0);

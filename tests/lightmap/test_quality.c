@@ -92,7 +92,7 @@ static void begin(struct measured *m, struct scene *scene)
                                        .samples = SAMPLES,
                                        .charts = make_charts };
     struct charts charts;
-    CHECK(lightmap_add_stages(bake_plan_of(m->bake), &how));
+    CHECK(lightmap_add_stages(bake_plan_of(m->bake), &how, NULL));
     CHECK(bake_run(m->bake, &(struct bake_run_options){ 0 }));
     CHECK(make_charts(&m->pose, NULL, test_host(), NULL, &charts));
     CHECK(lightmap_init(&m->map, &charts, scene));

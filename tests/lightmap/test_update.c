@@ -135,7 +135,7 @@ static void bake_all(struct baked *b, const struct hall *hall)
     const struct lightmap_bake how = { .pose = &b->pose,
                                        .samples = SAMPLES,
                                        .charts = make_charts };
-    CHECK(lightmap_add_stages(bake_plan_of(b->bake), &how));
+    CHECK(lightmap_add_stages(bake_plan_of(b->bake), &how, NULL));
     end(b, 0);
 }
 
@@ -237,7 +237,7 @@ static struct bake *bake_with_seed(const struct baked *of, uint64_t seed)
                                        .samples = SAMPLES,
                                        .charts = make_charts };
     struct bake *bake = bake_create(test_host(), &identity);
-    CHECK(bake && lightmap_add_stages(bake_plan_of(bake), &how));
+    CHECK(bake && lightmap_add_stages(bake_plan_of(bake), &how, NULL));
     CHECK(bake_run(bake, &(struct bake_run_options){ 0 }));
     return bake;
 }

@@ -1,5 +1,6 @@
 // Finding, running and caching bakes.
 #include "baking.h"
+#include "cli/memory.h"
 #include "cli/files/disk.h"
 #include "cli/files/interrupt.h"
 
@@ -72,7 +73,9 @@ static enum status begin_at(struct baking *b, const char *path)
 enum status baking_begin(struct baking *b, struct session *session, const char *gi,
                          const struct ag_bake_desc *desc, const char *path)
 {
-    *b = (struct baking){ .session = session, .estimate_seconds = (double)NAN };
+    *b = (struct baking){ .session = session,
+                          .estimate_seconds = (double)NAN,
+                          .scene_bytes = memory_resident() };
     const enum ag_result result = create(b, gi, desc);
     return result == AG_OK ? begin_at(b, path) : fail_bake(b, result);
 }
@@ -86,7 +89,8 @@ enum status baking_begin_reference(struct baking *b, struct session *session,
     desc.threads = session->arguments->threads;
     *b = (struct baking){ .session = session,
                           .of_reference = true,
-                          .estimate_seconds = (double)NAN };
+                          .estimate_seconds = (double)NAN,
+                          .scene_bytes = memory_resident() };
     const enum ag_result result =
         ag_bake_create_reference(session->scene, of, samples, &desc, &b->bake);
     return result == AG_OK ? begin_at(b, path) : fail_bake(b, result);
@@ -273,9 +277,10 @@ static enum status estimate(struct baking *b, bool shard)
     print_count(needs.texels, texels);
     print_count(needs.rays, rays);
     print_work(b, work);
-    note("%s: %s %s, %s rays, about %.*f s, %.0f MB of memory, %.1f MB on disk", work, texels,
-         b->of_reference ? "pixels" : "texels", rays, b->estimate_seconds < 10.0 ? 1 : 0,
-         b->estimate_seconds, (double)needs.peak_memory_bytes * 1e-6,
+    b->estimate_bytes = b->scene_bytes + needs.peak_memory_bytes;
+    note("%s: %s %s, %s rays, about %.*f s, %.0f MB of memory with the scene, %.1f MB on disk",
+         work, texels, b->of_reference ? "pixels" : "texels", rays,
+         b->estimate_seconds < 10.0 ? 1 : 0, b->estimate_seconds, (double)b->estimate_bytes * 1e-6,
          (double)needs.file_bytes * 1e-6);
     return DONE;
 }

@@ -21,6 +21,8 @@ struct baking {
     bool updates;                  // an earlier light map
     bool of_reference;             // the samples of the path-traced reference, not data
     double estimate_seconds;       // of the whole run, before it; NaN: nothing was estimated
+    uint64_t scene_bytes;          // of the process before the bake was planned
+    uint64_t estimate_bytes;       // of the process at most; 0: nothing was estimated
 };
 // Creates the bake of one technique of the spec. path NULL: a file in the cache. desc: see
 // ag_bake_create.

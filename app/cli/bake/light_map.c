@@ -2,6 +2,7 @@
 #include "light_map.h"
 #include "light_map_report.h"
 #include "light_renderer.h"
+#include "cli/memory.h"
 #include "cli/technique_names.h"
 #include "cli/files/folder.h"
 #include "cli/files/interrupt.h"
@@ -286,12 +287,15 @@ static json_t *formats_json(unsigned formats)
 static void say_noise(const struct ag_lightmap_info *info)
 {
     if (!isfinite(info->noise)) return;
-    char noisy[128] = "";
+    char noisy[128] = "", quiet[128] = "";
     if (info->noisy_charts > 0)
-        snprintf(noisy, sizeof noisy, "; %d chart%s with the most paths above the bound",
-                 info->noisy_charts, info->noisy_charts == 1 ? "" : "s");
-    note("noise %.2g %% of a chart's light at most; %.0f paths per texel in the mean%s",
-         100.0 * (double)info->noise, (double)info->paths, noisy);
+        snprintf(noisy, sizeof noisy, "; %d of %d charts with the most paths above the bound",
+                 info->noisy_charts, info->noise_charts);
+    if (info->quiet_charts > 0)
+        snprintf(quiet, sizeof quiet, "; %d below half of it by few paths, or without light",
+                 info->quiet_charts);
+    note("noise %.2g %% of a chart's light at most; %.0f paths per texel in the mean%s%s",
+         100.0 * (double)info->noise, (double)info->paths, noisy, quiet);
 }
 
 static void say_update(const struct ag_bake_update_info *u)
@@ -352,7 +356,9 @@ static json_t *json_of(const struct job *job, const struct ag_lightmap_info *inf
     if (out && update) json_object_set_new(out, "update", update_json(update));
     if (!out || !isfinite(info->noise)) return out;
     json_object_set_new(out, "noise", json_double((double)info->noise));
+    json_object_set_new(out, "noise_charts", json_integer(info->noise_charts));
     json_object_set_new(out, "noisy_charts", json_integer(info->noisy_charts));
+    json_object_set_new(out, "quiet_charts", json_integer(info->quiet_charts));
     return out;
 }
 
@@ -399,6 +405,16 @@ static void say(const struct job *job, const struct outcome *o)
          size, info->texels, info->charts, texels_per_chart(info), 100.0 * o->utilisation,
          (double)info->texels_per_m, job->folder.shown);
     say_noise(info);
+    if (job->baking.estimate_bytes > 0)
+        note("at most %.0f MB of memory with the scene", (double)memory_peak() * 1e-6);
+}
+
+static json_t *memory_json(const struct job *job)
+{
+    const uint64_t estimate = job->baking.estimate_bytes;
+    return json_pack("{s:o, s:I}", "estimate_bytes",
+                     estimate > 0 ? json_integer((json_int_t)estimate) : json_null(), "peak_bytes",
+                     (json_int_t)memory_peak());
 }
 
 static struct light_map_run run_of(const struct job *job)
@@ -438,6 +454,7 @@ static enum status publish(struct job *job)
     enum status status = light_map_report_add(&run, document);
     if (status == DONE) status = write_folder(job, &run, document);
     if (status == DONE) say(job, &outcome);
+    json_object_set_new(document, "memory", memory_json(job));
     if (status == DONE && a->report) status = json_write(document, a->report);
     if (status == DONE && a->json) return json_print(document);
     json_decref(document);

@@ -361,11 +361,13 @@ bool lightmap_add_update_stages(struct bake_plan *plan, const struct lightmap_up
     // The scene as it was has rays of its own, and both have a record.
     const size_t record = job->charts.side_texel_count * LIGHTMAP_COLUMNS * sizeof(float);
     bake_plan_set_job(
-        plan, &(struct bake_job){ .job = job,
-                                  .prepare = prepare,
-                                  .finish = finish,
-                                  .destroy = destroy,
-                                  .bytes = 2 * (lightmap_job_bytes(&job->charts) + record) });
+        plan, &(struct bake_job){
+                  .job = job,
+                  .prepare = prepare,
+                  .finish = finish,
+                  .destroy = destroy,
+                  .bytes = 2 * (lightmap_job_bytes(&job->charts) + record),
+                  .files_bytes = lightmap_files_bytes(&job->charts, update->how->pose->scene) });
     if (!scene_statics_init(&job->statics, job->host, job->how.pose) ||
         !compare(job, update->folder))
         return false;

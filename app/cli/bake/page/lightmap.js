@@ -12,6 +12,12 @@ const pages = report.pages ?? [];
 const sizeText = size => `${size[0]} × ${size[1]} texels`;
 const sizesText = () => pages.length > 1 ? `${pages.length} pages, the largest of ${sizeText(pages[0].size)}` : Array.isArray(report.size) ? sizeText(report.size) : null;
 
+// Charts that cannot be at the bound of noise.
+function noiseText() {
+  const { noise_charts: all, noisy_charts: noisy, quiet_charts: quiet } = report;
+  return `${whole(all - noisy)} of ${whole(all)}; ${whole(noisy)} above it with the most paths; ${whole(quiet)} below half of it by few, or without light`;
+}
+
 function buildHead() {
   const scene = String(report.scene ?? 'Light map');
   byId('scene').textContent = scene;
@@ -20,6 +26,7 @@ function buildHead() {
     ['Size', sizesText()],
     ['GI', report.gi], ['Light', report.light || null],
     ['Paths per texel', isNumber(report.paths) ? `${whole(report.paths)}${isNumber(report.noise) ? ' in the mean' : ''}` : null],
+    ['Charts within the noise', isNumber(report.noise_charts) ? noiseText() : null],
     ['Threads', report.threads], ['Time', isNumber(report.seconds) ? secondsText(report.seconds) : null],
     ['Afterglow', report.version], ['Date', report.date ? `${String(report.date).slice(0, 16).replace('T', ' ')} UTC` : null],
   ];
