@@ -136,13 +136,18 @@ struct gather {
     vec3s tangent, bitangent;
 };
 
+static vec3s place_of(const struct texel_receiver *r, uint32_t i)
+{
+    return r->place_count ? r->places[i % r->place_count] : r->position;
+}
+
 // at: in the unit square. rays: that have the density of this one over the whole hemisphere.
-static void gather_ray(const struct gather *g, vec2s at, float rays)
+static void gather_ray(const struct gather *g, vec3s from, vec2s at, float rays)
 {
     const struct texel_receiver *r = g->receiver;
     vec3s local = sample_hemisphere_cosine(at);
     local.z = fmaxf(local.z, LEAST_COSINE);
-    struct ray ray = { r->position, glms_vec3_scale(r->normal, local.z), 0.0f, INFINITY };
+    struct ray ray = { from, glms_vec3_scale(r->normal, local.z), 0.0f, INFINITY };
     ray.direction = glms_vec3_muladds(g->tangent, local.x, ray.direction);
     ray.direction = glms_vec3_muladds(g->bitangent, local.y, ray.direction);
     const float cosine = glms_vec3_dot(ray.direction, r->normal);
@@ -171,7 +176,8 @@ static void gather_cell(const struct gather *g, uint32_t cell)
     const vec2s corner = { { (float)(cell % side), (float)(cell / side) } };
     for (uint32_t k = 0; k < r->cells.further[cell]; k++) {
         const vec2s at = glms_vec2_add(corner, sobol_2d(k, seed));
-        gather_ray(g, glms_vec2_divs(at, (float)side), rays_of_cell(r, cell));
+        gather_ray(g, place_of(r, pcg_hash(seed + k)), glms_vec2_divs(at, (float)side),
+                   rays_of_cell(r, cell));
     }
 }
 
@@ -180,8 +186,8 @@ static void gather_emitters(const struct gather *g)
     const struct texel_receiver *r = g->receiver;
     for (uint32_t k = 0; k < (uint32_t)r->light_samples; k++) {
         struct emitter_sample s;
-        if (!texel_sample_emitter(g->scene, r->position, &r->normal, k, (uint32_t)r->light_samples,
-                                  r->seed + r->first, &s))
+        if (!texel_sample_emitter(g->scene, place_of(r, pcg_hash(r->seed + k)), &r->normal, k,
+                                  (uint32_t)r->light_samples, r->seed + r->first, &s))
             continue;
         const float density = texel_sample_density(r, s.to_light, s.pdf);
         add_uniform(g->out, s.to_light, density);
@@ -198,7 +204,9 @@ void texel_gather(const struct trace_scene *scene, const struct texel_receiver *
     basis_of(r->normal, &g.tangent, &g.bitangent);
     for (uint32_t k = 0; k < (uint32_t)r->rays; k++) {
         const vec2s at = sobol_2d(r->first + k, r->seed);
-        gather_ray(&g, at, rays_at(r, at));
+        // Runs of the Sobol sequence are spread evenly, every n-th point is not.
+        const uint32_t place = (uint32_t)((uint64_t)k * r->place_count / (uint32_t)r->rays);
+        gather_ray(&g, place_of(r, place), at, rays_at(r, at));
     }
     for (uint32_t cell = 0; cell < r->cells.side * r->cells.side; cell++) gather_cell(&g, cell);
     gather_emitters(&g);

@@ -23,6 +23,8 @@ static inline uint32_t texel_cell_at(uint32_t side, vec2s at)
 // A surface, whose rays are cosine-distributed, or a point with uniform rays: normal 0.
 struct texel_receiver {
     vec3s position, normal; // position: offset against self-intersection
+    const vec3s *places;    // of samples in turn, in place of `position`; place_count 0: none
+    uint32_t place_count;
     int rays, light_samples;
     uint32_t first; // of the rays' points in the Sobol sequence
     uint32_t seed;

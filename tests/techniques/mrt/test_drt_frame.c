@@ -137,19 +137,34 @@ static float *lit_irradiance(struct frame_fixture *s, const char *text)
     return out;
 }
 
+// Sides of a closed hollow box. SHEETS: double-sided, around some of the probes.
+enum sides { THICK, THIN, SHEETS, SIDES };
+
+static void add_hollow(struct frame_fixture *s, enum sides sides, int matte)
+{
+    struct material sheet = s->scene->materials[matte];
+    sheet.double_sided = true;
+    if (sides == SHEETS) {
+        fixture_box(s, vec3_of(-1.2f, 0.5f, -1.2f), vec3_of(0.7f, 2.5f, 0.7f), false,
+                    fixture_material(s, &sheet));
+        return;
+    }
+    const float outer = sides == THIN ? 0.71f : 0.8f;
+    fixture_box(s, vec3_of(-outer, 1.4f - outer, -outer), vec3_of(outer, 1.4f + outer, outer),
+                false, matte);
+    fixture_box(s, vec3_of(-0.7f, 0.7f, -0.7f), vec3_of(0.7f, 2.1f, 0.7f), true, matte);
+}
+
 // The camera in a closed hollow box with a small box in it, which are clutter; a lit room is around
-// it. thin: its sides are 1 cm thick, else 10 cm. Returns the irradiance; the caller frees it.
-static float *irradiance_in_hollow(struct gpu *gpu, const char *text, bool thin)
+// it. Returns the irradiance; the caller frees it.
+static float *irradiance_in_hollow(struct gpu *gpu, const char *text, enum sides sides)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
     const int material = fixture_matte(&s, vec3_of(0.6f, 0.5f, 0.4f));
     fixture_box(&s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, material);
-    const float outer = thin ? 0.71f : 0.8f;
-    fixture_box(&s, vec3_of(-outer, 1.4f - outer, -outer), vec3_of(outer, 1.4f + outer, outer),
-                false, material);
+    add_hollow(&s, sides, material);
     fixture_box(&s, vec3_of(0.2f, 0.7f, -0.6f), vec3_of(0.6f, 1.1f, -0.2f), false, material);
-    fixture_box(&s, vec3_of(-0.7f, 0.7f, -0.7f), vec3_of(0.7f, 2.1f, 0.7f), true, material);
     fixture_look(&s, vec3_of(-0.5f, 1.9f, 0.5f), vec3_of(0.5f, 0.8f, -0.5f));
     return lit_irradiance(&s, text);
 }
@@ -158,15 +173,16 @@ static float *irradiance_in_hollow(struct gpu *gpu, const char *text, bool thin)
 TEST_GPU(drt_has_no_light_in_closed_clutter)
 {
     static const char *const options[] = { "", ",gather=false" };
-    for (int thin = 0; thin < 2; thin++) {
-        float *through = irradiance_in_hollow(gpu, "mrt" HOLLOW, thin);
+    static const char *const names[SIDES] = { "thick", "thin", "double-sided" };
+    for (int sides = 0; sides < SIDES; sides++) {
+        float *through = irradiance_in_hollow(gpu, "mrt" HOLLOW, (enum sides)sides);
         CHECK(sum_of(through) > 0.0);
         for (int i = 0; i < 2; i++) {
             char text[TEXT];
             snprintf(text, sizeof text, "drt" HOLLOW "%s", options[i]);
-            float *inside = irradiance_in_hollow(gpu, text, thin);
+            float *inside = irradiance_in_hollow(gpu, text, (enum sides)sides);
             print_message("drt%s: %.4f of the light in a %s box\n", options[i],
-                          sum_of(inside) / sum_of(through), thin ? "thin" : "thick");
+                          sum_of(inside) / sum_of(through), names[sides]);
             CHECK(sum_of(inside) == 0.0);
             free(inside);
         }

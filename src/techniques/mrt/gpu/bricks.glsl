@@ -13,15 +13,20 @@ layout(set = 0, binding = MRT_SIGHT_BINDING) readonly buffer mrt_probe_sight
     uint sight_table[]; // mrt_operators.sight
 };
 
-// In texels of the first slab. Places outside the cell are clamped to the brick's border.
-vec3 brick_texel(mrt_place place)
+// In texels of the first slab, moved by `ahead` of them. Places outside the cell are clamped to the
+// brick's border.
+vec3 brick_texel(mrt_place place, vec3 ahead)
 {
     int edge = int(level.probes) + 2, block = place.block;
     vec3 unit = TUBES ? tube_unit(block, place.cell) : place.cell + 0.5;
-    vec3 at = unit * float(level.probes) + 1.0;
+    vec3 at = unit * float(level.probes) + 1.0 + ahead;
     ivec3 brick = ivec3(block % int(level.brick_columns), block / int(level.brick_columns), 0);
     return vec3(brick * edge) + clamp(at, vec3(0.5), vec3(float(edge) - 0.5));
 }
+
+// Probes behind a surface, in an object or beyond a wall, have other light. Where it is unknown
+// which are visible, lookups are moved along the normal by this share of the distance of probes.
+const float MRT_AHEAD = 0.3;
 
 // Lookups of a place at the probes visible from it past clutter (objects/delta.h).
 struct mrt_visible_probes {
@@ -80,22 +85,29 @@ uint sight_of(mrt_place place, vec3 normal)
     return solid || (sight & MRT_SIGHT_PROBES) != 0u ? own : sight;
 }
 
+// In a plane of probes, and beyond the brick, those beside it may be the only ones visible.
+const float MRT_LEAST_SHARE = 1e-3;
+
 float share_of_probe(mrt_visible_probes visible, int c)
 {
-    vec3 t = fract(visible.texel - 0.5), w = mix(1.0 - t, t, vec3(c & 1, c >> 1 & 1, c >> 2 & 1));
+    vec3 t = fract(visible.texel - 0.5);
+    vec3 w = max(mix(1.0 - t, t, vec3(c & 1, c >> 1 & 1, c >> 2 & 1)), MRT_LEAST_SHARE);
     return float(visible.probes >> uint(c) & 1u) * w.x * w.y * w.z;
 }
 
 // normal: in the cell, 0 of a point in space.
 mrt_visible_probes visible_probes_at(mrt_place place, vec3 normal)
 {
-    mrt_visible_probes visible = mrt_visible_probes(brick_texel(place), MRT_SIGHT_PROBES, 1, 1.0);
+    bool clear = !TUBES && (SIGHT == 0 || sight_table[place.block] == 0u);
+    vec3 ahead = clear ? MRT_AHEAD * normal : vec3(0.0);
+    mrt_visible_probes visible =
+        mrt_visible_probes(brick_texel(place, ahead), MRT_SIGHT_PROBES, 1, 1.0);
     if (SIGHT == 0) return visible;
     uint sight = sight_of(place, normal);
     visible.probes = sight & MRT_SIGHT_PROBES;
     float sum = 0.0;
     for (int c = 0; c < 8; c++) sum += share_of_probe(visible, c);
-    bool none = visible.probes == 0u, some = sum > 0.0 && visible.probes != MRT_SIGHT_PROBES;
+    bool none = visible.probes == 0u, some = !none && visible.probes != MRT_SIGHT_PROBES;
     visible.lookups = some ? 8 : 1;
     visible.scale = some ? 1.0 / sum : none ? float(sight >> MRT_SIGHT_OPEN & 255u) / 255.0 : 1.0;
     return visible;

@@ -29,6 +29,60 @@ static bool is_in_solid(const struct trace_scene *scene, vec3s from, vec3s middl
     return glms_vec3_norm2(way) > 0.0f && trace_closest(scene, from, way, 1.0f, &hit) && !hit.front;
 }
 
+// A ray from the middle of the block to a wall.
+struct wall_ray {
+    vec3s from, to;
+};
+
+static struct wall_ray wall_ray_at(const struct mrt_block *block, int face, float s, float t)
+{
+    return (struct wall_ray){
+        mrt_warp_point(block->corner, mrt_wall_middle(block, face, s, t)),
+        mrt_warp_point(block->corner, mrt_wall_place(block, face, s, t).position),
+    };
+}
+
+// An edge of the wall's texel along the ray onto the surface.
+static vec3s on_surface(vec3s edge, vec3s way, vec3s normal)
+{
+    const float along = glms_vec3_dot(way, normal);
+    return glms_vec3_muladds(way, -glms_vec3_dot(edge, normal) / along, edge);
+}
+
+static const float SAME_PLACE = 1e-3f; // edges of a texel
+
+static bool has_part(const struct geometry_job *job, const struct wall_ray *ray,
+                     const struct mrt_geometry_texel *texel, int part)
+{
+    const vec3s place = glms_vec3_add(texel->position, mrt_part_way(texel, part));
+    const float most2 = SAME_PLACE * SAME_PLACE * glms_vec3_norm2(texel->edge[0]);
+    struct trace_hit hit;
+    return trace_closest(job->scene, ray->from, glms_vec3_sub(ray->to, ray->from), RAY_END, &hit) &&
+           glms_vec3_distance2(hit.position, place) < most2;
+}
+
+// The middle of a texel may see far more of an emitter than the rest of it: on a ceiling, beside a
+// panel close below.
+static void find_parts(const struct geometry_job *job, const struct mrt_block *block, int face,
+                       float s, float t, struct mrt_geometry_texel *out)
+{
+    const float size = 1.0f / (float)job->atlas->resolution;
+    const struct wall_ray middle = wall_ray_at(block, face, s, t);
+    const vec3s way = glms_vec3_sub(middle.to, middle.from);
+    const struct mrt_wall_place wall = mrt_wall_place(block, face, s, t);
+    const mat3s jacobian = mrt_warp_jacobian(block->corner, wall.position);
+    const vec3s by[2] = { wall.by_s, wall.by_t };
+    for (int a = 0; a < 2; a++) {
+        const vec3s edge = glms_vec3_scale(glms_mat3_mulv(jacobian, by[a]), size);
+        out->edge[a] = on_surface(edge, way, out->normal);
+    }
+    for (int part = 0; part < MRT_PARTS * MRT_PARTS; part++) {
+        const vec2s at = glms_vec2_scale(mrt_part_place(part), size);
+        const struct wall_ray ray = wall_ray_at(block, face, s + at.x, t + at.y);
+        if (has_part(job, &ray, out, part)) out->parts |= (uint16_t)(1u << part);
+    }
+}
+
 // Through a hole, surfaces farther behind the wall are those of the neighbour.
 static const float HOLE_END = 1.1f;
 
@@ -38,17 +92,15 @@ static enum sight look_at_wall(const struct geometry_job *job, const struct mrt_
     int n = job->atlas->resolution;
     const struct mrt_block *block = &job->map->blocks[tile->block];
     const float s = ((float)(k % n) + 0.5f) / (float)n, t = ((float)(k / n) + 0.5f) / (float)n;
-    vec3s wall = mrt_wall_place(block, tile->face, s, t).position;
-    vec3s from = mrt_warp_point(block->corner, mrt_wall_middle(block, tile->face, s, t));
-    vec3s to = mrt_warp_point(block->corner, wall);
-    bool solid = is_in_solid(job->scene, from, mrt_block_middle(block));
+    const struct wall_ray ray = wall_ray_at(block, tile->face, s, t);
+    bool solid = is_in_solid(job->scene, ray.from, mrt_block_middle(block));
     struct trace_hit hit;
-    const vec3s way = glms_vec3_sub(to, from);
+    const vec3s way = glms_vec3_sub(ray.to, ray.from);
     const bool hole = mrt_block_hole_at(block, tile->face, s, t) > 0.0f;
-    const bool found = trace_closest(job->scene, from, way, hole ? HOLE_END : RAY_END, &hit);
+    const bool found = trace_closest(job->scene, ray.from, way, hole ? HOLE_END : RAY_END, &hit);
     if (!found)
         *out = (struct mrt_geometry_texel){
-            .position = to,
+            .position = ray.to,
             .normal = mrt_wall_normal(block, tile->face, s, t),
         };
     else
@@ -61,6 +113,7 @@ static enum sight look_at_wall(const struct geometry_job *job, const struct mrt_
         };
     out->across = mrt_wall_across(block, tile->face, s, t);
     out->area_m2 = mrt_wall_area(block, tile->face, s, t) / (float)(n * n);
+    if (found) find_parts(job, block, tile->face, s, t, out);
     if (solid) return SIGHT_BACK;
     return !found ? SIGHT_NONE : hit.front ? SIGHT_FRONT : SIGHT_BACK;
 }

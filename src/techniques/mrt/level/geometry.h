@@ -15,6 +15,15 @@ struct mrt_reflector_row {
 // gpu/pixels/light_map.glsl.
 #define MRT_NEAR_WALL 0.15f
 
+enum { MRT_PARTS = 4 }; // along an edge of a texel
+
+// The middle of a part, in edges of the texel from its middle.
+static inline vec2s mrt_part_place(int part)
+{
+    const float x = (float)(part % MRT_PARTS), y = (float)(part / MRT_PARTS);
+    return (vec2s){ { (x + 0.5f) / MRT_PARTS - 0.5f, (y + 0.5f) / MRT_PARTS - 0.5f } };
+}
+
 struct mrt_geometry_texel {
     vec3s position;    // world
     vec3s normal;      // unit, towards the middle of the block
@@ -28,11 +37,23 @@ struct mrt_geometry_texel {
     // surfaces by colour, of the sky. Parts along the normal mean nothing.
     vec3s emitted_vector[3], sky_vector;
     vec3s across; // of walls, unit: the first axis of the frame of irradiance by normal
+    // Parts of the texel that have the surface of its middle: bit MRT_PARTS y + x; 0: unknown.
+    // `edge` spans the texel on that surface.
+    uint16_t parts;
+    vec3s edge[2];
     struct mrt_reflector_row reflected;
     // Share of the block's light that is missing: objects inside it, which reflectors stand for,
     // hide their part of the hemisphere, and reflect the same irradiance.
     vec3s hidden;
 };
+
+// The middle of a part, from the texel's position.
+static inline vec3s mrt_part_way(const struct mrt_geometry_texel *texel, int part)
+{
+    const vec2s at = mrt_part_place(part);
+    return glms_vec3_muladds(texel->edge[1], at.y, glms_vec3_scale(texel->edge[0], at.x));
+}
+
 // The reflectance for the block's light.
 static inline vec3s mrt_shown_reflectance(const struct mrt_geometry_texel *texel)
 {

@@ -65,6 +65,16 @@ static vec3s hidden_of(const struct mrt_reflector_hits *hits)
     return glms_vec3_minv(hidden, one);
 }
 
+// Places of samples: the parts that have the texel's surface.
+static uint32_t places_of(const struct mrt_geometry_texel *at, vec3s middle,
+                          vec3s places[MRT_PARTS * MRT_PARTS])
+{
+    uint32_t count = 0;
+    for (int part = 0; part < MRT_PARTS * MRT_PARTS; part++)
+        if (at->parts >> part & 1) places[count++] = glms_vec3_add(middle, mrt_part_way(at, part));
+    return count;
+}
+
 static void gather(void *user, size_t i, struct mrt_reflector_hits *hits)
 {
     struct job *job = user;
@@ -75,9 +85,13 @@ static void gather(void *user, size_t i, struct mrt_reflector_hits *hits)
     at->reflected = (struct mrt_reflector_row){ 0 };
     if (!at->found) return;
     if (job->cells.side) mrt_ray_cells_of(&job->cells, i, further);
+    vec3s places[MRT_PARTS * MRT_PARTS];
+    const vec3s middle = glms_vec3_muladds(at->normal, RAY_OFFSET, at->position);
     const struct texel_receiver receiver = {
-        .position = glms_vec3_muladds(at->normal, RAY_OFFSET, at->position),
+        .position = middle,
         .normal = at->normal,
+        .places = places,
+        .place_count = places_of(at, middle, places),
         .rays = job->rays,
         .light_samples = job->scene->lights.has_emitters ? LIGHT_SAMPLES : 0,
         .seed = pcg_hash((uint32_t)i) | 1u,

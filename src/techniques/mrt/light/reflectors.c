@@ -1,5 +1,7 @@
 #include "techniques/mrt/light/reflectors.h"
 
+#include "techniques/mrt/level/wall.h"
+
 #include "core/parallel.h"
 
 #include "frame/octahedral.h"
@@ -26,6 +28,13 @@ static const float PER_DISTANCE = 0.125; // edge of a place over its distance, a
 
 enum owner { OF_BLOCK, INSIDE_BLOCK, OUTSIDE_BLOCKS };
 
+// No texel stands for a surface beyond an opening, such as the piers of an arcade.
+static bool is_open_at(const struct mrt_block *block, int axis, vec3s cell)
+{
+    const int face = 2 * axis + (cell.raw[axis] > 0.0f);
+    return !mrt_block_is_tube(block) && mrt_block_is_open(block, face);
+}
+
 static enum owner owner_in(const struct mrt_reflectors *r, int index, vec3s point, vec3s normal)
 {
     const struct mrt_block *block = &r->grid.map->blocks[index];
@@ -39,6 +48,7 @@ static enum owner owner_in(const struct mrt_reflectors *r, int index, vec3s poin
                    ? OF_BLOCK
                    : INSIDE_BLOCK;
     const int axis = most == out.x ? 0 : most == out.y ? 1 : 2;
+    if (is_open_at(block, axis, cell)) return OUTSIDE_BLOCKS;
     const mat3s jacobian = mrt_warp_jacobian(block->corner, cell);
     const vec3s across = vec3_unit(jacobian.col[axis]);
     return copysignf(1.0f, -cell.raw[axis]) * glms_vec3_dot(across, normal) > FACING
@@ -127,11 +137,13 @@ void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_
     };
 }
 
-void mrt_reflectors_drop_inside(struct mrt_reflector_hits *hits)
+void mrt_reflectors_drop_near(struct mrt_reflector_hits *hits, vec3s point, float least_m)
 {
     uint32_t kept = 0;
     for (uint32_t k = 0; k < hits->count; k++)
-        if (!hits->at[k].in_block) hits->at[kept++] = hits->at[k];
+        if (!hits->at[k].in_block ||
+            glms_vec3_distance2(hits->at[k].position, point) > least_m * least_m)
+            hits->at[kept++] = hits->at[k];
     hits->count = kept;
 }
 

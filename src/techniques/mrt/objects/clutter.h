@@ -94,6 +94,8 @@ bool mrt_open_clutter_walls(struct mrt_block_map *map, const struct mrt_clutter 
 
 // ---- clutter_faces.c
 
+// Whether the hit of `objects` is the back of a single-sided surface, which is met inside a solid.
+bool mrt_is_inside_at(const struct mrt_clutter *clutter, const struct trace_hit *hit);
 // The face of a block at a hit of `objects`; −1: none, as of a triangle without area.
 int mrt_face_of_hit(const struct mrt_clutter *clutter, int block, const struct trace_hit *hit);
 // The face of any block, by the texel that is hit.

@@ -276,6 +276,13 @@ static uint32_t chart_of_hit(const struct charts *charts, const struct trace_hit
     return index == CHART_NONE ? CHART_NONE : charts->triangles[index].chart;
 }
 
+bool mrt_is_inside_at(const struct mrt_clutter *clutter, const struct trace_hit *hit)
+{
+    const struct scene *objects = &clutter->objects.scene;
+    const int material = scene_mesh_of(objects, hit->instance)->material;
+    return !hit->front && !objects->materials[material].double_sided;
+}
+
 int mrt_face_of_hit(const struct mrt_clutter *clutter, int block, const struct trace_hit *hit)
 {
     const struct charts *charts = &clutter->charts;

@@ -63,9 +63,7 @@ static void add_face(struct texel_job *t, const float weight[VALUES], const stru
     const int column =
         mrt_face_of_hit(t->job->input->clutter, t->job->out->block, hit) - t->job->first_face;
     struct matrix_f32 *c = &t->job->out->c;
-    const struct scene *objects = &t->job->input->clutter->objects.scene;
-    const int material = scene_mesh_of(objects, hit->instance)->material;
-    t->backs += !hit->front && !objects->materials[material].double_sided;
+    t->backs += mrt_is_inside_at(t->job->input->clutter, hit);
     if (column < 0 || column >= (int)c->columns) return;
     for (int q = 0; q < VALUES; q++)
         c->at[(t->index * VALUES + (size_t)q) * c->stride + (size_t)column] += weight[q];

@@ -85,7 +85,9 @@ static void follow(const struct job *job, size_t i, struct mrt_point point, int 
         return;
     }
     count->rays++;
-    count->backs += !hit.front;
+    // Lookups on a wall beside a double-sided box blend with the texels in it, which are not seen.
+    count->backs +=
+        job->measure == MRT_PROBE ? mrt_is_inside_at(job->cell->rays->clutter, &hit) : !hit.front;
     job->touched[i] = true;
     add_face(job, i * values, weight,
              mrt_face_of_hit(job->cell->rays->clutter, job->cell->index, &hit));

@@ -69,7 +69,7 @@ static uint32_t visible_from(const struct job *job, const struct voxel *voxel, v
         if (!mrt_delta_blocked(job->cell, from, to, &hit))
             visible |= 1u << c;
         else
-            backs += !hit.front;
+            backs += mrt_is_inside_at(job->cell->rays->clutter, &hit);
     }
     *solid = backs == CORNERS;
     return visible;

@@ -116,8 +116,8 @@ mrt_light walls_light(mrt_place place, vec3 normal, mrt_lobe lobe)
 mrt_light bricks_light(mrt_place place, vec3 normal, mrt_lobe lobe)
 {
     int slab = int(level.probes) + 2;
-    if (SIGHT == 0) return probe_light_at(bricks, slab, brick_texel(place), normal, lobe);
     mrt_visible_probes visible = visible_probes_at(place, normal_in_cell(place, normal));
+    if (SIGHT == 0) return probe_light_at(bricks, slab, visible.texel, normal, lobe);
     mrt_light sum = MRT_DARK;
     for (int i = 0; i < visible.lookups; i++) {
         float weight;
