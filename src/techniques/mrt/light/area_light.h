@@ -17,7 +17,6 @@ struct mrt_area_light_probe {
 
 struct mrt_lit_point {
     vec3s position;                    // world
-    float apart_m;                     // distance of the points around
     struct mrt_area_light_probe light; // result, 0 before
     bool solid;                        // result: inside a solid
 };

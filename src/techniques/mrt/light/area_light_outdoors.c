@@ -78,7 +78,6 @@ bool mrt_outdoors_init(const struct trace_scene *scene, struct mrt_reflectors *r
         const vec3s position = probe_grid_point(out->grid, (uint32_t)i);
         if (mrt_is_in_a_block(&reflectors->grid, position)) continue;
         probe_of[outside] = i;
-        points[outside].apart_m = INFINITY;
         points[outside++].position = position;
     }
     ok = ok && mrt_area_light_points(scene, reflectors, RAYS, points, (size_t)outside);

@@ -22,7 +22,7 @@ static void add(vec3s light, const float weight[MRT_PROBE_VALUES], struct mrt_ar
 }
 
 // Whether the point is inside a solid.
-static bool gather_rays(const struct job *job, const struct texel_receiver *at, float apart_m,
+static bool gather_rays(const struct job *job, const struct texel_receiver *at,
                         struct mrt_area_light_probe *out, struct mrt_reflector_hits *hits)
 {
     const float per_sr = (float)job->rays.count / (4.0f * GLM_PIf);
@@ -42,7 +42,7 @@ static bool gather_rays(const struct job *job, const struct texel_receiver *at, 
         mrt_reflectors_add_hit(hits, job->scene, &ray, &hit, &at_hit);
         add(glms_vec3_scale(at_hit.emission, GLM_PIf * per_sr / density), weight, out);
     }
-    mrt_reflectors_drop_near(hits, at->position, apart_m);
+    mrt_reflectors_drop_inside(hits);
     return is_inside(backs, job->rays.count);
 }
 
@@ -70,7 +70,7 @@ static void gather(void *user, size_t i, struct mrt_reflector_hits *hits)
         .light_samples = texel_light_samples(job->scene, job->rays.count),
         .seed = pcg_hash((uint32_t)i) | 1u,
     };
-    point->solid = gather_rays(job, &at, point->apart_m, &point->light, hits);
+    point->solid = gather_rays(job, &at, &point->light, hits);
     sample_emitters(job, &at, &point->light);
 }
 
@@ -116,14 +116,6 @@ static int nearest_outside(const struct mrt_lit_point *points, int per_block, in
     return nearest;
 }
 
-static float longest_edge(const struct mrt_block *block)
-{
-    const mat3s edges = mrt_warp_jacobian(block->corner, vec3_of(0, 0, 0));
-    float longest = 0.0f;
-    for (int a = 0; a < 3; a++) longest = fmaxf(longest, glms_vec3_norm(edges.col[a]));
-    return longest;
-}
-
 struct mrt_area_light_probe *mrt_area_light_probes_create(const struct trace_scene *scene,
                                                           struct mrt_reflectors *reflectors, int p)
 {
@@ -133,11 +125,8 @@ struct mrt_area_light_probe *mrt_area_light_probes_create(const struct trace_sce
     struct mrt_area_light_probe *out = host_alloc(host, (size_t)count, sizeof *out);
     struct mrt_lit_point *points = host_alloc(host, (size_t)count, sizeof *points);
     bool ok = out && points;
-    for (int i = 0; ok && i < count; i++) {
-        const struct mrt_block *block = &map->blocks[i / per_block];
-        points[i].position = mrt_probe_position(block, p, i % per_block);
-        points[i].apart_m = longest_edge(block) / (float)p;
-    }
+    for (int i = 0; ok && i < count; i++)
+        points[i].position = mrt_probe_position(&map->blocks[i / per_block], p, i % per_block);
     ok = ok && mrt_area_light_points(scene, reflectors, PROBE_RAYS, points, (size_t)count);
     for (int i = 0; ok && i < count; i++)
         out[i] = points[nearest_outside(points, per_block, i)].light;

@@ -137,13 +137,11 @@ void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_
     };
 }
 
-void mrt_reflectors_drop_near(struct mrt_reflector_hits *hits, vec3s point, float least_m)
+void mrt_reflectors_drop_inside(struct mrt_reflector_hits *hits)
 {
     uint32_t kept = 0;
     for (uint32_t k = 0; k < hits->count; k++)
-        if (!hits->at[k].in_block ||
-            glms_vec3_distance2(hits->at[k].position, point) > least_m * least_m)
-            hits->at[kept++] = hits->at[k];
+        if (!hits->at[k].in_block) hits->at[kept++] = hits->at[k];
     hits->count = kept;
 }
 

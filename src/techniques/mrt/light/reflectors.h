@@ -77,9 +77,8 @@ void mrt_reflectors_add_hit(struct mrt_reflector_hits *hits, const struct trace_
                             const struct ray *ray, const struct ray_hit *hit,
                             const struct texel_hit *at_hit);
 
-// Drops hits inside blocks that are nearer to a point than `least_m`: lookups between it and the
-// points around it would show this light beyond the objects.
-void mrt_reflectors_drop_near(struct mrt_reflector_hits *hits, vec3s point, float least_m);
+// Drops hits inside blocks: lookups between probes would show this light beyond the objects.
+void mrt_reflectors_drop_inside(struct mrt_reflector_hits *hits);
 
 // Calls `gather` for each receiver, on all cores, and keeps what it adds: at most `rays` hits, of
 // this weight times the share of the ray. Afterwards *row_of(user, i) has the receiver's shares.
