@@ -31,7 +31,7 @@ static bool create(void *state, const struct technique_create *how)
     s->host = how->host;
     s->gpu = how->gpu;
     light_map_init(&s->light_map, s->host, s->gpu, &s->map.charts,
-                   s->options.specular ? LIGHT_MAP_FLUENCE_TOO : LIGHT_MAP_DIFFUSE);
+                   s->options.specular ? LIGHT_MAP_BY_FLUENCE : LIGHT_MAP_DIFFUSE);
     light_map_paint_init(&s->paint, s->host, s->gpu, &s->map.charts);
     if (!how->pose) return true;
     struct scene_statics statics;

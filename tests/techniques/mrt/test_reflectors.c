@@ -175,21 +175,15 @@ TEST(a_texel_receives_the_share_of_its_rays)
     close_place(&p);
 }
 
-static uint32_t reflectors_seen_past(uint32_t open, float height, vec3s across, vec3s along)
+static uint32_t reflectors_seen(float height, vec3s across, vec3s along)
 {
     struct place p;
     struct mrt_lit_point point = { .position = vec3_of(0.1f, 0.2f, 0.3f) };
     open_place(&p, height, across, along);
-    p.map.blocks[0].open = open;
     assert_true(mrt_area_light_points(p.trace, &p.reflectors, 8192, &point, 1));
     const uint32_t count = p.reflectors.count;
     close_place(&p);
     return count;
-}
-
-static uint32_t reflectors_seen(float height, vec3s across, vec3s along)
-{
-    return reflectors_seen_past(0, height, across, along);
 }
 
 // A wall's texels stand for surfaces behind it, but not for those that stand on its plane, as the
@@ -202,14 +196,6 @@ TEST(surfaces_of_a_block_are_no_reflectors)
     CHECK(reflectors_seen(-1.2f, across, along) == 0);
     CHECK(reflectors_seen(-1.6f, across, along) > 0);
     CHECK(reflectors_seen(-1.2f, across, vec3_of(0, -0.15f, 0)) > 0);
-}
-
-// The pier of an arcade is a little beyond an opening, which has no texels.
-TEST(surfaces_beyond_an_opening_are_reflectors)
-{
-    const vec3s across = vec3_of(0, 0, 0.9f), along = vec3_of(0.9f, 0, 0);
-    CHECK(reflectors_seen_past(1u << CUBE_BOTTOM, -1.05f, across, along) > 0);
-    CHECK(reflectors_seen_past(1u << CUBE_BACK, -1.05f, across, along) == 0);
 }
 
 // Below the ground there is no outdoors, though rays downward meet nothing.

@@ -23,7 +23,7 @@ void light_map_init(struct light_map *out, struct host *host, struct gpu *gpu,
 // Whether pixels reflect the map's light, and the visible environment.
 static bool has_lobes(const struct light_map *map)
 {
-    return map->specular == LIGHT_MAP_SPECULAR || map->specular == LIGHT_MAP_FLUENCE_TOO;
+    return map->specular == LIGHT_MAP_SPECULAR || map->specular == LIGHT_MAP_BY_FLUENCE;
 }
 
 #define MEMBER(thing) offsetof(struct light_map, thing)
@@ -35,7 +35,7 @@ static const struct gpu_shader *apply_shader(enum light_map_specular specular)
         return &shader_common_light_map_apply_diffuse_comp;
     case LIGHT_MAP_SPECULAR:
         return &shader_common_light_map_apply_specular_comp;
-    case LIGHT_MAP_FLUENCE_TOO:
+    case LIGHT_MAP_BY_FLUENCE:
         return &shader_common_light_map_apply_fluence_comp;
     case LIGHT_MAP_REFLECTED:
         break;
@@ -84,7 +84,7 @@ void light_map_list(const struct light_map *map, size_t base, struct gpu_objects
     if (map->specular == LIGHT_MAP_REFLECTED)
         GPU_ADD(out, base, { GPU_IMAGE, "reflected", MEMBER(reflected), .image = reflected });
     const struct gpu_image_desc fluence = light_map_image(map->charts, "fluence", 1);
-    if (map->specular == LIGHT_MAP_FLUENCE_TOO)
+    if (map->specular == LIGHT_MAP_BY_FLUENCE)
         GPU_ADD(out, base, { GPU_IMAGE, "fluence", MEMBER(fluence[0]), .image = fluence },
                 { GPU_IMAGE, "fluence", MEMBER(fluence[1]), .image = fluence });
     list_pipelines(map, base, out);
@@ -275,7 +275,7 @@ void light_map_record_show(const struct light_map *map, struct gpu_cmd *cmd,
                            struct light_map_tables from, uint32_t first, uint32_t count)
 {
     record_show(map, cmd, newest(map, from.light), first, count);
-    if (map->specular == LIGHT_MAP_FLUENCE_TOO)
+    if (map->specular == LIGHT_MAP_BY_FLUENCE)
         record_show(map, cmd, newest_fluence(map, from.fluence), first, count);
 }
 
@@ -283,7 +283,7 @@ void light_map_record_seams(const struct light_map *map, struct gpu_cmd *cmd,
                             struct light_map_tables from, uint32_t first, uint32_t count)
 {
     record_seams(map, cmd, newest(map, from.light), first, count);
-    if (map->specular == LIGHT_MAP_FLUENCE_TOO)
+    if (map->specular == LIGHT_MAP_BY_FLUENCE)
         record_seams(map, cmd, newest_fluence(map, from.fluence), first, count);
 }
 

@@ -11,10 +11,10 @@ struct tensors;
 
 // How pixels get specular light.
 enum light_map_specular {
-    LIGHT_MAP_DIFFUSE,     // none
-    LIGHT_MAP_SPECULAR,    // of the map's light, and of the visible environment
-    LIGHT_MAP_FLUENCE_TOO, // as LIGHT_MAP_SPECULAR, and the map has the fluence
-    LIGHT_MAP_REFLECTED,   // that of texels, light_map_record_reflected
+    LIGHT_MAP_DIFFUSE,    // none
+    LIGHT_MAP_SPECULAR,   // of the map's light, and of the visible environment
+    LIGHT_MAP_BY_FLUENCE, // as LIGHT_MAP_SPECULAR, of light whose fluence the map has, too
+    LIGHT_MAP_REFLECTED,  // that of texels, light_map_record_reflected
 };
 
 struct light_map {
@@ -29,7 +29,7 @@ struct light_map {
     gpu_image walls;                  // lookups beside walls, of texels (map_shared.h)
     gpu_image visible_sky;            // with LIGHT_MAP_SPECULAR (visible_sky.h)
     gpu_image images[2];              // a map appears whole: one is looked up, one is written
-    gpu_image fluence[2];             // of both with LIGHT_MAP_FLUENCE_TOO
+    gpu_image fluence[2];             // of both with LIGHT_MAP_BY_FLUENCE
     int front;                        // the image that lookups read
     gpu_image reflected;              // with LIGHT_MAP_REFLECTED, of the newest view
     gpu_sampler linear;

@@ -1,7 +1,5 @@
 #include "techniques/mrt/light/reflectors.h"
 
-#include "techniques/mrt/level/wall.h"
-
 #include "core/parallel.h"
 
 #include "frame/octahedral.h"
@@ -28,13 +26,6 @@ static const float PER_DISTANCE = 0.125; // edge of a place over its distance, a
 
 enum owner { OF_BLOCK, INSIDE_BLOCK, OUTSIDE_BLOCKS };
 
-// No texel stands for a surface beyond an opening, such as the piers of an arcade.
-static bool is_open_at(const struct mrt_block *block, int axis, vec3s cell)
-{
-    const int face = 2 * axis + (cell.raw[axis] > 0.0f);
-    return !mrt_block_is_tube(block) && mrt_block_is_open(block, face);
-}
-
 static enum owner owner_in(const struct mrt_reflectors *r, int index, vec3s point, vec3s normal)
 {
     const struct mrt_block *block = &r->grid.map->blocks[index];
@@ -48,7 +39,6 @@ static enum owner owner_in(const struct mrt_reflectors *r, int index, vec3s poin
                    ? OF_BLOCK
                    : INSIDE_BLOCK;
     const int axis = most == out.x ? 0 : most == out.y ? 1 : 2;
-    if (is_open_at(block, axis, cell)) return OUTSIDE_BLOCKS;
     const mat3s jacobian = mrt_warp_jacobian(block->corner, cell);
     const vec3s across = vec3_unit(jacobian.col[axis]);
     return copysignf(1.0f, -cell.raw[axis]) * glms_vec3_dot(across, normal) > FACING
